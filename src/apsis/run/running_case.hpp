@@ -1,0 +1,56 @@
+#pragma once
+
+#include <apsis/exec/communicator.hpp>
+#include <apsis/integrate/integrate.hpp>
+#include <apsis/mesh/field.hpp>
+#include <apsis/run/monitor.hpp>
+#include <apsis/run/rounding.hpp>
+#include <apsis/run/run_promises.hpp>
+#include <apsis/run/run_state.hpp>
+#include <apsis/run/setup.hpp>
+#include <apsis/run/simulation.hpp>
+#include <apsis/semidiscrete/budgeted_problem.hpp>
+
+#include <memory>
+#include <vector>
+
+namespace apsis {
+
+/// What every run of a case has, in steps of time or in iterations.
+struct running_case {
+  running_case(std::unique_ptr<run_setup> prepared, const state_source& start);
+  running_case(const running_case&) = delete;
+  running_case& operator=(const running_case&) = delete;
+
+  /// Sets the records of the initial state.
+  void start_records();
+  /// Enters into the records that the run has advanced by dt.
+  void record_position(double dt);
+  /// Returns the error with the step, and the time before it.
+  numerical_error located(const numerical_error& failure) const;
+
+  std::unique_ptr<run_setup> made;
+  const run_setup& setup;
+  const case_config& config;
+  std::unique_ptr<semidiscrete_problem> problem;
+  monitor watch;
+  rounding_bound rounding;
+  budgeted_state now;
+  field& state = now.unknowns;
+  std::vector<double> budget;  ///< of the last step
+  time_marcher<double> march;
+  run_promises promises;
+  step_record first, last;
+  run_summary totals;
+};
+
+/// Returns the setup of a case. Throws input_error if its state and buffers do not fit into memory.
+std::unique_ptr<run_setup> setup_that_fits(const case_config& config,
+                                           const std::shared_ptr<communicator>& processes);
+
+/// Returns the unknowns as [cells][components], contiguous.
+std::vector<double> without_padding(const field& u);
+/// u ← values, [cells][components].
+void copy_rows(const std::vector<double>& values, field& u);
+
+}  // namespace apsis

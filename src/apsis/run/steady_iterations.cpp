@@ -1,0 +1,92 @@
+#include <apsis/run/steady_iterations.hpp>
+
+#include <apsis/core/errors.hpp>
+#include <apsis/exec/agreement.hpp>
+#include <apsis/run/ray_warning.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include <fmt/format.h>
+
+namespace apsis {
+
+void steady_iterations::start() {
+  constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+  run_.first.residual = run_.last.residual = {unknown};
+  const auto& [tolerance, iterations, images] = run_.config.steady_state;
+  run_collectively(run_.setup.processes(), [&] {
+    solver_.emplace(*run_.setup.equation->as_relaxation(), run_.setup.builder(), *run_.problem, run_.state,
+                    steady_options{*tolerance, iterations, images});
+  });
+  warn_of_rays(run_.setup, run_.problem->relaxation_time(0.0, run_.state));
+  run_.problem->take_cut();  // of the first residual
+}
+
+void steady_iterations::advance() {
+  try {
+    const steady_iteration done = solver_->iterate(run_.state);
+    run_.march.advance(1.0);
+    record(done);
+    found_ = done.converged;
+  } catch (const numerical_error& failure) {
+    throw run_.located(failure);
+  }
+}
+
+void steady_iterations::check() {
+  if (found_ || !run_.march.done()) return;
+  throw numerical_error(
+      fmt::format("no steady state in {} iterations (residual {:.2g}, change of the moments {:.2g}); give a "
+                  "larger steady.iterations, or march in time",
+                  run_.config.steady_state.iterations, run_.last.residual.front(), run_.last.change),
+      {run_.last.step, run_.last.t});
+}
+
+void steady_iterations::record(const steady_iteration& done) {
+  const std::span<const double> rates = run_.problem->budget_rates();
+  run_.now.budget = boundary_budget({rates.begin(), rates.end()});
+  run_.budget = run_.now.budget.amounts();
+  step_record& last = run_.last;
+  last = run_.watch.check(run_.now, 1.0, last, run_.problem->take_cut());
+  last.change = done.change;
+  last.residual = {done.residual};
+  last.received = run_.first.received;
+  last.entropy_change = std::numeric_limits<double>::quiet_NaN();
+  set_net_rates();
+  run_.record_position(1.0);
+  // Earlier iterates are not part of the result.
+  run_summary& totals = run_.totals;
+  totals.min_value = last.min_value;
+  totals.negative_values = last.negative_values;
+  totals.conservation_defect = 0.0;
+  for (const double rate : last.conservation_defect)
+    totals.conservation_defect = std::max(totals.conservation_defect, rate);
+  for (const double cut : last.cut) totals.largest_cut = cut;
+}
+
+void steady_iterations::set_net_rates() {
+  step_record& last = run_.last;
+  const std::size_t count = last.total.size();
+  std::vector<double> scales(count);
+  run_.setup.equation->invariant_scales(last.total, scales.data());
+  for (std::size_t k = 0; k < count; ++k) {
+    double net = 0.0;
+    for (std::size_t n = k; n < last.flux.size(); n += count) net += last.flux[n];
+    last.conservation_defect[k] = scales[k] > 0.0 ? std::abs(net) / scales[k] : std::abs(net);
+  }
+  last.defect_of_step = last.conservation_defect;
+}
+
+void steady_iterations::save(run_state& saved) const {
+  saved.steady = steady_progress{solver_->reference()};
+}
+
+void steady_iterations::restore(const run_state& saved) {
+  if (saved.steady) solver_->set_reference(saved.steady->reference);
+}
+
+}  // namespace apsis

@@ -1,16 +1,11 @@
 #include "command_registry.hpp"
-#include "drawing.hpp"
 #include "interrupt.hpp"
-#include "print.hpp"
 #include "progress_bar.hpp"
-#include "threads_option.hpp"
+#include "study_command.hpp"
 
 #include <apsis/core/errors.hpp>
 #include <apsis/core/log.hpp>
-#include <apsis/core/version.hpp>
 #include <apsis/exec/parallel.hpp>
-#include <apsis/output/json_text.hpp>
-#include <apsis/output/provenance.hpp>
 #include <apsis/output/result_folder.hpp>
 #include <apsis/study/convergence_report.hpp>
 
@@ -26,12 +21,10 @@ namespace {
 
 using json = nlohmann::ordered_json;
 
-struct options {
-  std::string case_name, norm = "l2", quantity;
-  std::vector<std::string> overrides, vary;
-  std::optional<std::string> reference, out;
-  std::optional<int> threads;
-  bool json = false;
+struct options : study_options {
+  std::string norm = "l2", quantity;
+  std::vector<std::string> vary;
+  std::optional<std::string> reference;
 };
 
 convergence_study study_of(const options& given) {
@@ -44,53 +37,19 @@ convergence_study study_of(const options& given) {
   return study;
 }
 
-std::string state_of(const convergence_table& table) {
-  if (!table.complete) return "interrupted";
-  return table.failures() > 0 ? "some runs failed" : "complete";
-}
-
-json manifest(const options& given, const convergence_table& table) {
-  return {{"apsis", version()},
-          {"state", state_of(table)},
-          {"written", time_stamp()},
-          {"study",
-           {{"case", given.case_name},
-            {"overrides", given.overrides},
-            {"vary", given.vary},
-            {"reference", given.reference.value_or("automatic")},
-            {"measure", table.measure},
-            {"runs", table.runs}}},
-          {"build", build_info()},
-          {"machine", machine_info()}};
-}
-
-void write_results(result_folder& folder, const options& given, const convergence_table& table) {
-  const picture plot = to_picture(table);
-  const bool drawable = !plot.panels.empty();
-  folder.prepare_text("converge.csv", to_csv(table));
-  folder.prepare_text("converge.json", json_text(to_json(table)) + "\n");
-  if (drawable) folder.prepare_text("picture.json", json_text(to_json(plot)) + "\n");
-  folder.prepare_text(result_folder::manifest, json_text(manifest(given, table)) + "\n");
-  folder.commit();
-  if (!drawable || interrupted()) return;
-  try {
-    draw("plot", {folder.path().string(), "--out", folder.path().string()});
-  } catch (const io_error& problem) {
-    // The numbers exist, and the picture can be drawn from picture.json at any time.
-    log::warning(problem.what());
-  } catch (const interruption&) {
-    return;  // also after an interrupt
-  }
+study_results results_of(const options& given, const convergence_table& table) {
+  const json subject = {{"case", given.case_name},  {"overrides", given.overrides},
+                        {"vary", given.vary},       {"reference", given.reference.value_or("automatic")},
+                        {"measure", table.measure}, {"runs", table.runs}};
+  return {"converge",        to_csv(table),  to_json(table),  subject,
+          to_picture(table), table.complete, table.failures()};
 }
 
 /// Returns false if it was interrupted.
 bool run_all_of(convergence& study) {
   progress_bar bar;
-  study_control control;
-  control.stop = interrupted;
-  control.progress = [&bar](double part, const std::string& what) { bar.update(part, what); };
   try {
-    study.run(control);
+    study.run(shown_in(bar));
   } catch (const study_interrupted&) {
     return false;
   }
@@ -107,8 +66,8 @@ int converge(const options& given) {
   log::info(fmt::format("{}: {} runs; {}", given.case_name, plan.runs, plan.measure));
   const bool finished = run_all_of(study);
   const convergence_table table = study.table();
-  if (folder) write_results(*folder, given, table);
-  print(given.json ? json_text(to_json(table)) + "\n" : to_text(table));
+  if (folder) write_study(*folder, results_of(given, table));
+  print_study(given, to_json(table), to_text(table));
   if (!finished || interrupted()) {
     const auto all = static_cast<std::size_t>(table.runs);
     log::warning(fmt::format("interrupted ({} of {} runs are finished); {}", study.finished_runs(), all,
@@ -137,10 +96,7 @@ constexpr const char* description =
 action define(CLI::App& command) {
   auto given = std::make_shared<options>();
   command.footer(description);
-  command
-      .add_option("CASE", given->case_name, "a case file, or the name of a built-in case (apsis list cases)")
-      ->required();
-  command.add_option("key=value", given->overrides, "override key=value for every run");
+  add_study_options(command, *given, "converge", "run", "number of simultaneous runs");
   command
       .add_option("--vary", given->vary,
                   "key=v1,v2,...: a key and its values, 20..160 stands for 20,40,80,160; several --vary run "
@@ -155,10 +111,6 @@ action define(CLI::App& command) {
   command.add_option("--norm", given->norm, "l1, l2 or linf")->capture_default_str();
   command.add_option("--quantity", given->quantity,
                      "compare a macroscopic field, such as rho, instead of the full state");
-  command.add_option("--out", given->out,
-                     "folder for converge.csv, converge.json, and the plot as picture.json and converge.png");
-  command.add_flag("--json", given->json, "print only a JSON array with one object per run");
-  add_threads(command, given->threads, "number of simultaneous runs", "all processors");
   return [given] { return converge(*given); };
 }
 

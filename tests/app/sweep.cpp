@@ -41,6 +41,10 @@ TEST(sweep, writes_a_folder_that_agrees_with_what_it_prints) {
   EXPECT_THAT(read(folder.path() / "swept" / "sweep.csv"),
               HasSubstr("parameters.delta,iterations,cpu_s"));
   EXPECT_TRUE(std::filesystem::exists(folder.path() / "swept" / "sweep.png"));
+  ASSERT_EQ(run_apsis(folder, {"report", "swept"}).code, 0);
+  const std::string page = read(folder.path() / "swept" / "report.html");
+  EXPECT_THAT(page, HasSubstr("3 runs; steady states"));
+  EXPECT_THAT(page, HasSubstr("flux_right_momentum_y"));
 }
 
 TEST(sweep, names_what_is_not_found) {

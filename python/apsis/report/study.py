@@ -1,4 +1,4 @@
-"""The page of `apsis converge --out`: the table and the picture."""
+"""The page of `apsis converge --out` and `apsis sweep --out`: the table and the picture."""
 from __future__ import annotations
 
 from pathlib import Path
@@ -26,13 +26,14 @@ def report(folder: Path) -> str:
     study: dict[str, Any] = manifest["study"]
     picture = folder / "picture.json"
     drawing = ""
-    title = f"Convergence of {study['case']}"
+    swept = (folder / "sweep.json").exists()
+    title = f"{'Steady states' if swept else 'Convergence'} of {study['case']}"
     if picture.exists():
         data = read_json(picture)
         title = data["title"]
         drawing = page.embedded(draw(data), data["name"], data["title"], data["caption"], pictures_in(folder))
     rows = [[Html(f"<code>{text(name)}</code>"), value] for name, value in study.items()]
     body = (f"<p>{text(manifest['state'])}: {text(study['runs'])} runs; {text(study['measure'])}. All quantities are dimensionless.</p>\n"
-            + drawing + "<h2>Runs</h2>\n" + runs_table(read_json_list(folder / "converge.json")) + "<h2>Study</h2>\n" + table([], rows)
+            + drawing + "<h2>Runs</h2>\n" + runs_table(read_json_list(folder / ("sweep.json" if swept else "converge.json"))) + "<h2>Study</h2>\n" + table([], rows)
             + f'<p class="small">{page.provenance(manifest, manifest["apsis"])}</p>\n')
     return page.page(title, body)

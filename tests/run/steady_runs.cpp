@@ -165,4 +165,19 @@ TEST(steady_run, says_that_the_iterations_are_over_or_lead_nowhere) {
       HasSubstr("use upwind5"));
 }
 
+TEST(steady_run, warns_of_fluxes_that_are_not_linear) {
+  const auto warnings_of = [](keys more) {
+    more.emplace_back("steady.tolerance=1e-8");
+    testing::internal::CaptureStderr();
+    const simulation run(apsis::load_case("gas/couette", more));
+    return testing::internal::GetCapturedStderr();
+  };
+  EXPECT_THAT(warnings_of({}), testing::Not(HasSubstr("may never settle")));
+  EXPECT_THAT(
+      warnings_of({"space.reconstruction=weno5-z"}),
+      HasSubstr("may never settle where f jumps along rays (the weights of weno5-z depend on f); write "
+                "space.reconstruction = \"upwind5\", or leave it out"));
+  EXPECT_THAT(warnings_of({"space.limiter=positivity"}), HasSubstr("write space.limiter = \"none\""));
+}
+
 }  // namespace steady_runs_test

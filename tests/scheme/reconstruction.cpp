@@ -52,6 +52,18 @@ double edge_error(const reconstruction& scheme, int n) {
 
 }  // namespace
 
+TEST(reconstruction, says_whether_it_is_linear) {
+  const std::vector<double> a = {0.3, 1.1, 0.2, 0.9, 0.4}, b = {1.0, 0.1, 0.7, 0.2, 0.8};
+  for (const auto* entry : apsis::reconstruction_entries()) {
+    const auto scheme = entry->make();
+    std::vector<double> sum;
+    for (std::size_t k = 0; k < a.size(); ++k) sum.push_back(a[k] + 2.0 * b[k]);
+    const double defect =
+        edges_of(*scheme, sum).right - edges_of(*scheme, a).right - 2.0 * edges_of(*scheme, b).right;
+    EXPECT_EQ(std::abs(defect) < 1e-14, entry->linear) << entry->name << ": " << defect;
+  }
+}
+
 TEST(reconstruction, every_scheme_reaches_its_order_at_the_edges) {
   for (const auto* entry : apsis::reconstruction_entries()) {
     const auto scheme = entry->make();

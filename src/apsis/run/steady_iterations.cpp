@@ -1,18 +1,40 @@
 #include <apsis/run/steady_iterations.hpp>
 
 #include <apsis/core/errors.hpp>
+#include <apsis/core/log.hpp>
 #include <apsis/exec/agreement.hpp>
 #include <apsis/run/ray_warning.hpp>
+#include <apsis/scheme/reconstruction_registry.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <span>
+#include <string>
 #include <vector>
 
 #include <fmt/format.h>
 
 namespace apsis {
+namespace {
+
+/// Warns of fluxes that are not linear in f.
+void warn_of_nonlinear_fluxes(const run_setup& setup) {
+  if (!setup.has_space()) return;
+  const auto& space = setup.config().space;
+  const auto warn = [](const std::string& why, const char* key, const char* value) {
+    log::warning(fmt::format(
+        "the iteration may never settle where f jumps along rays ({}); write {} = \"{}\", or leave it out",
+        why, key, value));
+  };
+  if (!find_reconstruction(space.reconstruction).linear)
+    warn(fmt::format("the weights of {} depend on f", space.reconstruction), "space.reconstruction",
+         "upwind5");
+  if (space.limiter != limiter_choice::none)
+    warn("the share of the limiter depends on f", "space.limiter", "none");
+}
+
+}  // namespace
 
 void steady_iterations::start() {
   constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
@@ -22,6 +44,7 @@ void steady_iterations::start() {
     solver_.emplace(*run_.setup.equation->as_relaxation(), run_.setup.builder(), *run_.problem, run_.state,
                     steady_options{*tolerance, iterations, images});
   });
+  warn_of_nonlinear_fluxes(run_.setup);
   warn_of_rays(run_.setup, run_.problem->relaxation_time(0.0, run_.state));
   run_.problem->take_cut();  // of the first residual
 }

@@ -14,6 +14,7 @@ struct reconstruction_entry {
   std::string name;                           ///< "weno5-z"
   std::string description;                    ///< one line
   std::string source;                         ///< citation
+  bool linear = false;                        ///< whether edge values are linear in the data
   std::unique_ptr<reconstruction> (*make)();  ///< makes an instance; schemes have no parameters
 };
 

@@ -41,7 +41,7 @@ double iterate(const linear_map& map, int depth, int iterations) {
     field g = map.image(x);
     std::vector<double> r(n);
     for (int i = 0; i < n; ++i) r[static_cast<std::size_t>(i)] = g.row(0)[i] - x.row(0)[i];
-    mixture.mix(r, g);
+    mixture.mix(*apsis::single_process(), r, g);
     x = g;
   }
   return map.residual(x);
@@ -82,11 +82,11 @@ TEST(anderson, without_images_or_after_forgetting_them_changes_nothing) {
   field g(1, n);
   for (int i = 0; i < n; ++i) g.row(0)[i] = i;
   const std::vector<double> r(n, 1.0);
-  none.mix(r, g);
-  none.mix(std::vector<double>(n, 2.0), g);
-  some.mix(r, g);
+  none.mix(*apsis::single_process(), r, g);
+  none.mix(*apsis::single_process(), std::vector<double>(n, 2.0), g);
+  some.mix(*apsis::single_process(), r, g);
   some.clear();
-  some.mix(std::vector<double>(n, 2.0), g);
+  some.mix(*apsis::single_process(), std::vector<double>(n, 2.0), g);
   for (int i = 0; i < n; ++i) EXPECT_EQ(g.row(0)[i], i);
 }
 

@@ -1,6 +1,6 @@
 #include <apsis/run/compute_fields.hpp>
 
-#include <apsis/run/gathered_cells.hpp>
+#include <apsis/semidiscrete/gathered_cells.hpp>
 
 #include <algorithm>
 #include <array>

@@ -4,7 +4,7 @@
 #include <apsis/exec/thread_clock.hpp>
 #include <apsis/run/compute_fields.hpp>
 #include <apsis/run/compute_surfaces.hpp>
-#include <apsis/run/gathered_cells.hpp>
+#include <apsis/semidiscrete/gathered_cells.hpp>
 #include <apsis/run/progression.hpp>
 #include <apsis/run/running_case.hpp>
 #include <apsis/run/steady_iterations.hpp>

@@ -2,7 +2,6 @@
 
 #include <apsis/core/errors.hpp>
 #include <apsis/core/log.hpp>
-#include <apsis/exec/agreement.hpp>
 #include <apsis/run/ray_warning.hpp>
 #include <apsis/scheme/reconstruction_registry.hpp>
 
@@ -40,10 +39,8 @@ void steady_iterations::start() {
   constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
   run_.first.residual = run_.last.residual = {unknown};
   const auto& [tolerance, iterations, images] = run_.config.steady_state;
-  run_collectively(run_.setup.processes(), [&] {
-    solver_.emplace(*run_.setup.equation->as_relaxation(), run_.setup.builder(), *run_.problem, run_.state,
-                    steady_options{*tolerance, iterations, images});
-  });
+  solver_.emplace(*run_.setup.equation->as_relaxation(), run_.setup.builder(), *run_.problem, run_.state,
+                  steady_options{*tolerance, iterations, images});
   warn_of_nonlinear_fluxes(run_.setup);
   warn_of_rays(run_.setup, run_.problem->relaxation_time(0.0, run_.state));
   run_.problem->take_cut();  // of the first residual

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <span>
 #include <utility>
 
 #include <Eigen/Dense>
@@ -30,7 +31,7 @@ void anderson::clear() {
   changes_of_r_.clear();
 }
 
-void anderson::mix(std::span<const double> r, field& g) {
+void anderson::mix(communicator& processes, std::vector<double> r, field& g) {
   if (depth_ == 0) return;
   if (known_) {
     // The oldest change gives its memory to the new one.
@@ -43,14 +44,23 @@ void anderson::mix(std::span<const double> r, field& g) {
     change = g;
     add(-1.0, last_image_, change);
     changes_.push_back(std::move(change));
-    std::vector<double> of_r(r.begin(), r.end());
-    for (std::size_t k = 0; k < of_r.size(); ++k) of_r[k] -= last_r_[k];
-    changes_of_r_.push_back(std::move(of_r));
+    for (std::size_t k = 0; k < r.size(); ++k) last_r_[k] = r[k] - last_r_[k];
+    changes_of_r_.push_back(std::move(last_r_));
   }
   last_image_ = g;
-  last_r_.assign(r.begin(), r.end());
   known_ = true;
-  if (changes_.empty()) return;
+  if (!changes_.empty()) {
+    std::vector<double> theta(changes_.size(), 0.0);
+    if (processes.is_root()) theta = shares(r);
+    processes.broadcast(std::as_writable_bytes(std::span(theta)));
+    for (std::size_t j = 0; j < theta.size(); ++j)
+      if (theta[j] != 0.0) add(-theta[j], changes_[j], g);
+  }
+  last_r_ = std::move(r);
+}
+
+/// Returns the θ that minimize ‖r − Σ_j θ_j Δr_j‖₂.
+std::vector<double> anderson::shares(const std::vector<double>& r) const {
   const auto rows = static_cast<Eigen::Index>(r.size()), columns = static_cast<Eigen::Index>(changes_.size());
   Eigen::MatrixXd differences(rows, columns);
   for (Eigen::Index j = 0; j < columns; ++j)
@@ -60,8 +70,7 @@ void anderson::mix(std::span<const double> r, field& g) {
   decomposed.setThreshold(1e-12);  // images that hardly differ
   decomposed.compute(differences);
   const Eigen::VectorXd theta = decomposed.solve(Eigen::Map<const Eigen::VectorXd>(r.data(), rows));
-  for (Eigen::Index j = 0; j < columns; ++j)
-    if (theta[j] != 0.0) add(-theta[j], changes_[static_cast<std::size_t>(j)], g);
+  return {theta.data(), theta.data() + theta.size()};
 }
 
 }  // namespace apsis

@@ -1,9 +1,9 @@
 #pragma once
 
+#include <apsis/exec/communicator.hpp>
 #include <apsis/mesh/field.hpp>
 
 #include <deque>
-#include <span>
 #include <vector>
 
 namespace apsis {
@@ -16,18 +16,21 @@ class anderson {
   /// `depth`: differences that it remembers.
   explicit anderson(int depth) : depth_(depth) {}
 
-  /// Mixes an image with those of the calls before; `r`: any linear function of g − x, always the same.
-  void mix(std::span<const double> r, field& g);
+  /// Mixes an image with those of the calls before; `r`: any linear function of g − x, always the same, on
+  /// the root of the processes that share g. Collective.
+  void mix(communicator& processes, std::vector<double> r, field& g);
   /// Forgets all images.
   void clear();
 
  private:
+  std::vector<double> shares(const std::vector<double>& r) const;
+
   int depth_;
   bool known_ = false;
   field last_image_;
   std::vector<double> last_r_;
   std::deque<field> changes_;
-  std::deque<std::vector<double>> changes_of_r_;
+  std::deque<std::vector<double>> changes_of_r_;  ///< on the root
 };
 
 }  // namespace apsis

@@ -22,6 +22,7 @@ void cell_links::link(const domain& space, int direction) {
           cell;
     }
     for (const bool upper : {false, true}) {
+      if (!one.ends_here(upper)) continue;
       const segment_end& end = one.ends[upper ? 1 : 0];
       if (end.surface >= 0) {
         add_end(space, direction, one, upper);

@@ -21,15 +21,15 @@ struct gas_end_of_segment {
   std::array<int, 3> cells{};  ///< of the segment, counted inwards; the last one repeated where it is shorter
 };
 
-/// Neighbours of the cells of a domain of one process, along every direction.
+/// Neighbours of the cells of a domain, along every direction. Cells of other processes are none.
 class cell_links {
  public:
   /// Looks at all segments of the domain once.
   explicit cell_links(const domain& space);
 
-  /// Returns the next cell of the segment; −1 at its end.
+  /// Returns the next cell of the segment; −1 at its end, or where another process continues it.
   int next(int direction, bool upper, int cell) const { return next_[index(direction, upper)][at(cell)]; }
-  /// Returns the next cell, also across periodic faces; −1 where the gas ends.
+  /// Returns the next cell, also across periodic faces; −1 where the gas ends, or the process does.
   int next_or_image(int direction, bool upper, int cell) const {
     return image_[index(direction, upper)][at(cell)];
   }

@@ -2,19 +2,17 @@
 
 #include <apsis/core/errors.hpp>
 #include <apsis/core/index.hpp>
-#include <apsis/exec/parallel.hpp>
+#include <apsis/exec/agreement.hpp>
 #include <apsis/model/gas_model.hpp>
+#include <apsis/semidiscrete/gathered_cells.hpp>
 #include <apsis/steady/dissection.hpp>
-#include <apsis/steady/end_response.hpp>
-#include <apsis/steady/tangent_rows.hpp>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
+#include <span>
 #include <utility>
 
-#include <Eigen/Dense>
 #include <Eigen/SparseLU>
 
 namespace apsis {
@@ -71,14 +69,39 @@ weighted_cells edge_of(const cell_links& links, int direction, bool upper, int c
 
 }  // namespace
 
-/// J_of_cell[direction] = {A⁺, A⁻, D}; J of an end: the derivative of the flux towards larger coordinates.
-struct macroscopic_system::matrices {
-  std::vector<double> of_cells, of_ends, of_sources;
+/// J of the whole mesh.
+class macroscopic_system::whole_system {
+ public:
+  whole_system(const relaxation_model& equation, const problem_builder& builder, const inside_domain& acts,
+               const jacobian_layout& layout);
+
+  /// `blocks`: of all cells, [cell][layout.numbers()].
+  void build(std::span<const double> blocks, double pseudo_rate);
+  const std::vector<bool>& conserved() const { return conserved_; }
+  moments solve(const moments& r, const std::vector<double>& missing) const;
+
+ private:
+  struct assembly;
+  void add_faces(assembly& to, std::span<const double> blocks, int direction) const;
+  void add_forces(assembly& to) const;
+  void add_constraints(assembly& to);
+  int unknowns() const { return static_cast<int>(links_.cells().size()) * count_; }
+  int constraints() const { return static_cast<int>(std::count(conserved_.begin(), conserved_.end(), true)); }
+
+  const relaxation_model& equation_;
+  const domain& space_;
+  const inside_domain& acts_;
+  jacobian_layout layout_;
+  cell_links links_;
+  bool first_order_;
+  int count_;
+  std::vector<int> number_;  ///< of a cell among those of the gas
+  std::vector<bool> conserved_;
   /// The order of the cells is one of little fill already.
-  Eigen::SparseLU<Eigen::SparseMatrix<double>, Eigen::NaturalOrdering<int>> factors;
+  Eigen::SparseLU<Eigen::SparseMatrix<double>, Eigen::NaturalOrdering<int>> factors_;
 };
 
-struct macroscopic_system::assembly {
+struct macroscopic_system::whole_system::assembly {
   int count;
   std::vector<Eigen::Triplet<double>> terms = {};
 
@@ -91,132 +114,55 @@ struct macroscopic_system::assembly {
   }
 };
 
-macroscopic_system::macroscopic_system(const relaxation_model& equation, const domain& space,
-                                       const cell_links& links, inside acts, bool first_order)
+macroscopic_system::whole_system::whole_system(const relaxation_model& equation,
+                                               const problem_builder& builder, const inside_domain& acts,
+                                               const jacobian_layout& layout)
     : equation_(equation),
-      space_(space),
-      links_(links),
-      acts_(std::move(acts)),
-      first_order_(first_order),
-      count_(equation.moment_count()),
-      number_(at(space.mesh().size()), -1),
-      conserved_(at(count_), false),
-      matrices_(std::make_unique<matrices>()) {
+      space_(builder.whole_space()),
+      acts_(acts),
+      layout_(layout),
+      links_(space_),
+      first_order_(builder.first_order()),
+      count_(layout.moments),
+      number_(at(space_.mesh().size()), -1),
+      conserved_(at(count_), false) {
   std::array<bool, 3> periodic{};
-  for (int d = 0; d < space.mesh().dimensions(); ++d) periodic[at(d)] = space.periodic(d);
+  for (int d = 0; d < space_.mesh().dimensions(); ++d) periodic[at(d)] = space_.periodic(d);
   int number = 0;
-  for (const int cell : dissected_cells(space.mesh(), periodic)) number_[at(cell)] = number++;
+  for (const int cell : dissected_cells(space_.mesh(), periodic)) number_[at(cell)] = number++;
 }
 
-macroscopic_system::~macroscopic_system() = default;
-
-namespace {
-
-/// Positive and negative parts of the speeds along every direction.
-struct half_speeds {
-  std::array<std::vector<double>, 3> up, down;
-
-  half_speeds(const model& equation, int directions) {
-    for (int d = 0; d < directions; ++d)
-      for (const double v : equation.speeds(d)) {
-        up[at(d)].push_back(std::max(v, 0.0));
-        down[at(d)].push_back(std::min(v, 0.0));
-      }
-  }
-};
-
-struct scratch_of_cells {
-  tangent_rows tangents;
-  end_response response;
-  aligned_vector<double> base, changed;
-  std::vector<double> flux;
-
-  scratch_of_cells(const relaxation_model& equation, const domain& space)
-      : tangents(equation),
-        response(space.space(), field(1, equation.components()).stride()),
-        base(at(equation.components())),
-        changed(at(equation.components())),
-        flux(at(equation.moment_count())) {}
-};
-
-/// Derivative by ω of the flux towards larger coordinates at an end, where what leaves is that of
-/// equilibrium.
-void differentiate_end(const relaxation_model& equation, const gas_end_of_segment& end,
-                       scratch_of_cells& with, double* matrix) {
-  const int count = equation.moment_count();
-  const auto speeds = equation.speeds(end.where.direction);
-  with.response.values_at(end, with.tangents.equilibrium(), with.base.data());
-  for (int j = 0; j < count; ++j) {
-    with.response.values_at(end, with.tangents.changed(j), with.changed.data());
-    for (std::size_t k = 0; k < speeds.size(); ++k)
-      with.changed[k] = speeds[k] * ((with.changed[k] - with.base[k]) / with.tangents.step(j));
-    equation.moments(with.changed.data(), with.flux.data());
-    for (int i = 0; i < count; ++i) matrix[i * count + j] = with.flux[at(i)];
-  }
-}
-
-}  // namespace
-
-void macroscopic_system::build(const moments& omega, const std::vector<double>& rates, double pseudo_rate) {
-  const int directions = links_.directions(), square = count_ * count_, per_cell = 3 * directions * square;
-  matrices_->of_cells.resize(at(space_.mesh().size()) * at(per_cell));
-  matrices_->of_ends.resize(links_.ends().size() * at(square));
-  if (has_source_of_state()) matrices_->of_sources.resize(at(space_.mesh().size()) * at(square));
-  const half_speeds halves(equation_, directions);
-  per_thread<std::unique_ptr<scratch_of_cells>> scratch;
-  scratch.prepare([&](auto& own) { own = std::make_unique<scratch_of_cells>(equation_, space_); });
-  parallel_blocks(static_cast<int>(links_.cells().size()), cells_of_a_block, [&](int begin, int end) {
-    scratch_of_cells& own = *scratch.here();
-    for (int n = begin; n < end; ++n) {
-      const int cell = links_.cells()[at(n)];
-      const double* here = omega.data() + at(cell) * at(count_);
-      if (!own.tangents.move_to(here))
-        throw numerical_error(equation_.why_inadmissible(here), {.cell = cell, .value = here[0]});
-      if (has_source_of_state())
-        differentiate_source(cell, own.tangents, matrices_->of_sources.data() + at(cell) * at(square));
-      double* to = matrices_->of_cells.data() + at(cell) * at(per_cell);
-      for (int d = 0; d < directions; ++d, to += 3 * square) {
-        own.tangents.moments_of_weighted(halves.up[at(d)], to);
-        own.tangents.moments_of_weighted(halves.down[at(d)], to + square);
-        own.tangents.moments_of_deviation(equation_.speeds(d), to + 2 * square);
-        for (int k = 0; k < square; ++k) to[2 * square + k] /= rates[at(cell)];
-        for (const bool upper : {false, true})
-          if (const int number = links_.end_next_to(d, upper, cell); number >= 0)
-            differentiate_end(equation_, links_.ends()[at(number)], own,
-                              matrices_->of_ends.data() + at(number) * at(square));
-      }
-    }
-  });
+void macroscopic_system::whole_system::build(std::span<const double> blocks, double pseudo_rate) {
   assembly all{count_};
-  for (int d = 0; d < directions; ++d) add_faces(all, d);
+  for (int d = 0; d < layout_.directions; ++d) add_faces(all, blocks, d);
   add_forces(all);
   for (const int cell : links_.cells())
-    if (has_source_of_state())
+    if (layout_.source)
       all.add(number_[at(cell)], number_[at(cell)], -1.0,
-              matrices_->of_sources.data() + at(cell) * at(square));
-  const int unknowns = static_cast<int>(links_.cells().size()) * count_;
+              blocks.data() + at(cell) * at(layout_.numbers()) + layout_.of_source());
   add_constraints(all);
   if (pseudo_rate > 0.0)
-    for (int k = 0; k < unknowns; ++k) all.terms.emplace_back(k, k, pseudo_rate);
-  const auto extra = static_cast<int>(std::count(conserved_.begin(), conserved_.end(), true));
-  Eigen::SparseMatrix<double> system(unknowns + extra, unknowns + extra);
+    for (int k = 0; k < unknowns(); ++k) all.terms.emplace_back(k, k, pseudo_rate);
+  const int size = unknowns() + constraints();
+  Eigen::SparseMatrix<double> system(size, size);
   system.setFromTriplets(all.terms.begin(), all.terms.end());
   system.makeCompressed();
   // Pivots off the diagonal would undo the order; they are taken where that is a hundred times smaller.
-  matrices_->factors.isSymmetric(true);
-  matrices_->factors.setPivotThreshold(0.01);
-  matrices_->factors.compute(system);
-  if (matrices_->factors.info() != Eigen::Success)
+  factors_.isSymmetric(true);
+  factors_.setPivotThreshold(0.01);
+  factors_.compute(system);
+  if (factors_.info() != Eigen::Success)
     throw numerical_error("the moment equations of the steady state are singular", {});
 }
 
-void macroscopic_system::add_faces(assembly& to, int direction) const {
-  const int square = count_ * count_;
+void macroscopic_system::whole_system::add_faces(assembly& to, std::span<const double> blocks,
+                                                 int direction) const {
   const double per_length = 1.0 / space_.mesh().spacing(direction);
-  const auto matrix = [&](int cell, int which) {
-    return matrices_->of_cells.data() +
-           at(square) * (at(cell) * 3 * at(links_.directions()) + 3 * at(direction) + at(which));
+  const auto matrix = [&](int cell, std::size_t place) {
+    return blocks.data() + at(cell) * at(layout_.numbers()) + place;
   };
+  const std::size_t up = layout_.transport(direction, true), down = layout_.transport(direction, false),
+                    deviation = layout_.deviation(direction);
   // The flux towards larger coordinates through the face between two cells. One of them may be missing.
   const auto add_flux = [&](int below, int above, int of, double factor, const double* block) {
     if (below >= 0) to.add(number_[at(below)], number_[at(of)], per_length * factor, block);
@@ -226,27 +172,25 @@ void macroscopic_system::add_faces(assembly& to, int direction) const {
     const int above = links_.next_or_image(direction, true, cell);
     if (above < 0) continue;
     for (const auto& [of, weight] : edge_of(links_, direction, true, cell, first_order_))
-      add_flux(cell, above, of, weight, matrix(of, 0));
+      add_flux(cell, above, of, weight, matrix(of, up));
     for (const auto& [of, weight] : edge_of(links_, direction, false, above, first_order_))
-      add_flux(cell, above, of, weight, matrix(of, 1));
+      add_flux(cell, above, of, weight, matrix(of, down));
     for (const int of_spread : {cell, above}) {
-      add_flux(cell, above, above, -0.5 * per_length, matrix(of_spread, 2));
-      add_flux(cell, above, cell, 0.5 * per_length, matrix(of_spread, 2));
+      add_flux(cell, above, above, -0.5 * per_length, matrix(of_spread, deviation));
+      add_flux(cell, above, cell, 0.5 * per_length, matrix(of_spread, deviation));
     }
   }
-  for (std::size_t number = 0; number < links_.ends().size(); ++number) {
-    const auto& end = links_.ends()[number];
+  for (const gas_end_of_segment& end : links_.ends()) {
     if (end.where.direction != direction) continue;
     const bool upper = end.where.upper;
     const int cell = end.cells[0];
     for (const auto& [of, weight] : edge_of(links_, direction, upper, cell, first_order_))
-      add_flux(upper ? cell : -1, upper ? -1 : cell, of, weight,
-               matrices_->of_ends.data() + number * at(square));
+      add_flux(upper ? cell : -1, upper ? -1 : cell, of, weight, matrix(cell, layout_.end(end.where)));
   }
 }
 
 /// A force a gives the momentum ρa and the energy ρu·a per unit of time.
-void macroscopic_system::add_forces(assembly& to) const {
+void macroscopic_system::whole_system::add_forces(assembly& to) const {
   const gas_model* gas = equation_.as_gas();
   if (!acts_.force || gas == nullptr) return;
   const int energy = count_ - 1;
@@ -261,33 +205,8 @@ void macroscopic_system::add_forces(assembly& to) const {
   }
 }
 
-bool macroscopic_system::has_source_of_state() const {
-  return equation_.has_source() || (acts_.source && acts_.source->growth);
-}
-
-/// matrix ← ℛ ∂S/∂ω of equilibrium.
-void macroscopic_system::differentiate_source(int cell, tangent_rows& tangents, double* matrix) const {
-  const auto components = at(equation_.components());
-  std::vector<double> base(components), changed(components), own(components), column(at(count_));
-  const auto evaluate = [&](const double* row, std::vector<double>& to) {
-    std::fill(to.begin(), to.end(), 0.0);
-    if (acts_.source && acts_.source->growth)
-      acts_.source->value(0.0, space_.mesh().centre(cell), {row, components}, to);
-    if (!equation_.has_source()) return;
-    equation_.source(row, own.data());
-    for (std::size_t k = 0; k < components; ++k) to[k] += own[k];
-  };
-  evaluate(tangents.equilibrium(), base);
-  for (int j = 0; j < count_; ++j) {
-    evaluate(tangents.changed(j), changed);
-    for (std::size_t k = 0; k < components; ++k) changed[k] = (changed[k] - base[k]) / tangents.step(j);
-    equation_.moments(changed.data(), column.data());
-    for (int i = 0; i < count_; ++i) matrix[i * count_ + j] = column[at(i)];
-  }
-}
-
-void macroscopic_system::add_constraints(assembly& to) {
-  const int cells = static_cast<int>(links_.cells().size()), unknowns = cells * count_;
+void macroscopic_system::whole_system::add_constraints(assembly& to) {
+  const int cells = static_cast<int>(links_.cells().size()), unknowns = this->unknowns();
   std::vector<double> sums(at(count_) * at(unknowns), 0.0), sizes(at(count_), 0.0);
   for (const auto& term : to.terms) {
     const std::size_t moment = at(term.row() % count_);
@@ -312,22 +231,55 @@ void macroscopic_system::add_constraints(assembly& to) {
   }
 }
 
-macroscopic_system::moments macroscopic_system::solve(const moments& r,
-                                                      const std::vector<double>& missing) const {
-  const int unknowns = static_cast<int>(links_.cells().size()) * count_;
-  const auto extra = static_cast<int>(std::count(conserved_.begin(), conserved_.end(), true));
-  Eigen::VectorXd right = Eigen::VectorXd::Zero(unknowns + extra);
+macroscopic_system::moments macroscopic_system::whole_system::solve(
+    const moments& r, const std::vector<double>& missing) const {
+  Eigen::VectorXd right = Eigen::VectorXd::Zero(unknowns() + constraints());
   for (const int cell : links_.cells())
     for (int i = 0; i < count_; ++i) right[number_[at(cell)] * count_ + i] = r[at(cell) * at(count_) + at(i)];
-  int next = unknowns;
+  int next = unknowns();
   for (std::size_t moment = 0; moment < at(count_); ++moment)
     if (conserved_[moment]) right[next++] = missing[moment] / static_cast<double>(links_.cells().size());
-  const Eigen::VectorXd found = matrices_->factors.solve(right);
+  const Eigen::VectorXd found = factors_.solve(right);
   moments change(r.size(), 0.0);
   for (const int cell : links_.cells())
     for (int i = 0; i < count_; ++i)
       change[at(cell) * at(count_) + at(i)] = found[number_[at(cell)] * count_ + i];
   return change;
+}
+
+macroscopic_system::macroscopic_system(const relaxation_model& equation, const problem_builder& space,
+                                       const cell_links& links)
+    : space_(space),
+      acts_{space.force(), space.source()},
+      jacobian_(equation, space.space(), links, acts_),
+      count_(equation.moment_count()),
+      conserved_(at(count_), false) {
+  if (space.processes().is_root())
+    whole_ = std::make_unique<whole_system>(equation, space, acts_, jacobian_.layout());
+}
+
+macroscopic_system::~macroscopic_system() = default;
+
+void macroscopic_system::build(const moments& omega, const std::vector<double>& rates, double pseudo_rate) {
+  communicator& processes = space_.processes();
+  std::vector<double> blocks;
+  run_collectively(processes, [&] { blocks = jacobian_.compute(omega, rates); });
+  blocks = gather_cells(space_, std::move(blocks), jacobian_.layout().numbers());
+  run_collectively(processes, [&] {
+    if (whole_) whole_->build(blocks, pseudo_rate);
+  });
+  std::vector<std::byte> flags(at(count_));
+  for (std::size_t k = 0; whole_ && k < flags.size(); ++k)
+    flags[k] = static_cast<std::byte>(whole_->conserved()[k] ? 1 : 0);
+  processes.broadcast(flags);
+  for (std::size_t k = 0; k < flags.size(); ++k) conserved_[k] = flags[k] != std::byte{0};
+}
+
+macroscopic_system::moments macroscopic_system::solve(const moments& r,
+                                                      const std::vector<double>& missing) const {
+  moments all = gather_cells(space_, r, count_);
+  if (whole_) all = whole_->solve(all, missing);
+  return scatter_cells(space_, std::move(all), count_);
 }
 
 }  // namespace apsis

@@ -1,19 +1,14 @@
 #pragma once
 
-#include <apsis/boundary/domain.hpp>
-#include <apsis/model/acceleration.hpp>
 #include <apsis/model/model.hpp>
-#include <apsis/model/source_rate.hpp>
+#include <apsis/semidiscrete/problem_builder.hpp>
+#include <apsis/steady/cell_jacobian.hpp>
 #include <apsis/steady/cell_links.hpp>
 
-#include <cstddef>
 #include <memory>
-#include <optional>
 #include <vector>
 
 namespace apsis {
-
-class tangent_rows;
 
 /// The linearised moment equations J δω = r of a steady state near equilibrium, ω = ℛf, on the mesh of the
 /// kinetic equation. Fluxes are those of ∂E/∂ω by sums over half the velocities with third-order upwind
@@ -21,20 +16,16 @@ class tangent_rows;
 /// what the boundary conditions make of them: slip, temperature jumps and impermeable walls are part of J.
 /// No moment of the transport part of the deviation is taken off ("c = 1"): smooth modes change by O(Kn)
 /// alone, and the correction stays bounded where the gas is rare.
+///
+/// Every process differentiates in its own cells; the root holds and solves J. Members that change or solve J
+/// are collective.
 class macroscopic_system {
  public:
-  /// Right-hand sides and changes: [cells][moment_count].
+  /// Right-hand sides and changes: [cells of this process][moment_count].
   using moments = std::vector<double>;
 
-  /// Force and source inside the domain, beside those of the model.
-  struct inside {
-    std::optional<acceleration> force = {};  ///< of a gas
-    std::optional<source_rate> source = {};  ///< of any model
-  };
-
-  /// `equation`, `space` and `links` must outlive the object.
-  macroscopic_system(const relaxation_model& equation, const domain& space, const cell_links& links,
-                     inside acts, bool first_order);
+  /// All arguments must outlive the object; `links`: of the cells of this process.
+  macroscopic_system(const relaxation_model& equation, const problem_builder& space, const cell_links& links);
   ~macroscopic_system();
   macroscopic_system(const macroscopic_system&) = delete;
   macroscopic_system& operator=(const macroscopic_system&) = delete;
@@ -50,23 +41,14 @@ class macroscopic_system {
   moments solve(const moments& r, const std::vector<double>& missing) const;
 
  private:
-  struct matrices;
-  struct assembly;
-  void add_faces(assembly& to, int direction) const;
-  void add_forces(assembly& to) const;
-  bool has_source_of_state() const;
-  void differentiate_source(int cell, tangent_rows& tangents, double* matrix) const;
-  void add_constraints(assembly& to);
+  class whole_system;
 
-  const relaxation_model& equation_;
-  const domain& space_;
-  const cell_links& links_;
-  inside acts_;
-  bool first_order_;
+  const problem_builder& space_;
+  inside_domain acts_;
+  cell_jacobian jacobian_;
   int count_;
-  std::vector<int> number_;  ///< of a cell among those of the gas
   std::vector<bool> conserved_;
-  std::unique_ptr<matrices> matrices_;
+  std::unique_ptr<whole_system> whole_;  ///< on the root
 };
 
 }  // namespace apsis

@@ -3,8 +3,11 @@
 #include <apsis/core/errors.hpp>
 #include <apsis/core/exact_sum.hpp>
 #include <apsis/core/index.hpp>
+#include <apsis/exec/agreement.hpp>
+#include <apsis/exec/global_sum.hpp>
 #include <apsis/exec/parallel.hpp>
 #include <apsis/model/gas_model.hpp>
+#include <apsis/semidiscrete/gathered_cells.hpp>
 #include <apsis/steady/anderson.hpp>
 #include <apsis/steady/cell_links.hpp>
 #include <apsis/steady/macroscopic_system.hpp>
@@ -14,8 +17,10 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <optional>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -40,17 +45,24 @@ constexpr double pseudo_share = 0.3;
 constexpr double hopeless = 1e6;
 /// Iterations without progress after which there will be none.
 constexpr int patience = 100;
+constexpr double infinite = std::numeric_limits<double>::infinity();
 
-void check(const problem_builder& space) {
-  if (!space.processes().is_single())
-    throw input_error(
-        "the steady solver runs on one process (its moment equations are those of one "
-        "process); start it without mpirun, with --threads for more processors");
+/// Returns ε of the cells. Throws input_error where there is no steady state to solve for.
+std::vector<double> checked_epsilon(const problem_builder& space) {
   if (!space.has_space())
     throw input_error("the model has no space, so that its steady state is an equilibrium; run it in time");
-  for (const double epsilon : space.epsilon_at_centres())
-    if (!(epsilon > 0.0))
-      throw input_error("epsilon is 0 in some cell (the steady solver divides by it); give a positive one");
+  std::vector<double> found;
+  run_collectively(space.processes(), [&] {
+    found = space.epsilon_at_centres();
+    for (const double epsilon : found)
+      if (!(epsilon > 0.0))
+        throw input_error("epsilon is 0 in some cell (the steady solver divides by it); give a positive one");
+  });
+  return found;
+}
+
+double global_highest(communicator& processes, double mine) {
+  return -global_lowest(processes, -mine);
 }
 
 }  // namespace
@@ -60,12 +72,13 @@ struct steady_solver::impl {
        const field& start, const steady_options& given)
       : equation(of),
         builder(space),
+        processes(space.processes()),
         options(given),
-        epsilon((check(space), space.epsilon_at_centres())),
+        epsilon(checked_epsilon(space)),
         problem(operators),
         links(builder.space()),
         count(equation.moment_count()),
-        system(equation, builder.space(), links, {builder.force(), builder.source()}, builder.first_order()),
+        system(equation, builder, links),
         sweep(equation, builder.space(), links),
         mixture(given.depth),
         r(start.cells(), start.components()),
@@ -76,6 +89,7 @@ struct steady_solver::impl {
     moments_of(start, omega);
     totals = sums(omega);
     scales = largest_scales();
+    cells = global_count(processes, static_cast<std::int64_t>(links.cells().size()));
   }
 
   void moments_of(const field& u, std::vector<double>& to) const {
@@ -83,14 +97,12 @@ struct steady_solver::impl {
       equation.moments_of_rows(u.row(begin), u.stride(), end - begin, to.data() + at(begin * count));
     });
   }
+  /// Sums over the cells of all processes.
   std::vector<double> sums(const std::vector<double>& of) const {
-    std::vector<double> all;
-    for (std::size_t i = 0; i < at(count); ++i) {
-      exact_sum sum;
-      for (const int cell : links.cells()) sum.add(of[at(cell * count) + i]);
-      all.push_back(sum.value());
-    }
-    return all;
+    std::vector<exact_sum> all(at(count));
+    for (const int cell : links.cells())
+      for (std::size_t i = 0; i < all.size(); ++i) all[i].add(of[at(cell * count) + i]);
+    return global_values(processes, all);
   }
   /// Scales of the moments of a cell, or their absolute values where the model has other invariants.
   std::vector<double> scales_of(const double* moments) const {
@@ -108,6 +120,7 @@ struct steady_solver::impl {
       const auto here = scales_of(omega.data() + at(cell * count));
       for (std::size_t i = 0; i < largest.size(); ++i) largest[i] = std::max(largest[i], here[i]);
     }
+    for (double& scale : largest) scale = global_highest(processes, scale);
     return largest;
   }
 
@@ -119,6 +132,7 @@ struct steady_solver::impl {
     moments_of(r, of_transport);
     const std::array<target<field, double>, 1> added = {{{&r, 0.0, 1.0, false}}};
     problem.add_collision(0.0, f, added);
+    problem.throw_late_errors();
     for (const int cell : links.cells())
       rates[at(cell)] = equation.rate(omega.data() + at(cell * count)) / epsilon[at(cell)];
   }
@@ -138,36 +152,41 @@ struct steady_solver::impl {
         of_cells[at(n)] = {residual, collisions};
       }
     });
-    exact_sum residual, collisions;
+    std::array<exact_sum, 2> all;
     for (const auto& [x, y] : of_cells) {
-      residual.add(x);
-      collisions.add(y);
+      all[0].add(x);
+      all[1].add(y);
     }
-    return {std::sqrt(residual.value()), std::sqrt(collisions.value())};
+    const std::vector<double> squares = global_values(processes, all);
+    return {std::sqrt(squares[0]), std::sqrt(squares[1])};
   }
 
   /// The shortest extent L of the domain.
   double extent() const {
-    const grid& mesh = builder.mesh();
-    double shortest = std::numeric_limits<double>::infinity();
+    const grid& mesh = builder.whole_mesh();
+    double shortest = infinite;
     for (int d = 0; d < mesh.dimensions(); ++d)
       shortest = std::min(shortest, mesh.spacing(d) * mesh.cells(d));
     return shortest;
   }
-  /// √T of the first cell of a gas; the largest speed of other models.
+  /// The lowest √T of the first cell of a process, of a gas; the largest speed of other models.
   double thermal_speed() const {
-    if (const gas_model* gas = equation.as_gas())
-      return std::sqrt(gas->molecules().state(omega.data() + at(links.cells().front() * count)).T);
     double speed = 0.0;
+    if (const gas_model* gas = equation.as_gas()) {
+      speed = infinite;
+      if (!links.cells().empty())
+        speed = std::sqrt(gas->molecules().state(omega.data() + at(links.cells().front() * count)).T);
+      return global_lowest(processes, speed);
+    }
     for (int d = 0; d < builder.mesh().dimensions(); ++d)
       for (const double v : equation.speeds(d)) speed = std::max(speed, std::abs(v));
     return speed;
   }
   /// √π/2 · L/λ with the mean rate of collisions.
   double rarefaction_parameter() const {
-    double rate = 0.0;
-    for (const int cell : links.cells()) rate += rates[at(cell)];
-    return rate / static_cast<double>(links.cells().size()) / (std::sqrt(2.0) * flight_rate);
+    std::array<exact_sum, 1> rate;
+    for (const int cell : links.cells()) rate[0].add(rates[at(cell)]);
+    return global_values(processes, rate)[0] / static_cast<double>(cells) / (std::sqrt(2.0) * flight_rate);
   }
 
   void build_system_if_due(double relative) {
@@ -187,10 +206,10 @@ struct steady_solver::impl {
       for (std::size_t i = 0; i < at(count); ++i) {
         const double change = std::abs(changes_of_moments[at(cell * count) + i]);
         const double relative = change / std::max(here[i], std::numeric_limits<double>::min());
-        if (!(relative <= largest)) largest = relative;
+        if (!(relative <= largest)) largest = std::isnan(relative) ? infinite : relative;
       }
     }
-    return largest;
+    return global_highest(processes, largest);
   }
 
   /// Returns the share of the correction that changes density and energy of no cell too much.
@@ -203,12 +222,11 @@ struct steady_solver::impl {
         share =
             std::min(share, largest_change * omega[k] / std::max(std::abs(changes_of_moments[k]), 1e-300));
       }
-    return share;
+    return global_lowest(processes, share);
   }
 
-  /// r ← r + σ (E(ω + δω) − E(ω)); less of δω where that has no equilibrium.
-  void add_correction() {
-    const double share = share_of_correction();
+  /// r ← r + σ (E(ω + share δω) − E(ω)); less of δω where that has no equilibrium.
+  void add_correction(double share) {
     parallel_blocks(static_cast<int>(links.cells().size()), cells_of_a_block, [&](int begin, int end) {
       aligned_vector<double> before(at(r.components())), after(at(r.components()));
       std::vector<double> moved(at(count));
@@ -217,7 +235,8 @@ struct steady_solver::impl {
         const double *here = omega.data() + at(cell * count),
                      *change = changes_of_moments.data() + at(cell * count);
         if (!equation.equilibrium(here, before.data()))
-          throw numerical_error(equation.why_inadmissible(here), {.cell = cell, .value = here[0]});
+          throw numerical_error(equation.why_inadmissible(here),
+                                {.cell = builder.space().number_in_whole_mesh(cell), .value = here[0]});
         for (double part = share; part > 1e-3 * share; part *= 0.5) {
           for (std::size_t i = 0; i < at(count); ++i) moved[i] = here[i] + part * change[i];
           if (!equation.equilibrium(moved.data(), after.data())) continue;
@@ -240,7 +259,7 @@ struct steady_solver::impl {
     });
     if (mix) {
       for (std::size_t k = 0; k < of_change.size(); ++k) of_change[k] /= scales[k % at(count)];
-      mixture.mix(of_change, f);
+      mixture.mix(processes, gather_cells(builder, std::move(of_change), count), f);
     }
     if (equation.as_gas() == nullptr || !system.conserved()[0]) return;
     moments_of(f, omega);
@@ -305,19 +324,24 @@ struct steady_solver::impl {
           "diverges");
     now.converged = (now.residual <= options.tolerance || now.rounding) && now.change <= options.tolerance;
     if (now.converged) return now;
-    add_correction();
-    sweep.solve(f, rates, r);
+    const double share = share_of_correction();
+    run_collectively(processes, [&] {
+      add_correction(share);
+      sweep.solve(f, rates, r);
+    });
     update(f, mixes_at_once || now.residual < share_to_mix);
     return now;
   }
 
   const relaxation_model& equation;
   problem_builder builder;
+  communicator& processes;
   steady_options options;
   std::vector<double> epsilon;
   semidiscrete_problem& problem;
   cell_links links;
   int count;
+  std::int64_t cells = 0;  ///< of the gas, on all processes
   macroscopic_system system;
   octant_sweep sweep;
   anderson mixture;
@@ -325,7 +349,7 @@ struct steady_solver::impl {
   std::vector<double> omega, of_transport, changes_of_moments, rates, totals, scales;
   double reference = std::numeric_limits<double>::quiet_NaN();
   double lowest = 0.0;  ///< residual since J was built
-  double best = std::numeric_limits<double>::infinity();
+  double best = infinite;
   double flight_rate = 0.0;  ///< thermal speed over the extent of the domain
   bool built = false, mixes_at_once = false;
   bool strong = false;  ///< whether a correction was larger than largest_change

@@ -34,14 +34,17 @@ struct steady_iteration {
 /// mixes images by Anderson's method. Fixed points are exactly R = 0: J and L decide on the speed alone.
 /// Moments that nothing changes, such as the mass between walls, keep their sums.
 ///
+/// On several processes every member is collective. J is that of the whole mesh, on the root; the sweep
+/// begins at the border of every process with δf = 0. The fixed points are the same, the iterates are not.
+///
 /// Reference: Su, Zhu, Wang, Zhang & Wu (J. Comput. Phys. 407, 2020) for the macroscopic correction of a
 /// kinetic sweep. Here J has no terms of Navier–Stokes form: its fluxes are sums over the velocities.
 class steady_solver {
  public:
   /// `problem`: built by `space`; its boundary conditions, forces and sources are taken at t = 0. `start`:
   /// the sums of its conserved moments are those of the solution, and its residual is the unit of residuals.
-  /// `equation` and `problem` must outlive the solver. Throws input_error without space, if ε is 0 somewhere,
-  /// or on several processes.
+  /// `equation` and `problem` must outlive the solver. Throws input_error without space, or if ε is 0
+  /// somewhere.
   steady_solver(const relaxation_model& equation, const problem_builder& space, semidiscrete_problem& problem,
                 const field& start, const steady_options& options = {});
   ~steady_solver();

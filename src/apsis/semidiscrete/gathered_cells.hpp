@@ -10,4 +10,8 @@ namespace apsis {
 /// Collective; the result is on the root, elsewhere it is empty.
 std::vector<double> gather_cells(const problem_builder& builder, std::vector<double> mine, int per_cell = 1);
 
+/// The inverse of gather_cells(): returns the numbers of the cells of this process from those of all cells,
+/// which the root gives. Collective.
+std::vector<double> scatter_cells(const problem_builder& builder, std::vector<double> all, int per_cell = 1);
+
 }  // namespace apsis

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <apsis/boundary/domain.hpp>
+#include <apsis/model/acceleration.hpp>
+#include <apsis/model/model.hpp>
+#include <apsis/model/source_rate.hpp>
+#include <apsis/steady/cell_links.hpp>
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+namespace apsis {
+
+class tangent_rows;
+
+/// Force and source inside a domain, beside those of the model.
+struct inside_domain {
+  std::optional<acceleration> force = {};  ///< of a gas
+  std::optional<source_rate> source = {};  ///< of any model
+};
+
+/// The places of the blocks of J in the numbers of a cell. A block has m² numbers, row by row, m =
+/// relaxation_model::moment_count().
+struct jacobian_layout {
+  int directions = 1, moments = 1;
+  bool source = false;
+
+  std::size_t square() const { return at(moments) * at(moments); }
+  /// Numbers of a cell.
+  int numbers() const { return static_cast<int>(square()) * (5 * directions + (source ? 1 : 0)); }
+  /// ℛ v⁺ ∂E/∂ω, of what moves to larger coordinates, or of what moves to smaller ones.
+  std::size_t transport(int direction, bool up) const { return block(5 * direction + (up ? 0 : 1)); }
+  /// ℛ v G/σ of the deviation (tangent_rows::moments_of_deviation()).
+  std::size_t deviation(int direction) const { return block(5 * direction + 2); }
+  /// The derivative of the flux to larger coordinates where the gas ends next to the cell; 0 elsewhere.
+  std::size_t end(const face& where) const { return block(5 * where.direction + (where.upper ? 4 : 3)); }
+  /// ℛ ∂S/∂ω.
+  std::size_t of_source() const { return block(5 * directions); }
+
+ private:
+  std::size_t block(int number) const { return at(number) * square(); }
+};
+
+/// Computes the derivatives by ω of fluxes, sources and boundary conditions in equilibrium, cell by cell.
+class cell_jacobian {
+ public:
+  /// All references must outlive the object.
+  cell_jacobian(const relaxation_model& equation, const domain& space, const cell_links& links,
+                const inside_domain& acts);
+
+  const jacobian_layout& layout() const { return layout_; }
+  /// Returns the blocks of all cells of this process, [cells][layout().numbers()], for the moments ω and the
+  /// collision rates σ = C/ε. Throws numerical_error with the cell where ω has no equilibrium.
+  std::vector<double> compute(const std::vector<double>& omega, const std::vector<double>& rates) const;
+
+ private:
+  void differentiate_source(int cell, const tangent_rows& tangents, double* matrix) const;
+
+  const relaxation_model& equation_;
+  const domain& space_;
+  const cell_links& links_;
+  const inside_domain& acts_;
+  jacobian_layout layout_;
+};
+
+}  // namespace apsis

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -163,6 +164,23 @@ TEST(steady_run, says_that_the_iterations_are_over_or_lead_nowhere) {
       failure_of("gas/cavity", {"steady.iterations=1000", "space.cells=[16, 16]", "velocity.points=12",
                                 "parameters.delta=1", "space.reconstruction=weno5-z"}),
       HasSubstr("use upwind5"));
+}
+
+TEST(steady_run, finds_a_shock_between_open_ends_and_before_a_step) {
+  for (const double mach : {1.5, 2.0}) {
+    const simulation shock = found("gas/shock", {fmt::format("parameters.M={}", mach)});
+    // Fluxes are those of the ends; their sums miss what 40 velocities miss of Maxwellians.
+    for (const double net : shock.last().conservation_defect) EXPECT_LT(net, 1e-7) << mach;
+    EXPECT_LE(shock.step(), 130) << mach;
+  }
+  const simulation step = found("gas/step", {"space.cells=[18,12]"});
+  EXPECT_LE(step.step(), 120);
+  const auto names = step.fields().names;
+  const auto rho =
+      step.fields()
+          .values[static_cast<std::size_t>(std::find(names.begin(), names.end(), "rho") - names.begin())];
+  // Behind a normal shock of Mach number 2 the density is 16/7 (Rankine, Hugoniot), at the wall higher.
+  EXPECT_GT(*std::max_element(rho.begin(), rho.end()), 16.0 / 7.0);
 }
 
 TEST(steady_run, warns_of_fluxes_that_are_not_linear) {

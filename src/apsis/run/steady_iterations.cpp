@@ -67,6 +67,12 @@ void steady_iterations::check() {
 }
 
 void steady_iterations::record(const steady_iteration& done) {
+  if (done.damping > damping_)
+    log::info(
+        fmt::format("iteration {}: a {}pseudo-time term damps the corrections (they are too large, or the "
+                    "residual does not fall)",
+                    run_.march.step(), damping_ == 0 ? "" : "stronger "));
+  damping_ = done.damping;
   const std::span<const double> rates = run_.problem->budget_rates();
   run_.now.budget = boundary_budget({rates.begin(), rates.end()});
   run_.budget = run_.now.budget.amounts();

@@ -33,6 +33,7 @@ class steady_iterations final : public progression {
 
   running_case& run_;
   std::optional<steady_solver> solver_;
+  int damping_ = 0;     ///< of the last iteration
   bool found_ = false;  ///< the steady state
 };
 

@@ -10,6 +10,7 @@
 #include <apsis/semidiscrete/gathered_cells.hpp>
 #include <apsis/steady/anderson.hpp>
 #include <apsis/steady/cell_links.hpp>
+#include <apsis/steady/damping.hpp>
 #include <apsis/steady/macroscopic_system.hpp>
 #include <apsis/steady/octant_sweep.hpp>
 
@@ -36,15 +37,8 @@ constexpr double share_to_mix = 0.05;
 /// Rarefaction parameter √π/2 · L/λ below which a gas is rare, so that mixing pays from the first iteration
 /// on.
 constexpr double rare = 5.0;
-/// Largest relative change of density and energy in one iteration.
-constexpr double largest_change = 0.3;
-/// Where corrections are larger than that, J has this multiple of the rate of flight through the domain and
-/// of the relative residual on its diagonal. It costs iterations where corrections are small.
-constexpr double pseudo_share = 0.3;
 /// A residual of this multiple of the start does not come back.
 constexpr double hopeless = 1e6;
-/// Iterations without progress after which there will be none.
-constexpr int patience = 100;
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
 /// Returns ε of the cells. Throws input_error where there is no steady state to solve for.
@@ -193,7 +187,7 @@ struct steady_solver::impl {
     const bool due = !built || relative > share_to_keep_system || relative > growth_for_new_system * lowest;
     lowest = due ? relative : std::min(lowest, relative);
     if (!due) return;
-    system.build(omega, rates, strong ? pseudo_share * flight_rate * std::min(relative, 1.0) : 0.0);
+    system.build(omega, rates, flight_rate * damped.rate(relative));
     if (built && relative <= share_to_keep_system) mixture.clear();
     built = true;
   }
@@ -219,8 +213,8 @@ struct steady_solver::impl {
     for (const int cell : links.cells())
       for (const std::size_t i : {std::size_t{0}, at(count - 1)}) {
         const std::size_t k = at(cell * count) + i;
-        share =
-            std::min(share, largest_change * omega[k] / std::max(std::abs(changes_of_moments[k]), 1e-300));
+        share = std::min(
+            share, damping::largest_change * omega[k] / std::max(std::abs(changes_of_moments[k]), 1e-300));
       }
     return global_lowest(processes, share);
   }
@@ -270,18 +264,10 @@ struct steady_solver::impl {
     });
   }
 
-  /// Throws where the residual no longer falls. One that falls by a tenth counts as progress.
-  void note_progress(double residual) {
-    if (residual < 0.9 * best) {
-      best = residual;
-      best_number = number;
-    }
-    if (number - best_number > patience)
-      throw numerical_error(
-          fmt::format("no steady state is found: the residual stays at {:.2g} of that of the start for {} "
-                      "iterations (nonlinear weights of a reconstruction may never settle, nor flows without "
-                      "a steady state); use upwind5, or march in time",
-                      best, patience));
+  /// Begins again with another J.
+  void forget_system() {
+    built = false;
+    mixture.clear();
   }
 
   /// Sets δω and its size.
@@ -307,21 +293,21 @@ struct steady_solver::impl {
     if (!(now.residual < hopeless))
       throw numerical_error(
           fmt::format("the iteration to the steady state diverges: its residual is {:.3g} "
-                      "times that of the start",
+                      "times that of the start; march in time",
                       now.residual));
-    note_progress(now.residual);
+    if (damped.note_residual(now.residual)) forget_system();
     // Each term of a residual is rounded relative to σf.
     now.rounding = residual <= 4.0 * std::numeric_limits<double>::epsilon() * collisions;
     correct_moments(now);
-    if (!strong && now.change > largest_change) {
-      strong = true;
-      built = false;
+    if (damped.note_change(now.change)) {
+      forget_system();
       correct_moments(now);
     }
+    now.damping = damped.strength();
     if (!std::isfinite(now.change))
       throw numerical_error(
-          "the correction of the moments is not finite: the iteration to the steady state "
-          "diverges");
+          "the correction of the moments is not finite: the iteration to the steady state diverges; march in "
+          "time");
     now.converged = (now.residual <= options.tolerance || now.rounding) && now.change <= options.tolerance;
     if (now.converged) return now;
     const double share = share_of_correction();
@@ -345,15 +331,14 @@ struct steady_solver::impl {
   macroscopic_system system;
   octant_sweep sweep;
   anderson mixture;
+  damping damped;
   field r;
   std::vector<double> omega, of_transport, changes_of_moments, rates, totals, scales;
   double reference = std::numeric_limits<double>::quiet_NaN();
-  double lowest = 0.0;  ///< residual since J was built
-  double best = infinite;
+  double lowest = 0.0;       ///< residual since J was built
   double flight_rate = 0.0;  ///< thermal speed over the extent of the domain
   bool built = false, mixes_at_once = false;
-  bool strong = false;  ///< whether a correction was larger than largest_change
-  int number = 0, best_number = 0;
+  int number = 0;
 };
 
 steady_solver::steady_solver(const relaxation_model& equation, const problem_builder& space,

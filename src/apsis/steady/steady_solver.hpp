@@ -24,6 +24,7 @@ struct steady_iteration {
   /// Largest change δω_i of a moment in the correction of this iteration, relative to its scale
   /// (model::invariant_scales()).
   double change = 0.0;
+  int damping = 0;         ///< damping::strength() of its J
   bool rounding = false;   ///< whether the residual is that of rounding
   bool converged = false;  ///< whether f was left as it is: it has the tolerance
 };

@@ -1,0 +1,73 @@
+#include <apsis/steady/damping.hpp>
+
+#include <apsis/core/errors.hpp>
+
+#include <algorithm>
+#include <array>
+
+#include <fmt/format.h>
+
+namespace apsis {
+namespace {
+
+struct term {
+  double of_residual,  ///< times the relative residual: vanishes in the steady state
+      constant;        ///< for modes that are nearly neutral, such as the position of a shock
+};
+/// From weak to strong. A term costs iterations where a weaker one does.
+constexpr std::array<term, 5> terms = {{{0.0, 0.0}, {0.3, 0.0}, {30.0, 0.0}, {30.0, 3.0}, {100.0, 10.0}}};
+
+/// Iterations without progress after which the next term is taken,
+constexpr int short_patience = 20;
+/// and iterations with too large a correction.
+constexpr int most_large_corrections = 12;
+/// Below this relative residual, terms that vanish with it are skipped.
+constexpr double share_for_constant_term = 0.01;
+/// Iterations without progress after which there will be none.
+constexpr int patience = 100;
+
+}  // namespace
+
+double damping::rate(double residual) const {
+  const term& now = terms[strength_];
+  return std::max(now.of_residual * std::min(residual, 1.0), now.constant);
+}
+
+void damping::strengthen(double residual) {
+  ++strength_;
+  while (strength_ + 1 < terms.size() && residual < share_for_constant_term &&
+         terms[strength_].constant == 0.0)
+    ++strength_;
+  best_ = infinite;
+  idle_ = large_corrections_ = 0;
+}
+
+bool damping::note_residual(double residual) {
+  ++idle_;
+  if (residual < 0.9 * best_) {
+    best_ = residual;
+    idle_ = 0;
+  }
+  if (strength_ + 1 < terms.size() &&
+      (idle_ > short_patience || large_corrections_ > most_large_corrections)) {
+    strengthen(residual);
+    return true;
+  }
+  if (idle_ > patience)
+    throw numerical_error(
+        fmt::format("no steady state is found: the residual stays at {:.2g} of that of the start for {} "
+                    "iterations (nonlinear weights of a reconstruction may never settle, nor flows without "
+                    "a steady state); use upwind5, or march in time",
+                    best_, patience));
+  return false;
+}
+
+bool damping::note_change(double change) {
+  if (!(change > largest_change)) return false;
+  ++large_corrections_;
+  if (strength_ > 0) return false;
+  strengthen(infinite);
+  return true;
+}
+
+}  // namespace apsis

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cstddef>
+#include <limits>
+
+namespace apsis {
+
+/// The pseudo-time term on the diagonal of J. There is none at the start. A correction that is too large
+/// calls for a weak one, and iterations without progress call for stronger ones.
+class damping {
+ public:
+  /// Largest relative change of density and energy in one iteration.
+  static constexpr double largest_change = 0.3;
+
+  /// Returns the term in units of the rate of flight through the domain. `residual`: relative to that of the
+  /// start.
+  double rate(double residual) const;
+  /// Returns 0 without a term, and a larger number for a stronger one.
+  int strength() const { return static_cast<int>(strength_); }
+
+  /// Notes the relative residual of the next iteration; one that falls by a tenth is progress. Returns
+  /// whether the term has become stronger. Throws numerical_error where the strongest one does not help.
+  bool note_residual(double residual);
+  /// Notes the largest relative change in a correction. Returns whether there is a term now that replaces the
+  /// correction.
+  bool note_change(double change);
+
+ private:
+  static constexpr double infinite = std::numeric_limits<double>::infinity();
+
+  void strengthen(double residual);
+
+  std::size_t strength_ = 0;
+  double best_ = infinite;     ///< residual with this term
+  int idle_ = 0;               ///< iterations without progress
+  int large_corrections_ = 0;  ///< with this term
+};
+
+}  // namespace apsis

@@ -17,7 +17,8 @@ TEST(damping, is_absent_while_the_residual_falls_and_corrections_are_small) {
     EXPECT_FALSE(term.note_change(damping::largest_change));
   }
   EXPECT_EQ(term.strength(), 0);
-  EXPECT_EQ(term.rate(1.0), 0.0);
+  EXPECT_EQ(term.vanishing_rate(1.0), 0.0);
+  EXPECT_EQ(term.constant_rate(), 0.0);
 }
 
 TEST(damping, comes_with_the_first_large_correction_and_vanishes_with_the_residual) {
@@ -25,9 +26,10 @@ TEST(damping, comes_with_the_first_large_correction_and_vanishes_with_the_residu
   EXPECT_TRUE(term.note_change(1.1 * damping::largest_change));
   EXPECT_FALSE(term.note_change(1.1 * damping::largest_change));
   EXPECT_EQ(term.strength(), 1);
-  EXPECT_GT(term.rate(1.0), 0.0);
-  EXPECT_DOUBLE_EQ(term.rate(1e-3), 1e-3 * term.rate(1.0));
-  EXPECT_EQ(term.rate(50.0), term.rate(1.0));
+  EXPECT_GT(term.vanishing_rate(1.0), 0.0);
+  EXPECT_DOUBLE_EQ(term.vanishing_rate(1e-3), 1e-3 * term.vanishing_rate(1.0));
+  EXPECT_EQ(term.vanishing_rate(50.0), term.vanishing_rate(1.0));
+  EXPECT_EQ(term.constant_rate(), 0.0);
 }
 
 TEST(damping, grows_where_corrections_stay_too_large) {
@@ -45,7 +47,7 @@ TEST(damping, grows_where_corrections_stay_too_large) {
 TEST(damping, does_not_vanish_where_a_small_residual_stays) {
   damping term;
   for (int k = 0; k < 30; ++k) term.note_residual(1e-5);
-  EXPECT_GT(term.rate(0.0), 0.0);
+  EXPECT_GT(term.constant_rate(), 0.0);
 }
 
 TEST(damping, gives_up_when_the_strongest_term_does_not_help) {

@@ -12,7 +12,7 @@ namespace {
 
 struct term {
   double of_residual,  ///< times the relative residual: vanishes in the steady state
-      constant;        ///< for modes that are nearly neutral, such as the position of a shock
+      constant;        ///< where that is not enough
 };
 /// From weak to strong. A term costs iterations where a weaker one does.
 constexpr std::array<term, 5> terms = {{{0.0, 0.0}, {0.3, 0.0}, {30.0, 0.0}, {30.0, 3.0}, {100.0, 10.0}}};
@@ -28,9 +28,11 @@ constexpr int patience = 100;
 
 }  // namespace
 
-double damping::rate(double residual) const {
-  const term& now = terms[strength_];
-  return std::max(now.of_residual * std::min(residual, 1.0), now.constant);
+double damping::vanishing_rate(double residual) const {
+  return terms[strength_].of_residual * std::min(residual, 1.0);
+}
+double damping::constant_rate() const {
+  return terms[strength_].constant;
 }
 
 void damping::strengthen(double residual) {

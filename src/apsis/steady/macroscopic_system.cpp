@@ -6,14 +6,14 @@
 #include <apsis/model/gas_model.hpp>
 #include <apsis/semidiscrete/gathered_cells.hpp>
 #include <apsis/steady/dissection.hpp>
+#include <apsis/steady/neutral_mode.hpp>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <span>
 #include <utility>
-
-#include <Eigen/SparseLU>
 
 namespace apsis {
 namespace {
@@ -76,8 +76,9 @@ class macroscopic_system::whole_system {
                const jacobian_layout& layout);
 
   /// `blocks`: of all cells, [cell][layout.numbers()].
-  void build(std::span<const double> blocks, double pseudo_rate);
+  void build(std::span<const double> blocks, double pseudo_rate, bool holds_neutral);
   const std::vector<bool>& conserved() const { return conserved_; }
+  bool has_neutral_mode() const { return neutral_.has_value(); }
   moments solve(const moments& r, const std::vector<double>& missing) const;
 
  private:
@@ -98,7 +99,8 @@ class macroscopic_system::whole_system {
   std::vector<int> number_;  ///< of a cell among those of the gas
   std::vector<bool> conserved_;
   /// The order of the cells is one of little fill already.
-  Eigen::SparseLU<Eigen::SparseMatrix<double>, Eigen::NaturalOrdering<int>> factors_;
+  sparse_factors factors_;
+  std::optional<neutral_mode> neutral_;
 };
 
 struct macroscopic_system::whole_system::assembly {
@@ -132,7 +134,8 @@ macroscopic_system::whole_system::whole_system(const relaxation_model& equation,
   for (const int cell : dissected_cells(space_.mesh(), periodic)) number_[at(cell)] = number++;
 }
 
-void macroscopic_system::whole_system::build(std::span<const double> blocks, double pseudo_rate) {
+void macroscopic_system::whole_system::build(std::span<const double> blocks, double pseudo_rate,
+                                             bool holds_neutral) {
   assembly all{count_};
   for (int d = 0; d < layout_.directions; ++d) add_faces(all, blocks, d);
   add_forces(all);
@@ -153,6 +156,7 @@ void macroscopic_system::whole_system::build(std::span<const double> blocks, dou
   factors_.compute(system);
   if (factors_.info() != Eigen::Success)
     throw numerical_error("the moment equations of the steady state are singular", {});
+  neutral_ = holds_neutral ? find_neutral_mode(factors_) : std::nullopt;
 }
 
 void macroscopic_system::whole_system::add_faces(assembly& to, std::span<const double> blocks,
@@ -239,7 +243,9 @@ macroscopic_system::moments macroscopic_system::whole_system::solve(
   int next = unknowns();
   for (std::size_t moment = 0; moment < at(count_); ++moment)
     if (conserved_[moment]) right[next++] = missing[moment] / static_cast<double>(links_.cells().size());
-  const Eigen::VectorXd found = factors_.solve(right);
+  if (neutral_) neutral_->remove_from_right_side(right);
+  Eigen::VectorXd found = factors_.solve(right);
+  if (neutral_) neutral_->remove_from_solution(found);
   moments change(r.size(), 0.0);
   for (const int cell : links_.cells())
     for (int i = 0; i < count_; ++i)
@@ -260,19 +266,22 @@ macroscopic_system::macroscopic_system(const relaxation_model& equation, const p
 
 macroscopic_system::~macroscopic_system() = default;
 
-void macroscopic_system::build(const moments& omega, const std::vector<double>& rates, double pseudo_rate) {
+bool macroscopic_system::build(const moments& omega, const std::vector<double>& rates, double pseudo_rate,
+                               bool holds_neutral) {
   communicator& processes = space_.processes();
   std::vector<double> blocks;
   run_collectively(processes, [&] { blocks = jacobian_.compute(omega, rates); });
   blocks = gather_cells(space_, std::move(blocks), jacobian_.layout().numbers());
   run_collectively(processes, [&] {
-    if (whole_) whole_->build(blocks, pseudo_rate);
+    if (whole_) whole_->build(blocks, pseudo_rate, holds_neutral);
   });
-  std::vector<std::byte> flags(at(count_));
-  for (std::size_t k = 0; whole_ && k < flags.size(); ++k)
+  std::vector<std::byte> flags(at(count_) + 1);
+  for (std::size_t k = 0; whole_ && k < conserved_.size(); ++k)
     flags[k] = static_cast<std::byte>(whole_->conserved()[k] ? 1 : 0);
+  if (whole_) flags.back() = static_cast<std::byte>(whole_->has_neutral_mode() ? 1 : 0);
   processes.broadcast(flags);
-  for (std::size_t k = 0; k < flags.size(); ++k) conserved_[k] = flags[k] != std::byte{0};
+  for (std::size_t k = 0; k < conserved_.size(); ++k) conserved_[k] = flags[k] != std::byte{0};
+  return flags.back() != std::byte{0};
 }
 
 macroscopic_system::moments macroscopic_system::solve(const moments& r,

@@ -187,7 +187,13 @@ struct steady_solver::impl {
     const bool due = !built || relative > share_to_keep_system || relative > growth_for_new_system * lowest;
     lowest = due ? relative : std::min(lowest, relative);
     if (!due) return;
-    system.build(omega, rates, flight_rate * damped.rate(relative));
+    const double vanishing = flight_rate * damped.vanishing_rate(relative),
+                 constant = flight_rate * damped.constant_rate();
+    // A neutral mode takes any change. If it is the cause, nothing else needs to be damped.
+    if (constant == 0.0)
+      system.build(omega, rates, vanishing);
+    else if (!system.build(omega, rates, 0.0, true))
+      system.build(omega, rates, std::max(vanishing, constant));
     if (built && relative <= share_to_keep_system) mixture.clear();
     built = true;
   }

@@ -1,0 +1,47 @@
+#include <apsis/steady/neutral_mode.hpp>
+
+#include <cmath>
+#include <random>
+
+#include <Eigen/Dense>
+
+namespace apsis {
+namespace {
+
+using columns = Eigen::Matrix<double, Eigen::Dynamic, 2>;
+
+/// Convergence is that of (σ₁/σ₂)², and of (σ₂/σ₃)² for a second value that is only compared.
+constexpr int iterations = 4;
+constexpr double isolated = 1e-3;
+
+columns orthonormal(const Eigen::HouseholderQR<columns>& decomposed) {
+  const Eigen::Index rows = decomposed.matrixQR().rows();
+  return decomposed.householderQ() * columns::Identity(rows, 2);
+}
+
+/// Numbers between −1 and 1, always the same.
+columns start(Eigen::Index rows) {
+  std::mt19937 numbers;  // NOLINT(cert-msc32-c,cert-msc51-cpp): the same in every run
+  columns found(rows, 2);
+  for (double& x : found.reshaped()) x = 2.0 * (static_cast<double>(numbers()) / 4294967295.0) - 1.0;
+  return found;
+}
+
+}  // namespace
+
+std::optional<neutral_mode> find_neutral_mode(sparse_factors& factors) {
+  if (factors.rows() < 2) return std::nullopt;
+  columns right = start(factors.rows()), left;
+  double smallest = 0.0, next = 0.0;
+  for (int k = 0; k < iterations; ++k) {
+    left = orthonormal(Eigen::HouseholderQR<columns>(columns(factors.transpose().solve(right))));
+    const Eigen::HouseholderQR<columns> decomposed(columns(factors.solve(left)));
+    smallest = 1.0 / std::abs(decomposed.matrixQR()(0, 0));
+    next = 1.0 / std::abs(decomposed.matrixQR()(1, 1));
+    right = orthonormal(decomposed);
+  }
+  if (!(smallest < isolated * next)) return std::nullopt;
+  return neutral_mode{left.col(0), right.col(0)};
+}
+
+}  // namespace apsis

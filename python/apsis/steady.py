@@ -31,7 +31,7 @@ class SteadyState:
         return f"<apsis.SteadyState after {self.iterations} iterations, residual {self.residuals[-1]:.1e}>"
 
 
-def solve_steady(problem: KineticProblem, u0: ArrayLike, tolerance: float = 1e-8, *, iterations: int = 200, images: int = 3,
+def solve_steady(problem: KineticProblem, u0: ArrayLike, tolerance: float = 1e-8, *, iterations: int = 500, images: int = 3,
                  threads: int | None = None) -> SteadyState:
     """Solves T(u) + Q(u)/ε = 0 for the discretization of the problem, with boundary conditions and forces at t = 0.
 

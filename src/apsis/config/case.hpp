@@ -95,7 +95,7 @@ struct case_config {
   /// table [time] of the case is not used, and time.end is `iterations`, time.dt 1.
   struct {
     std::optional<double> tolerance;  ///< of residual and change of moments; without it the run marches
-    int iterations = 200;             ///< at most
+    int iterations = 500;             ///< at most
     int images = 3;                   ///< that the mixture remembers
   } steady_state;
   /// Table [output].

@@ -18,7 +18,7 @@ struct term {
 constexpr std::array<term, 5> terms = {{{0.0, 0.0}, {0.3, 0.0}, {30.0, 0.0}, {30.0, 3.0}, {100.0, 10.0}}};
 
 /// Iterations without progress after which the next term is taken,
-constexpr int short_patience = 20;
+constexpr int short_patience = 35;
 /// and iterations with too large a correction.
 constexpr int most_large_corrections = 12;
 /// Below this relative residual, terms that vanish with it are skipped.

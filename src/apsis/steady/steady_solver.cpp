@@ -190,10 +190,12 @@ struct steady_solver::impl {
     const double vanishing = flight_rate * damped.vanishing_rate(relative),
                  constant = flight_rate * damped.constant_rate();
     // A neutral mode takes any change. If it is the cause, nothing else needs to be damped.
-    if (constant == 0.0)
-      system.build(omega, rates, vanishing);
-    else if (!system.build(omega, rates, 0.0, true))
-      system.build(omega, rates, std::max(vanishing, constant));
+    pseudo_rate = 0.0;
+    holds_neutral_mode = constant > 0.0 && system.build(omega, rates, 0.0, true);
+    if (!holds_neutral_mode) {
+      pseudo_rate = std::max(vanishing, constant);
+      system.build(omega, rates, pseudo_rate);
+    }
     if (built && relative <= share_to_keep_system) mixture.clear();
     built = true;
   }
@@ -276,6 +278,16 @@ struct steady_solver::impl {
     mixture.clear();
   }
 
+  [[noreturn]] static void throw_imbalance(double residual) {
+    throw numerical_error(
+        fmt::format("no steady state is found: the residual stays at {:.2g} of that of the start (a front "
+                    "has no position at "
+                    "which the fluxes of the ends are equal); give the ends states with equal fluxes, more "
+                    "velocities, or a "
+                    "larger steady.tolerance",
+                    residual));
+  }
+
   /// Sets δω and its size.
   void correct_moments(steady_iteration& now) {
     build_system_if_due(now.residual);
@@ -301,7 +313,10 @@ struct steady_solver::impl {
           fmt::format("the iteration to the steady state diverges: its residual is {:.3g} "
                       "times that of the start; march in time",
                       now.residual));
-    if (damped.note_residual(now.residual)) forget_system();
+    if (damped.note_residual(now.residual)) {
+      if (holds_neutral_mode) throw_imbalance(now.residual);
+      forget_system();
+    }
     // Each term of a residual is rounded relative to σf.
     now.rounding = residual <= 4.0 * std::numeric_limits<double>::epsilon() * collisions;
     correct_moments(now);
@@ -319,6 +334,7 @@ struct steady_solver::impl {
     const double share = share_of_correction();
     run_collectively(processes, [&] {
       add_correction(share);
+      for (double& rate : rates) rate += pseudo_rate;
       sweep.solve(f, rates, r);
     });
     update(f, mixes_at_once || now.residual < share_to_mix);
@@ -343,7 +359,8 @@ struct steady_solver::impl {
   double reference = std::numeric_limits<double>::quiet_NaN();
   double lowest = 0.0;       ///< residual since J was built
   double flight_rate = 0.0;  ///< thermal speed over the extent of the domain
-  bool built = false, mixes_at_once = false;
+  double pseudo_rate = 0.0;  ///< of J
+  bool built = false, holds_neutral_mode = false, mixes_at_once = false;
   int number = 0;
 };
 

@@ -13,7 +13,7 @@ namespace apsis {
 /// How a steady state is found.
 struct steady_options {
   double tolerance = 1e-8;  ///< of the residual and of the change of the moments
-  int iterations = 200;     ///< at most
+  int iterations = 500;     ///< at most
   int depth = 3;            ///< images that Anderson's mixture remembers
 };
 

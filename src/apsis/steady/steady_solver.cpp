@@ -32,6 +32,8 @@ namespace {
 constexpr double share_to_keep_system = 0.01;
 /// A residual that has grown by this factor since J was built calls for a new one.
 constexpr double growth_for_new_system = 10.0;
+/// So does a pseudo-time term that is this many times the present one.
+constexpr double change_of_pseudo_rate = 10.0;
 /// In a dense gas images mislead the mixture until the residual is this share of that of the start.
 constexpr double share_to_mix = 0.05;
 /// Rarefaction parameter √π/2 · L/λ below which a gas is rare, so that mixing pays from the first iteration
@@ -184,11 +186,12 @@ struct steady_solver::impl {
   }
 
   void build_system_if_due(double relative) {
-    const bool due = !built || relative > share_to_keep_system || relative > growth_for_new_system * lowest;
-    lowest = due ? relative : std::min(lowest, relative);
-    if (!due) return;
     const double vanishing = flight_rate * damped.vanishing_rate(relative),
                  constant = flight_rate * damped.constant_rate();
+    const bool due = !built || relative > share_to_keep_system || relative > growth_for_new_system * lowest ||
+                     pseudo_rate > change_of_pseudo_rate * std::max(vanishing, constant);
+    lowest = due ? relative : std::min(lowest, relative);
+    if (!due) return;
     // A neutral mode takes any change. If it is the cause, nothing else needs to be damped.
     pseudo_rate = 0.0;
     holds_neutral_mode = constant > 0.0 && system.build(omega, rates, 0.0, true);

@@ -11,7 +11,6 @@
 #include <string>
 #include <vector>
 
-#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -167,14 +166,14 @@ TEST(steady_run, says_that_the_iterations_are_over_or_lead_nowhere) {
 }
 
 TEST(steady_run, finds_a_shock_between_open_ends_and_before_a_step) {
-  for (const double mach : {1.5, 2.0}) {
-    const simulation shock = found("gas/shock", {fmt::format("parameters.M={}", mach)});
-    // Fluxes are those of the ends; their sums miss what 40 velocities miss of Maxwellians.
-    for (const double net : shock.last().conservation_defect) EXPECT_LT(net, 1e-7) << mach;
-    EXPECT_LE(shock.step(), 130) << mach;
-  }
+  const simulation shock = found("gas/shock", {});
+  for (const double net : shock.last().conservation_defect) EXPECT_LT(net, 1e-9);
+  EXPECT_LE(shock.step(), 200);
+  // What the ends of the line cut off of the thicker structure of this shock makes their fluxes differ.
+  EXPECT_THAT(failure_of("gas/shock", {"parameters.M=3", "steady.tolerance=1e-8"}),
+              HasSubstr("a front has no position at which"));
   const simulation step = found("gas/step", {"space.cells=[18,12]"});
-  EXPECT_LE(step.step(), 120);
+  EXPECT_LE(step.step(), 200);
   const auto names = step.fields().names;
   const auto rho =
       step.fields()

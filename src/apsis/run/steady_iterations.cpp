@@ -17,6 +17,15 @@
 namespace apsis {
 namespace {
 
+/// Marches before a failure is final, and the length of the first one in times of flight through the domain.
+constexpr int most_marches = 3;
+constexpr double flights_of_first_march = 5.0;
+
+/// The message without its advice, which is that for a run in time.
+std::string cause_of(const numerical_error& failure) {
+  return failure.problem().substr(0, failure.problem().find("; "));
+}
+
 /// Warns of fluxes that are not linear in f.
 void warn_of_nonlinear_fluxes(const run_setup& setup) {
   if (!setup.has_space()) return;
@@ -38,23 +47,66 @@ void warn_of_nonlinear_fluxes(const run_setup& setup) {
 void steady_iterations::start() {
   constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
   run_.first.residual = run_.last.residual = {unknown};
-  const auto& [tolerance, iterations, images] = run_.config.steady_state;
-  solver_.emplace(*run_.setup.equation->as_relaxation(), run_.setup.builder(), *run_.problem, run_.state,
-                  steady_options{*tolerance, iterations, images});
+  first_ = run_.state;
+  make_solver();
   warn_of_nonlinear_fluxes(run_.setup);
   warn_of_rays(run_.setup, run_.problem->relaxation_time(0.0, run_.state));
   run_.problem->take_cut();  // of the first residual
 }
 
+void steady_iterations::make_solver() {
+  const auto& [tolerance, iterations, images] = run_.config.steady_state;
+  solver_.emplace(*run_.setup.equation->as_relaxation(), run_.setup.builder(), *run_.problem, run_.state,
+                  steady_options{*tolerance, iterations, images});
+  damping_ = 0;
+}
+
 void steady_iterations::advance() {
   try {
-    const steady_iteration done = solver_->iterate(run_.state);
+    const steady_iteration done = march_ ? march() : iterate();
     run_.march.advance(1.0);
     record(done);
     found_ = done.converged;
   } catch (const numerical_error& failure) {
     throw run_.located(failure);
   }
+}
+
+steady_iteration steady_iterations::iterate() {
+  try {
+    return solver_->iterate(run_.state);
+  } catch (const steady_stall&) {
+    throw;
+  } catch (const numerical_error& failure) {
+    begin_march(failure);
+  }
+  return march();
+}
+
+/// Begins steps in time, twice as long as those before.
+void steady_iterations::begin_march(const numerical_error& failure) {
+  if (marches_ == most_marches || !std::isfinite(solver_->flight_time())) throw failure;
+  const double duration = std::ldexp(flights_of_first_march * solver_->flight_time(), marches_++);
+  log::info(
+      fmt::format("iteration {}: {}; steps in time from the first state until t = {:.3g} give the next start",
+                  run_.march.step(), cause_of(failure), duration));
+  run_.state = first_;
+  march_.emplace(run_.setup, first_, duration);
+}
+
+/// A part of the march, with its residual.
+steady_iteration steady_iterations::march() {
+  march_->advance(run_.state);
+  steady_iteration done;
+  done.residual = solver_->relative_residual(run_.state);
+  done.change = std::numeric_limits<double>::quiet_NaN();
+  if (march_->finished()) {
+    const double reference = solver_->reference();
+    march_.reset();
+    make_solver();
+    solver_->set_reference(reference);
+  }
+  return done;
 }
 
 void steady_iterations::check() {
@@ -66,13 +118,18 @@ void steady_iterations::check() {
       {run_.last.step, run_.last.t});
 }
 
-void steady_iterations::record(const steady_iteration& done) {
-  if (done.damping > damping_)
+void steady_iterations::log_damping(int damping) {
+  if (damping > damping_)
     log::info(
         fmt::format("iteration {}: a {}pseudo-time term damps the corrections (they are too large, or the "
-                    "residual does not fall)",
+                    "residual does not "
+                    "fall)",
                     run_.march.step(), damping_ == 0 ? "" : "stronger "));
-  damping_ = done.damping;
+  damping_ = damping;
+}
+
+void steady_iterations::record(const steady_iteration& done) {
+  log_damping(done.damping);
   const std::span<const double> rates = run_.problem->budget_rates();
   run_.now.budget = boundary_budget({rates.begin(), rates.end()});
   run_.budget = run_.now.budget.amounts();
@@ -113,6 +170,7 @@ void steady_iterations::save(run_state& saved) const {
 
 void steady_iterations::restore(const run_state& saved) {
   if (saved.steady) solver_->set_reference(saved.steady->reference);
+  first_ = run_.state;
 }
 
 }  // namespace apsis

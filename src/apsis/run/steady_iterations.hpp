@@ -1,5 +1,7 @@
 #pragma once
 
+#include <apsis/mesh/field.hpp>
+#include <apsis/run/interim_march.hpp>
 #include <apsis/run/progression.hpp>
 #include <apsis/steady/steady_solver.hpp>
 
@@ -11,6 +13,9 @@ namespace apsis {
 /// Iterations of a steady_solver in place of steps. They count as time. Fluxes are those of the last
 /// residual; what the gas received since the start is nothing, and defects of conservation are the net rates.
 /// Nothing is promised.
+///
+/// Where an iteration fails because f has no equilibrium, or because it diverges, the run marches in time
+/// from its first state, and then iterates again. A part of the march counts as an iteration.
 class steady_iterations final : public progression {
  public:
   explicit steady_iterations(running_case& run) : run_(run) {}
@@ -28,13 +33,21 @@ class steady_iterations final : public progression {
   void restore(const run_state& saved) override;
 
  private:
+  void make_solver();
+  steady_iteration iterate();
+  void begin_march(const numerical_error& failure);
+  steady_iteration march();
+  void log_damping(int damping);
   void record(const steady_iteration& done);
   void set_net_rates();
 
   running_case& run_;
   std::optional<steady_solver> solver_;
-  int damping_ = 0;     ///< of the last iteration
-  bool found_ = false;  ///< the steady state
+  std::optional<interim_march> march_;  ///< between two attempts
+  field first_;                         ///< the state of the first iteration
+  int marches_ = 0;                     ///< begun
+  int damping_ = 0;                     ///< of the last iteration
+  bool found_ = false;                  ///< the steady state
 };
 
 }  // namespace apsis

@@ -56,7 +56,7 @@ bool damping::note_residual(double residual) {
     return true;
   }
   if (idle_ > patience)
-    throw numerical_error(
+    throw steady_stall(
         fmt::format("no steady state is found: the residual stays at {:.2g} of that of the start for {} "
                     "iterations (nonlinear weights of a reconstruction may never settle, nor flows without "
                     "a steady state); use upwind5, or march in time",

@@ -1,9 +1,18 @@
 #pragma once
 
+#include <apsis/core/errors.hpp>
+
 #include <cstddef>
 #include <limits>
 
 namespace apsis {
+
+/// The iteration does not find a steady state although it finds a state in every iteration; another start
+/// will not help.
+class steady_stall : public numerical_error {
+ public:
+  using numerical_error::numerical_error;
+};
 
 /// The pseudo-time term on the diagonal of J. There is none at the start. A correction that is too large
 /// calls for a weak one, and iterations without progress call for stronger ones.
@@ -20,7 +29,7 @@ class damping {
   int strength() const { return static_cast<int>(strength_); }
 
   /// Notes the relative residual of the next iteration; one that falls by a tenth is progress. Returns
-  /// whether the term has become stronger. Throws numerical_error where the strongest one does not help.
+  /// whether the term has become stronger. Throws steady_stall where the strongest one does not help.
   bool note_residual(double residual);
   /// Notes the largest relative change in a correction. Returns whether there is a term now that replaces the
   /// correction.

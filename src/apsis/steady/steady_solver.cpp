@@ -377,6 +377,15 @@ steady_iteration steady_solver::iterate(field& f) {
   return impl_->iterate(f);
 }
 
+double steady_solver::relative_residual(const field& f) {
+  impl_->compute_residual(f);
+  return impl_->norms(f)[0] / impl_->reference;
+}
+
+double steady_solver::flight_time() const {
+  return 1.0 / impl_->flight_rate;
+}
+
 double steady_solver::reference() const {
   return impl_->reference;
 }

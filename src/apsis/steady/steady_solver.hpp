@@ -3,6 +3,7 @@
 #include <apsis/mesh/field.hpp>
 #include <apsis/model/model.hpp>
 #include <apsis/semidiscrete/problem_builder.hpp>
+#include <apsis/steady/damping.hpp>
 
 #include <functional>
 #include <memory>
@@ -52,9 +53,15 @@ class steady_solver {
   steady_solver(const steady_solver&) = delete;
   steady_solver& operator=(const steady_solver&) = delete;
 
-  /// Moves f nearer to the steady state. Throws numerical_error where f has no equilibrium, if the residual
-  /// has become a million times that of the start, or if it has not fallen for a hundred iterations.
+  /// Moves f nearer to the steady state. Throws numerical_error where f has no equilibrium, or if the
+  /// residual has become a million times that of the start, and steady_stall if it has not fallen for a
+  /// hundred iterations.
   steady_iteration iterate(field& f);
+  /// Returns ‖T(f) + Q(f)/ε‖₂ relative to reference(), once there is one.
+  double relative_residual(const field& f);
+  /// Returns the time of flight through the shortest extent of the domain at the thermal speed of the first
+  /// iteration.
+  double flight_time() const;
 
   /// Returns ‖T(f) + Q(f)/ε‖₂ of the first iteration, the unit of residuals; NaN before it.
   double reference() const;

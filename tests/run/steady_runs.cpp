@@ -182,6 +182,32 @@ TEST(steady_run, finds_a_shock_between_open_ends_and_before_a_step) {
   EXPECT_GT(*std::max_element(rho.begin(), rho.end()), 16.0 / 7.0);
 }
 
+TEST(steady_run, has_snapshots_after_whole_numbers_of_iterations) {
+  const auto every = [](const std::string& value) {
+    return apsis::load_case("gas/couette", {"steady.tolerance=1e-8", "output.every=" + value}).output.every;
+  };
+  EXPECT_EQ(every("5"), 5.0);
+  EXPECT_EQ(every("0.1"), 0.0);  // a time
+}
+
+TEST(steady_run, marches_where_the_iteration_leaves_the_states_with_an_equilibrium) {
+  const std::string burst =
+      "[model]\nname = \"bgk\"\nepsilon = 0.1\n[initial]\nrho = \"x < 0.2 ? 1 : 1e-4\"\nT = 1\n[space]\n"
+      "cells = 40\nformulation = \"finite-difference\"\nboundary = \"diffuse\"\n[boundary.right]\nT = 1.5\n"
+      "[velocity]\nmax = 11\npoints = 50\n[steady]\ntolerance = 1e-8\n";
+  testing::internal::CaptureStderr();
+  simulation run(apsis::parse_case(burst, "burst.toml"));
+  while (!run.finished()) run.advance();
+  EXPECT_THAT(testing::internal::GetCapturedStderr(),
+              testing::AllOf(HasSubstr("is not positive); steps in time from the first state until t = "),
+                             testing::Not(HasSubstr("smaller step"))));
+  EXPECT_LE(run.last().residual.front(), 1e-8);
+  // Mass is that of the start, and the other net rates vanish.
+  EXPECT_NEAR(run.last().total[0], run.initial_record().total[0], 1e-12);
+  for (const double net : run.last().conservation_defect) EXPECT_LT(net, 1e-7);
+  EXPECT_GT(run.last().min_value, 0.0);
+}
+
 TEST(steady_run, warns_of_fluxes_that_are_not_linear) {
   const auto warnings_of = [](keys more) {
     more.emplace_back("steady.tolerance=1e-8");

@@ -97,6 +97,7 @@ struct case_config {
     std::optional<double> tolerance;  ///< of residual and change of moments; without it the run marches
     int iterations = 500;             ///< at most
     int images = 3;                   ///< that the mixture remembers
+    bool ignores_every = false;       ///< output.every of the case is a time: not a whole number
   } steady_state;
   /// Table [output].
   struct {

@@ -303,6 +303,10 @@ class resolver {
     config_.time = {};
     config_.time.end = config_.steady_state.iterations;
     config_.time.dt = 1.0;
+    // That of a case in time is a time.
+    double& every = config_.output.every;
+    config_.steady_state.ignores_every = every != std::floor(every);
+    if (config_.steady_state.ignores_every) every = 0.0;
   }
 
   case_text text_;

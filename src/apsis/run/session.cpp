@@ -76,6 +76,18 @@ case_config with_method_of_restart(case_config config, const session_options& op
   return config;
 }
 
+/// Names what a case with a table [steady] has for a run in time.
+void log_unused_times(const case_config& config) {
+  if (!config.steady_state.tolerance) return;
+  const auto log_unused = [&config](const std::string& what) {
+    log::info(fmt::format("{}: {} is not used (the case has a table [steady])", config.source, what));
+  };
+  if (std::any_of(config.given.begin(), config.given.end(),
+                  [](const std::string& key) { return key.starts_with("time."); }))
+    log_unused("the table [time]");
+  if (config.steady_state.ignores_every) log_unused("output.every, as a time,");
+}
+
 /// Returns the setup of a case if the state and, for results, its checkpoint and solution.h5 fit into memory
 /// together; reports what it needs.
 std::unique_ptr<run_setup> setup_with_room_for_results(const case_config& configured,
@@ -84,10 +96,7 @@ std::unique_ptr<run_setup> setup_with_room_for_results(const case_config& config
   if (!config.time.method_reason.empty() && !config.steady_state.tolerance)
     log::info(fmt::format("{}: time.method = \"{}\" is {} ({})", config.source, automatic_method,
                           config.time.method, config.time.method_reason));
-  const bool gives_time = std::any_of(config.given.begin(), config.given.end(),
-                                      [](const std::string& key) { return key.starts_with("time."); });
-  if (config.steady_state.tolerance && gives_time)
-    log::info(fmt::format("{}: the table [time] is not used (the case has a table [steady])", config.source));
+  log_unused_times(config);
   std::unique_ptr<run_setup> setup;
   run_collectively(*options.processes, [&] {
     setup = std::make_unique<run_setup>(config, options.processes);

@@ -4,12 +4,12 @@
 #include <apsis/exec/thread_clock.hpp>
 #include <apsis/run/compute_fields.hpp>
 #include <apsis/run/compute_surfaces.hpp>
-#include <apsis/semidiscrete/gathered_cells.hpp>
 #include <apsis/run/progression.hpp>
 #include <apsis/run/running_case.hpp>
 #include <apsis/run/steady_iterations.hpp>
 #include <apsis/run/time_steps.hpp>
 #include <apsis/run/whole_budget.hpp>
+#include <apsis/semidiscrete/gathered_cells.hpp>
 
 #include <array>
 #include <chrono>

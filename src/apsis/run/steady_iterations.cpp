@@ -55,9 +55,9 @@ void steady_iterations::start() {
 }
 
 void steady_iterations::make_solver() {
-  const auto& [tolerance, iterations, images] = run_.config.steady_state;
+  const auto& wanted = run_.config.steady_state;
   solver_.emplace(*run_.setup.equation->as_relaxation(), run_.setup.builder(), *run_.problem, run_.state,
-                  steady_options{*tolerance, iterations, images});
+                  steady_options{*wanted.tolerance, wanted.iterations, wanted.images});
   damping_ = 0;
 }
 

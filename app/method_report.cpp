@@ -6,6 +6,8 @@
 #include <apsis/method/certificate.hpp>
 #include <apsis/method/family_registry.hpp>
 #include <apsis/method/intermediate_regime.hpp>
+#include <apsis/method/precision.hpp>
+#include <apsis/method/steady_states.hpp>
 #include <apsis/run/cfl_limit.hpp>
 
 #include <cmath>
@@ -153,6 +155,17 @@ json cfl_json(const std::vector<std::pair<std::string, double>>& limits) {
   return all;
 }
 
+double defect_of_steady_states(const method& m) {
+  const double defect = steady_state_defect(to_butcher(m.coefficients<mp_real>())).convert_to<double>();
+  return defect < 1e-30 ? 0.0 : defect;  // coefficients have 40 digits
+}
+
+std::string steady_text(const method& m) {
+  const double defect = defect_of_steady_states(m);
+  if (defect == 0.0) return "those of the equation, for any dt";
+  return fmt::format("depend on dt/epsilon (stages weigh T and Q differently, by up to {:.3g})", defect);
+}
+
 json check_json(const method& m) {
   const certificate c = certificate_of(m);
   const schedule steps(m.coefficients<double>());
@@ -183,7 +196,10 @@ json check_json(const method& m) {
       {"estimate", estimate_json(m, c)},
       {"claims_hold", c.claims_hold},
       {"failures", c.failures}};
-  if (m.kind == method_kind::imex) out["intermediate_regime"] = regime_json(c);
+  if (m.kind == method_kind::imex) {
+    out["intermediate_regime"] = regime_json(c);
+    out["steady_state_defect"] = defect_of_steady_states(m);
+  }
   if (m.kind != method_kind::implicit_only) out["cfl_limits"] = cfl_json(cfl_limits(amplification(m)));
   if (has_derivatives(m.kind))
     out["stability"] = {{"angle_degrees", c.stability.angle},
@@ -224,6 +240,7 @@ std::string check_text(const method& m) {
     line("where epsilon ~ dt",
          fmt::format("error of the viscous flux up to {:.2g} dt, largest at epsilon/C = dt/{:.2g}",
                      c.band.error, c.band.at));
+    line("steady states", steady_text(m));
   }
   if (solves_exactly(m.kind) && c.ap)
     line("where epsilon << dt", "terms of size epsilon vanish: exact collisions end in equilibrium");

@@ -23,13 +23,13 @@ def make_report(folder: str | Path) -> Path:
             write(folder / "claims.md", claims.markdown(document))
         elif (folder / "validate.json").exists():
             content = validation.report(read_json(folder / "validate.json"), folder)
-        elif (folder / "converge.json").exists():
-            content = study.report(folder)
+        elif (rows := study.rows_of(folder)) is not None:
+            content = study.report(folder, rows)
         elif (folder / "manifest.json").exists():
             content = run.report(folder)
         else:
             raise PictureError(f"'{folder}' holds no results (neither manifest.json nor reproduce.json); give a folder that "
-                               "apsis run --out, apsis converge --out, apsis reproduce or apsis validate wrote")
+                               "apsis run --out, apsis converge --out, apsis sweep --out, apsis reproduce or apsis validate wrote")
     except (KeyError, TypeError, ValueError, IndexError, AttributeError) as problem:
         raise PictureError(f"results in '{folder}' are damaged or of another version ({type(problem).__name__}: {problem}); "
                            "make them anew") from problem

@@ -282,13 +282,11 @@ struct steady_solver::impl {
   }
 
   [[noreturn]] static void throw_imbalance(double residual) {
-    throw numerical_error(
-        fmt::format("no steady state is found: the residual stays at {:.2g} of that of the start (a front "
-                    "has no position at "
-                    "which the fluxes of the ends are equal); give the ends states with equal fluxes, more "
-                    "velocities, or a "
-                    "larger steady.tolerance",
-                    residual));
+    throw steady_stall(fmt::format(
+        "no steady state is found: the residual stays at {:.2g} of that of the start (a front has no "
+        "position at which the fluxes of the ends are equal); give the ends states with equal "
+        "fluxes, more velocities, or a larger steady.tolerance",
+        residual));
   }
 
   /// Sets δω and its size.

@@ -163,7 +163,8 @@ double defect_of_steady_states(const method& m) {
 std::string steady_text(const method& m) {
   const double defect = defect_of_steady_states(m);
   if (defect == 0.0) return "those of the equation, for any dt";
-  return fmt::format("depend on dt/epsilon (stages weigh T and Q differently, by up to {:.3g})", defect);
+  return fmt::format("depend on dt/epsilon (sums of the coefficients of a stage differ by up to {:.3g})",
+                     defect);
 }
 
 json check_json(const method& m) {

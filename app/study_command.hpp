@@ -24,8 +24,8 @@ struct study_options {
   bool json = false;
 };
 
-/// Adds CASE, key=value, --out, --json and --threads. `name`: of the files; `row`: that of which a row of the
-/// table tells ("run"); `of_threads`: the help of --threads.
+/// Adds CASE, key=value, --out, --json and --threads. `name`: of the files; `row`: what a row of the table
+/// describes, "run"; `of_threads`: the help of --threads.
 void add_study_options(CLI::App& command, study_options& given, const std::string& name,
                        const std::string& row, const std::string& of_threads);
 

@@ -18,8 +18,8 @@ class progression {
   virtual void start() = 0;
   /// Takes one step and enters it into the records of the run. Throws numerical_error with step and time.
   virtual void advance() = 0;
-  /// Checks the step that advance() took. Throws numerical_error if it breaks a promise, or is the last one
-  /// and not the end.
+  /// Checks the step that advance() took. Throws numerical_error if it breaks a promise, or if no more steps
+  /// are allowed.
   virtual void check() {}
 
   virtual bool finished() const = 0;

@@ -24,7 +24,7 @@ struct running_case {
 
   /// Sets the records of the initial state.
   void start_records();
-  /// Enters into the records that the run has advanced by dt.
+  /// Enters step and time after a step dt into the records.
   void record_position(double dt);
   /// Returns the error with the step, and the time before it.
   numerical_error located(const numerical_error& failure) const;

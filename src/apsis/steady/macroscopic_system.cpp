@@ -6,7 +6,7 @@
 #include <apsis/model/gas_model.hpp>
 #include <apsis/semidiscrete/gathered_cells.hpp>
 #include <apsis/steady/dissection.hpp>
-#include <apsis/steady/neutral_mode.hpp>
+#include <apsis/steady/internal/neutral_mode.hpp>
 
 #include <algorithm>
 #include <array>

@@ -31,9 +31,9 @@ class macroscopic_system {
   macroscopic_system& operator=(const macroscopic_system&) = delete;
 
   /// Builds and factorizes J for the moments ω and the collision rates C/ε of all cells; `pseudo_rate`: added
-  /// to its diagonal. `holds_neutral`: whether solve() leaves a neutral mode as it is (neutral_mode.hpp).
-  /// Returns whether there is one that it leaves. Throws numerical_error with the cell where ω has no
-  /// equilibrium, or if J is singular.
+  /// to its diagonal. `holds_neutral`: whether solve() leaves a neutral mode as it is
+  /// (internal/neutral_mode.hpp). Returns whether there is one that it leaves. Throws numerical_error with
+  /// the cell where ω has no equilibrium, or if J is singular.
   bool build(const moments& omega, const std::vector<double>& rates, double pseudo_rate,
              bool holds_neutral = false);
   /// Whether nothing changes the sum of ω_i over the domain but the initial data. Such a moment adds an

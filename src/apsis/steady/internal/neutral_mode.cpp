@@ -1,4 +1,4 @@
-#include <apsis/steady/neutral_mode.hpp>
+#include <apsis/steady/internal/neutral_mode.hpp>
 
 #include <cmath>
 #include <random>

@@ -1,5 +1,6 @@
 #include "command_registry.hpp"
 #include "interrupt.hpp"
+#include "loads_text.hpp"
 #include "option_values.hpp"
 #include "print.hpp"
 #include "processes.hpp"
@@ -44,8 +45,8 @@ struct run_options {
 /// "step 1234/2900  t = 0.21  min 1.20e-31"
 std::string step_text(const simulation& now) {
   if (now.config().steady_state.tolerance)
-    return fmt::format("iteration {}  residual {:.2e}  change {:.2e}  min {:.2e}", now.step(),
-                       now.last().residual.front(), now.last().change, now.last().min_value);
+    return fmt::format("iteration {}  residual {:.2e}  change {:.2e}{}", now.step(),
+                       now.last().residual.front(), now.last().change, loads_text(now));
   return fmt::format("step {}/{}  t = {:.4g}  min {:.2e}", now.step(), now.steps_total(), now.t(),
                      now.last().min_value);
 }

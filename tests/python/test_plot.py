@@ -91,6 +91,8 @@ def test_history_of_a_steady_state_shows_its_iterations(tmp_path):
     assert residual.get_xlabel() == "iteration" and residual.get_yscale() == "log"
     np.testing.assert_array_equal(residual.lines[0].get_ydata(), computed.history["residual_relative"])
     assert rates.get_ylabel() == "relative net rate of the gas"
+    profile = fields_figure(read_result(tmp_path / "a")).axes[0].lines[-1]
+    assert profile.get_label() == f"iteration {computed.history['step'][-1]:.0f}"
 
 
 def test_history_shows_the_checks_and_varying_steps(tmp_path):

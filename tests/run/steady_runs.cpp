@@ -169,7 +169,7 @@ TEST(steady_run, finds_a_shock_between_open_ends_and_before_a_step) {
   const simulation shock = found("gas/shock", {});
   for (const double net : shock.last().conservation_defect) EXPECT_LT(net, 1e-9);
   EXPECT_LE(shock.step(), 200);
-  // What the ends of the line cut off of the thicker structure of this shock makes their fluxes differ.
+  // The line cuts off a part of the thicker structure of this shock: the fluxes of its ends differ.
   EXPECT_THAT(failure_of("gas/shock", {"parameters.M=3", "steady.tolerance=1e-8"}),
               HasSubstr("a front has no position at which"));
   const simulation step = found("gas/step", {"space.cells=[18,12]"});

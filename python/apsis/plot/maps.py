@@ -220,7 +220,7 @@ def fields_of_plane(result: RunResult) -> dict[str, Array]:
 
 def maps_figure(result: RunResult, title: str, t: float, slice_at: str | None = None) -> Any:
     """Maps of all fields at the end. Raises PictureError."""
-    return maps_of(result, fields_of_plane(result), planes_of(result, slice_at), f"{title}, t = {t:.4g}")
+    return maps_of(result, fields_of_plane(result), planes_of(result, slice_at), f"{title}, {result.moment(t)}")
 
 
 def frames(result: RunResult, title: str, slice_at: str | None = None) -> Iterator[tuple[str, Any]]:
@@ -231,5 +231,5 @@ def frames(result: RunResult, title: str, slice_at: str | None = None) -> Iterat
     series = {name: result.snapshots[name] for name in fields_of_plane(result)}
     colours = colours_of(with_length(series, planes[0]))
     for k, t in enumerate(result.t):
-        yield f"frame-{k + 1:04d}", maps_of(result, {name: values[k] for name, values in series.items()}, planes, f"{title}, t = {t:.4g}",
+        yield f"frame-{k + 1:04d}", maps_of(result, {name: values[k] for name, values in series.items()}, planes, f"{title}, {result.moment(t)}",
                                             colours)

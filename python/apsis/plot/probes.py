@@ -39,9 +39,9 @@ def probe_figures(result: RunResult, title: str) -> Iterator[tuple[str, Any]]:
         for panel, field in zip(axes, names):
             for k, colour in zip(shown, greys):
                 at = times == before[k]
-                panel.plot(probe["s"][at], probe[field][at], color=colour, linewidth=0.9, label=f"t = {before[k]:.4g}")
+                panel.plot(probe["s"][at], probe[field][at], color=colour, linewidth=0.9, label=result.moment(before[k]))
             at = times == last
-            panel.plot(probe["s"][at], probe[field][at], color=BLUE, linewidth=1.3, label=f"t = {last:.4g}")
+            panel.plot(probe["s"][at], probe[field][at], color=BLUE, linewidth=1.3, label=result.moment(last))
             panel.set_xlabel(f"s ({result.unit('x')})")
             panel.set_ylabel(result.label(field))
         if before:

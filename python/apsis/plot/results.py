@@ -29,8 +29,8 @@ def fields_figure(result: RunResult, slice_at: str | None = None) -> Any:
         if result.has_space:
             x = result.arrays["x"]
             for k, colour in zip(shown, plt.cm.Greys(np.linspace(0.3, 0.6, len(shown)))):
-                panel.plot(x, result.snapshots[name][k], color=colour, linewidth=0.9, label=f"t = {result.t[k]:.4g}")
-            panel.plot(x, result.fields[name], color=BLUE, marker=".", markersize=4, linewidth=1, label=f"t = {end_of(result):.4g}")
+                panel.plot(x, result.snapshots[name][k], color=colour, linewidth=0.9, label=result.moment(result.t[k]))
+            panel.plot(x, result.fields[name], color=BLUE, marker=".", markersize=4, linewidth=1, label=result.moment(end_of(result)))
         else:
             panel.plot(result.t, result.snapshots[name][:, 0], color=BLUE, marker=".", markersize=4, linewidth=1)
         axis = "x" if result.has_space else "t"
@@ -118,7 +118,7 @@ def distribution_figure(result: RunResult) -> Any:
         axes[1][0].semilogy(x, result.arrays["epsilon"], color=BLACK)
         axes[1][0].set_ylabel("ε (dimensionless)")
     axes[-1][0].set_xlabel(f"x ({result.unit('x')})")
-    figure.suptitle(f"distribution function at t = {end_of(result):.4g}")
+    figure.suptitle(f"distribution function at {result.moment(end_of(result))}")
     return figure
 
 

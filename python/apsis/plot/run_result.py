@@ -44,6 +44,10 @@ class RunResult:
     def t(self) -> Array:
         return self.snapshots.get("t", np.zeros(0))
 
+    def moment(self, t: float) -> str:
+        """Returns "t = 0.25", or "iteration 25" of a run that finds a steady state."""
+        return f"iteration {t:.0f}" if "residual_relative" in self.history else f"t = {t:.4g}"
+
     @property
     def has_space(self) -> bool:
         return len(self.arrays.get("x", ())) > 1

@@ -16,7 +16,7 @@
 
 namespace apsis {
 
-/// What every run of a case has, in steps of time or in iterations.
+/// The parts of every run of a case, in steps of time or in iterations.
 struct running_case {
   running_case(std::unique_ptr<run_setup> prepared, const state_source& start);
   running_case(const running_case&) = delete;

@@ -21,7 +21,7 @@ struct gas_end_of_segment {
   std::array<int, 3> cells{};  ///< of the segment, counted inwards; the last one repeated where it is shorter
 };
 
-/// Neighbours of the cells of a domain, along every direction. Cells of other processes are none.
+/// Neighbours of the cells of a domain, along every direction. Cells of other processes do not count.
 class cell_links {
  public:
   /// Looks at all segments of the domain once.

@@ -14,9 +14,9 @@ class steady_stall : public numerical_error {
   using numerical_error::numerical_error;
 };
 
-/// The pseudo-time term of the iteration, on the diagonal of J and in the rates of the sweep. There is none
-/// at the start. A correction that is too large calls for a weak one, and iterations without progress call
-/// for stronger ones.
+/// The pseudo-time term of the iteration, on the diagonal of J and in the rates of the sweep. It is 0 at the
+/// start. A correction that is too large calls for a weak one, and iterations without progress call for
+/// stronger ones.
 class damping {
  public:
   /// Largest relative change of density and energy in one iteration.

@@ -16,8 +16,8 @@ class interim_march {
 
   /// Advances by a twentieth of the duration; u ← the state. Throws numerical_error as simulation::advance().
   void advance(field& u);
-  bool finished() const { return run_.finished(); }
-  double t() const { return run_.t(); }  ///< time since the beginning
+  bool finished() const { return run_.finished(); }  ///< whether the duration is over
+  double t() const { return run_.t(); }              ///< time since the beginning
 
  private:
   double part_;  ///< of the duration

@@ -22,6 +22,7 @@ class progression {
   /// are allowed.
   virtual void check() {}
 
+  /// Whether no step is left, or the state is steady.
   virtual bool finished() const = 0;
   virtual double next_dt() = 0;  ///< length of the next step
   /// Returns an estimate of the steps that are left.
@@ -31,7 +32,7 @@ class progression {
   /// Returns the evaluations of T(u) and solutions of stage equations in a step, for rates of work.
   virtual std::size_t stages_of_step() const = 0;
 
-  virtual long rejected_steps() const { return 0; }
+  virtual long rejected_steps() const { return 0; }        ///< run_summary::rejected_steps
   virtual double limiter_share() const { return 1.0; }     ///< simulation::limiter_share()
   virtual double expected_loss() const { return 0.0; }     ///< simulation::expected_loss()
   virtual double expected_plateau() const { return 0.0; }  ///< simulation::expected_plateau()

@@ -18,6 +18,7 @@ namespace apsis {
 
 /// The parts of every run of a case, in steps of time or in iterations.
 struct running_case {
+  /// Makes the problem, and the state: that of `start`, or the initial data of the case.
   running_case(std::unique_ptr<run_setup> prepared, const state_source& start);
   running_case(const running_case&) = delete;
   running_case& operator=(const running_case&) = delete;
@@ -29,19 +30,20 @@ struct running_case {
   /// Returns the error with the step, and the time before it.
   numerical_error located(const numerical_error& failure) const;
 
-  std::unique_ptr<run_setup> made;
-  const run_setup& setup;
-  const case_config& config;
-  std::unique_ptr<semidiscrete_problem> problem;
-  monitor watch;
-  rounding_bound rounding;
-  budgeted_state now;
-  field& state = now.unknowns;
-  std::vector<double> budget;  ///< of the last step
-  time_marcher<double> march;
-  run_promises promises;
-  step_record first, last;
-  run_summary totals;
+  std::unique_ptr<run_setup> made;                ///< owner of `setup`
+  const run_setup& setup;                         ///< the objects of the case
+  const case_config& config;                      ///< the case as given
+  std::unique_ptr<semidiscrete_problem> problem;  ///< T and Q
+  monitor watch;                                  ///< of every step
+  rounding_bound rounding;                        ///< of the sums of a step
+  budgeted_state now;                             ///< the state, and the budget of the present step
+  field& state = now.unknowns;                    ///< its unknowns
+  std::vector<double> budget;                     ///< of the last step
+  time_marcher<double> march;                     ///< position in time
+  run_promises promises;                          ///< checked after every step
+  step_record first,                              ///< record of the initial state
+      last;                                       ///< record of the last step
+  run_summary totals;                             ///< of all steps so far
 };
 
 /// Returns the setup of a case. Throws input_error if its state and buffers do not fit into memory.

@@ -23,9 +23,11 @@ struct inside_domain {
 /// The places of the blocks of J in the numbers of a cell. A block has m² numbers, row by row, m =
 /// relaxation_model::moment_count().
 struct jacobian_layout {
-  int directions = 1, moments = 1;
-  bool source = false;
+  int directions = 1,   ///< of the mesh
+      moments = 1;      ///< m
+  bool source = false;  ///< whether there is a block of ∂S/∂ω
 
+  /// Returns m².
   std::size_t square() const { return at(moments) * at(moments); }
   /// Numbers of a cell.
   int numbers() const { return static_cast<int>(square()) * (5 * directions + (source ? 1 : 0)); }
@@ -49,6 +51,7 @@ class cell_jacobian {
   cell_jacobian(const relaxation_model& equation, const domain& space, const cell_links& links,
                 const inside_domain& acts);
 
+  /// Returns the places of blocks in compute().
   const jacobian_layout& layout() const { return layout_; }
   /// Returns the blocks of all cells of this process, [cells][layout().numbers()], for the moments ω and the
   /// collision rates σ = C/ε. Throws numerical_error with the cell where ω has no equilibrium.

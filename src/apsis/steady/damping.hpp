@@ -22,9 +22,10 @@ class damping {
   /// Largest relative change of density and energy in one iteration.
   static constexpr double largest_change = 0.3;
 
-  /// Returns the term in units of the rate of flight through the domain; the part that vanishes with
-  /// `residual`, relative to that of the start, and a constant one.
+  /// Returns the part of the term that vanishes with `residual`, which is relative to that of the start. In
+  /// units of the rate of flight through the domain.
   double vanishing_rate(double residual) const;
+  /// Returns the constant part, in the same units.
   double constant_rate() const;
   /// Returns 0 without a term, and a larger number for a stronger one.
   int strength() const { return static_cast<int>(strength_); }

@@ -1,5 +1,6 @@
 #include <apsis/scheme/reconstruction_registry.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <vector>
@@ -53,14 +54,21 @@ double edge_error(const reconstruction& scheme, int n) {
 }  // namespace
 
 TEST(reconstruction, says_whether_it_is_linear) {
-  const std::vector<double> a = {0.3, 1.1, 0.2, 0.9, 0.4}, b = {1.0, 0.1, 0.7, 0.2, 0.8};
+  // Jumps at every place: weights of TENO are constant where data are smooth enough.
+  const std::vector<double> a = {0.6, 0.3, 1.1, 0.2, 0.9, 0.4, 0.5};
   for (const auto* entry : apsis::reconstruction_entries()) {
     const auto scheme = entry->make();
-    std::vector<double> sum;
-    for (std::size_t k = 0; k < a.size(); ++k) sum.push_back(a[k] + 2.0 * b[k]);
-    const double defect =
-        edges_of(*scheme, sum).right - edges_of(*scheme, a).right - 2.0 * edges_of(*scheme, b).right;
-    EXPECT_EQ(std::abs(defect) < 1e-14, entry->linear) << entry->name << ": " << defect;
+    double defect = 0.0;
+    for (std::size_t jump = 1; jump < a.size(); ++jump) {
+      std::vector<double> b(a.size(), 0.0), sum = a;
+      for (std::size_t k = jump; k < a.size(); ++k) {
+        b[k] = 1e3;
+        sum[k] += 2.0 * b[k];
+      }
+      defect = std::max(defect, std::abs(edges_of(*scheme, sum).right - edges_of(*scheme, a).right -
+                                         2.0 * edges_of(*scheme, b).right));
+    }
+    EXPECT_EQ(defect < 1e-9, entry->linear) << entry->name << ": " << defect;  // rounding is that of 1e3
   }
 }
 

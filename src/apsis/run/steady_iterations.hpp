@@ -18,6 +18,7 @@ namespace apsis {
 /// from its first state, and then iterates again. A part of the march counts as an iteration.
 class steady_iterations final : public progression {
  public:
+  /// `run` must outlive the object.
   explicit steady_iterations(running_case& run) : run_(run) {}
 
   void start() override;

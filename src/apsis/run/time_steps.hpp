@@ -17,6 +17,7 @@ namespace apsis {
 /// before the first step and checked after every one.
 class time_steps final : public progression {
  public:
+  /// Makes the stepper, and limits the problem for steps of the case. `run` must outlive the object.
   explicit time_steps(running_case& run);
 
   void start() override;

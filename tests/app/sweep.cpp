@@ -38,8 +38,7 @@ TEST(sweep, writes_a_folder_that_agrees_with_what_it_prints) {
     EXPECT_TRUE(row.contains("flux_right_momentum_y"));
   }
   EXPECT_EQ(json::parse(read(folder.path() / "swept" / "sweep.json")).size(), 3U);
-  EXPECT_THAT(read(folder.path() / "swept" / "sweep.csv"),
-              HasSubstr("parameters.delta,iterations,cpu_s"));
+  EXPECT_THAT(read(folder.path() / "swept" / "sweep.csv"), HasSubstr("parameters.delta,iterations,cpu_s"));
   EXPECT_TRUE(std::filesystem::exists(folder.path() / "swept" / "sweep.png"));
   ASSERT_EQ(run_apsis(folder, {"report", "swept"}).code, 0);
   const std::string page = read(folder.path() / "swept" / "report.html");

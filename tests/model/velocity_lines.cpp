@@ -25,8 +25,8 @@ namespace velocity_lines_test {
 
 namespace {
 
-using apsis::make_lines;
 using apsis::find_velocity_line;
+using apsis::make_lines;
 using apsis::velocity_config;
 using apsis::velocity_grid;
 using apsis::velocity_line;

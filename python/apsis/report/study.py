@@ -21,7 +21,7 @@ def runs_table(runs: list[dict[str, Any]]) -> str:
 
 
 def rows_of(folder: Path) -> Path | None:
-    """Returns the table of a study in the folder; None if there is none."""
+    """Returns the table of a study in the folder, or None where the folder has no such table."""
     return next((folder / name for name in ("converge.json", "sweep.json") if (folder / name).exists()), None)
 
 

@@ -194,7 +194,8 @@ struct steady_solver::impl {
     if (!due) return;
     // A neutral mode takes any change. If it is the cause, nothing else needs to be damped.
     pseudo_rate = 0.0;
-    holds_neutral_mode = constant > 0.0 && system.build(omega, rates, 0.0, true);
+    holds_neutral_mode = constant > 0.0 && seeks_neutral_mode && system.build(omega, rates, 0.0, true);
+    if (constant > 0.0) seeks_neutral_mode = holds_neutral_mode;  // once for each term
     if (!holds_neutral_mode) {
       pseudo_rate = std::max(vanishing, constant);
       system.build(omega, rates, pseudo_rate);
@@ -278,6 +279,7 @@ struct steady_solver::impl {
   /// Begins again with another J.
   void forget_system() {
     built = false;
+    seeks_neutral_mode = true;
     mixture.clear();
   }
 
@@ -361,7 +363,7 @@ struct steady_solver::impl {
   double lowest = 0.0;       ///< residual since J was built
   double flight_rate = 0.0;  ///< thermal speed over the extent of the domain
   double pseudo_rate = 0.0;  ///< of J
-  bool built = false, holds_neutral_mode = false, mixes_at_once = false;
+  bool built = false, holds_neutral_mode = false, seeks_neutral_mode = true, mixes_at_once = false;
   int number = 0;
 };
 

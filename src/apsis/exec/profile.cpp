@@ -35,6 +35,12 @@ const char* kernel_name(kernel which) {
       return "equilibria";
     case kernel::relaxation:
       return "relaxation";
+    case kernel::correction:
+      return "moment equations";
+    case kernel::implicit:
+      return "implicit sweeps";
+    case kernel::mixture:
+      return "mixture";
     case kernel::monitor:
       return "monitor";
   }

@@ -19,6 +19,9 @@ enum class kernel {
   points,      ///< values at Gauss points from cell averages
   equilibria,  ///< moments and equilibria
   relaxation,  ///< convex combination with the equilibrium
+  correction,  ///< of moments, in a steady run: derivatives, factors and solutions of J
+  implicit,    ///< implicit sweeps of a steady run
+  mixture,     ///< of iterates
   monitor      ///< minimum, conserved sums, entropy
 };
 /// Number of kernels.
@@ -58,15 +61,15 @@ void add(kernel which, double seconds, double numbers, const kernel_work& each);
 /// Times the enclosing scope as one call of a kernel on `numbers` numbers.
 class section {
  public:
-  /// Starts the timer if profiling is on.
-  section(kernel which, double numbers, const kernel_work& each)
-      : on_(is_on()), which_(which), numbers_(numbers), each_(each) {
+  /// Starts the timer if profiling is on. `threads`: those that the scope keeps from other work.
+  section(kernel which, double numbers, const kernel_work& each, int threads = 1)
+      : on_(is_on()), which_(which), threads_(threads), numbers_(numbers), each_(each) {
     if (on_) start_ = std::chrono::steady_clock::now();
   }
   ~section() {
     if (on_)
-      add(which_, std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(), numbers_,
-          each_);
+      add(which_, threads_ * std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(),
+          numbers_, each_);
   }
   section(const section&) = delete;
   section& operator=(const section&) = delete;
@@ -74,6 +77,7 @@ class section {
  private:
   bool on_;
   kernel which_;
+  int threads_;
   double numbers_;
   kernel_work each_;
   std::chrono::steady_clock::time_point start_;

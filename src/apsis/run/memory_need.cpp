@@ -4,6 +4,8 @@
 #include <apsis/exec/memory.hpp>
 #include <apsis/integrate/schedule.hpp>
 #include <apsis/mesh/field.hpp>
+#include <apsis/model/model.hpp>
+#include <apsis/steady/macroscopic_system.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -86,12 +88,17 @@ memory_need::memory_need(const run_setup& setup, int copies)
   cells_ = product(shape_);
   const auto& points = config.velocity.points;
   if (points > 0 && velocity_dimensions_ > 0) points_ = points.each();
+  if (const relaxation_model* relaxes = setup.equation->as_relaxation();
+      relaxes != nullptr && config.steady_state.tolerance && !shape_.empty())
+    bytes_of_moments_ =
+        macroscopic_system::bytes_of_cell(static_cast<int>(shape_.size()), relaxes->moment_count(), cells_);
 }
 
 double memory_need::bytes(double cells, double components) const {
   const double padded = buffers_ * field::padded(static_cast<int>(std::min(components, 1e9)));
   constexpr double of_monitor = 2.0;  // step_differences
-  return sizeof(double) * cells * (padded + copies_ * components + snapshots_ * fields_ + of_monitor);
+  return cells * (bytes_of_moments_ +
+                  sizeof(double) * (padded + copies_ * components + snapshots_ * fields_ + of_monitor));
 }
 
 std::string memory_need::unknowns() const {

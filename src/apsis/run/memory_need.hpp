@@ -7,8 +7,9 @@
 
 namespace apsis {
 
-/// The large allocations of a run: buffers of a step, copies of the state for results, and snapshots of the
-/// fields. Smaller ones are not counted, so that a case that fits is never refused.
+/// The large allocations of a run: buffers of a step, copies of the state for results, snapshots of the
+/// fields, and the moment equations of a steady state. Smaller ones are not counted, so that a case that fits
+/// is never refused.
 class memory_need {
  public:
   /// Counts those of a run with `copies` copies of the state.
@@ -34,6 +35,7 @@ class memory_need {
   double cells_ = 1.0, components_;  ///< in all
   int velocity_dimensions_ = 0, buffers_, copies_;
   double snapshots_, fields_;
+  double bytes_of_moments_ = 0.0;  ///< of a cell, for the moment equations of a steady run
   std::string method_;
 };
 

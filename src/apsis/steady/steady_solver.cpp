@@ -6,6 +6,7 @@
 #include <apsis/exec/agreement.hpp>
 #include <apsis/exec/global_sum.hpp>
 #include <apsis/exec/parallel.hpp>
+#include <apsis/exec/profile.hpp>
 #include <apsis/model/gas_model.hpp>
 #include <apsis/semidiscrete/gathered_cells.hpp>
 #include <apsis/steady/anderson.hpp>
@@ -256,6 +257,7 @@ struct steady_solver::impl {
 
   /// f ← f + δ, mixed with earlier images, with the total mass of the start where walls enclose it.
   void update(field& f, bool mix) {
+    const auto section = timed(kernel::mixture, f.components());
     std::vector<double> of_change(omega.size());
     moments_of(r, of_change);
     parallel_blocks(f.cells(), cells_of_a_block, [&](int begin, int end) {
@@ -291,8 +293,14 @@ struct steady_solver::impl {
         residual));
   }
 
+  /// Times the enclosing scope on all threads.
+  profile::section timed(kernel which, double numbers_of_cell) const {
+    return {which, static_cast<double>(links.cells().size()) * numbers_of_cell, {}, threads()};
+  }
+
   /// Sets δω and its size.
   void correct_moments(steady_iteration& now) {
+    const auto section = timed(kernel::correction, count);
     build_system_if_due(now.residual);
     std::vector<double> missing = sums(omega);
     for (std::size_t i = 0; i < missing.size(); ++i) missing[i] = totals[i] - missing[i];
@@ -336,6 +344,7 @@ struct steady_solver::impl {
     if (now.converged) return now;
     const double share = share_of_correction();
     run_collectively(processes, [&] {
+      const auto section = timed(kernel::implicit, f.components());
       add_correction(share);
       for (double& rate : rates) rate += pseudo_rate;
       sweep.solve(f, rates, r);

@@ -1,14 +1,12 @@
 #pragma once
 
+#include <apsis/steady/internal/sparse_factors.hpp>
+
 #include <optional>
 
-#include <Eigen/SparseCore>
-#include <Eigen/SparseLU>
+#include <Eigen/Core>
 
 namespace apsis {
-
-/// Factors of J in the order of its unknowns.
-using sparse_factors = Eigen::SparseLU<Eigen::SparseMatrix<double>, Eigen::NaturalOrdering<int>>;
 
 /// A pair of singular vectors of J whose singular value is nearly 0, of length 1. A shock between two uniform
 /// states has one: hardly anything decides where it stands.

@@ -1,0 +1,147 @@
+#include <apsis/steady/internal/alternating_directions.hpp>
+
+#include <apsis/core/index.hpp>
+#include <apsis/exec/parallel.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace apsis {
+namespace {
+
+/// Ratio of the wave numbers of successive steps. Smaller ones save iterations, but not time.
+constexpr double ratio = 5.0;
+/// The largest wave number, times the spacing of the mesh.
+constexpr double shortest = 2.0;
+/// Unknowns that are factorized together, by one thread.
+constexpr int unknowns_of_a_group = 1000;
+
+/// Wave numbers from 1/extent to those of the mesh.
+std::vector<double> wave_numbers(const moment_mesh& mesh) {
+  const double lowest = 1.0 / mesh.extent, highest = std::max(shortest / mesh.spacing, lowest);
+  const int steps = static_cast<int>(std::ceil(std::log(highest / lowest) / std::log(ratio)));
+  std::vector<double> found;
+  for (int k = 0; k <= steps; ++k)
+    found.push_back(lowest * std::pow(highest / lowest, static_cast<double>(k) / std::max(steps, 1)));
+  return found;
+}
+
+/// Returns Θ x for a block-diagonal Θ.
+Eigen::VectorXd scaled(const std::vector<double>& scale, int moments, const Eigen::VectorXd& x) {
+  Eigen::VectorXd y(x.size());
+  using block = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  for (Eigen::Index first = 0; first < x.size(); first += moments)
+    y.segment(first, moments).noalias() =
+        Eigen::Map<const block>(scale.data() + first * moments, moments, moments) * x.segment(first, moments);
+  return y;
+}
+
+}  // namespace
+
+alternating_directions::alternating_directions(const moment_mesh& mesh, const moment_equations& equations)
+    : mesh_(mesh), conserved_(equations.conserved), matrix_(mesh.unknowns(), mesh.unknowns()) {
+  moment_equations::terms all = equations.inside;
+  for (const auto& terms : equations.along) all.insert(all.end(), terms.begin(), terms.end());
+  matrix_.setFromTriplets(all.begin(), all.end());
+  for (const double k : wave_numbers(mesh)) add_stage(equations, k);
+  if (conserved_.empty()) return;
+  const int count = static_cast<int>(conserved_.size());
+  of_sources_.resize(mesh_.unknowns(), count);
+  Eigen::MatrixXd sums(count, count);
+  for (int k = 0; k < count; ++k) {
+    Eigen::VectorXd source = Eigen::VectorXd::Zero(mesh_.unknowns());
+    for (int cell = 0; cell < mesh_.cells; ++cell) source[cell * mesh_.moments + conserved_[at(k)]] = 1.0;
+    of_sources_.col(k) = without_sums(source);
+  }
+  for (int k = 0; k < count; ++k) sums.row(k) = sums_of(of_sources_, conserved_[at(k)]);
+  sums_.compute(sums);
+}
+
+Eigen::RowVectorXd alternating_directions::sums_of(const Eigen::MatrixXd& x, int moment) const {
+  Eigen::RowVectorXd sum = Eigen::RowVectorXd::Zero(x.cols());
+  for (int cell = 0; cell < mesh_.cells; ++cell) sum += x.row(cell * mesh_.moments + moment);
+  return sum / mesh_.cells;
+}
+
+void alternating_directions::add_stage(const moment_equations& equations, double wave_number) {
+  stage added;
+  added.scale.resize(equations.flights.size());
+  for (std::size_t k = 0; k < added.scale.size(); ++k)
+    added.scale[k] = wave_number * (equations.flights[k] + wave_number * equations.spreads[k]);
+  for (int d = 0; d < mesh_.directions; ++d) added.along[at(d)] = factorized_lines(equations, d, added.scale);
+  stages_.push_back(std::move(added));
+}
+
+std::vector<alternating_directions::lines> alternating_directions::factorized_lines(
+    const moment_equations& equations, int direction, const std::vector<double>& scale) const {
+  const int moments = mesh_.moments;
+  std::vector<lines> groups;
+  std::vector<std::pair<int, int>> place(at(mesh_.unknowns()));  // group and row of an unknown
+  for (const line_of_cells& line : mesh_.lines[at(direction)]) {
+    if (groups.empty() || static_cast<int>(groups.back().unknowns.size()) >= unknowns_of_a_group)
+      groups.emplace_back();
+    std::vector<int>& unknowns = groups.back().unknowns;
+    for (const int cell : line)
+      for (int i = 0; i < moments; ++i) {
+        place[at(cell * moments + i)] = {static_cast<int>(groups.size()) - 1,
+                                         static_cast<int>(unknowns.size())};
+        unknowns.push_back(cell * moments + i);
+      }
+  }
+  std::vector<moment_equations::terms> terms(groups.size());
+  const auto add = [&](int row, int column, double value) {
+    terms[at(place[at(row)].first)].emplace_back(place[at(row)].second, place[at(column)].second, value);
+  };
+  for (const auto& term : equations.along[at(direction)]) add(term.row(), term.col(), term.value());
+  for (const auto& term : equations.inside) add(term.row(), term.col(), term.value() / mesh_.directions);
+  for (int cell = 0; cell < mesh_.cells; ++cell)
+    for (int i = 0; i < moments; ++i)
+      for (int j = 0; j < moments; ++j)
+        add(cell * moments + i, cell * moments + j, scale[at((cell * moments + i) * moments + j)]);
+  parallel_blocks(static_cast<int>(groups.size()), 1, [&](int begin, int end) {
+    for (int g = begin; g < end; ++g) {
+      const auto size = static_cast<Eigen::Index>(groups[at(g)].unknowns.size());
+      Eigen::SparseMatrix<double> matrix(size, size);
+      matrix.setFromTriplets(terms[at(g)].begin(), terms[at(g)].end());
+      groups[at(g)].factors = std::make_unique<sparse_factors>();
+      factorize(matrix, *groups[at(g)].factors);
+    }
+  });
+  return groups;
+}
+
+Eigen::VectorXd alternating_directions::without_sums(const Eigen::VectorXd& r) const {
+  Eigen::VectorXd x = Eigen::VectorXd::Zero(r.size());
+  for (std::size_t k = 0; k < stages_.size(); ++k) {
+    Eigen::VectorXd y = r;
+    if (k > 0) y -= matrix_ * x;
+    for (int d = 0; d < mesh_.directions; ++d) {
+      if (d > 0) y = scaled(stages_[k].scale, mesh_.moments, y);
+      const std::vector<lines>& groups = stages_[k].along[at(d)];
+      parallel_blocks(static_cast<int>(groups.size()), 1, [&](int begin, int end) {
+        for (int g = begin; g < end; ++g) {
+          const std::vector<int>& unknowns = groups[at(g)].unknowns;
+          y(unknowns) = groups[at(g)].factors->solve(Eigen::VectorXd(y(unknowns)));
+        }
+      });
+    }
+    x += y;
+  }
+  return x;
+}
+
+Eigen::VectorXd alternating_directions::solve(const Eigen::VectorXd& r) const {
+  const int unknowns = mesh_.unknowns(), extra = static_cast<int>(conserved_.size());
+  Eigen::VectorXd x(r.size());
+  x.head(unknowns) = without_sums(r.head(unknowns));
+  if (extra == 0) return x;
+  Eigen::VectorXd excess(extra);
+  for (int k = 0; k < extra; ++k)
+    excess[k] = sums_of(x.head(unknowns), conserved_[at(k)])[0] - r[unknowns + k];
+  x.tail(extra) = sums_.solve(excess);
+  x.head(unknowns) -= of_sources_ * x.tail(extra);
+  return x;
+}
+
+}  // namespace apsis

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <apsis/steady/internal/moment_equations.hpp>
+#include <apsis/steady/internal/sparse_factors.hpp>
+
+#include <array>
+#include <memory>
+#include <vector>
+
+#include <Eigen/Dense>
+#include <Eigen/SparseCore>
+
+namespace apsis {
+
+/// An approximate inverse of J, as a preconditioner where factors of J are too large: steps in pseudo-time
+/// that are implicit along one direction after the other (Peaceman & Rachford, J. SIAM 3, 1955),
+///     Π_d (Θ_k + J_d) Θ_k⁻¹,  Θ_k = k flights + k² spreads,
+/// for wave numbers k from that of the domain to that of the mesh. Their number grows with the logarithm of
+/// the number of cells along a direction.
+class alternating_directions {
+ public:
+  /// Factorizes the lines for each k. `mesh` must outlive the object. Throws numerical_error if one is
+  /// singular.
+  alternating_directions(const moment_mesh& mesh, const moment_equations& equations);
+
+  /// Returns an approximation of J⁻¹ r, with the rows and columns of bordered_matrix().
+  Eigen::VectorXd solve(const Eigen::VectorXd& r) const;
+
+ private:
+  /// Some lines along a direction.
+  struct lines {
+    std::vector<int> unknowns;  ///< in the order of the rows of `factors`
+    std::unique_ptr<sparse_factors> factors = {};
+  };
+  struct stage {
+    std::vector<double> scale;                ///< Θ_k, [number][moments²]
+    std::array<std::vector<lines>, 3> along;  ///< Θ_k + J_d
+  };
+
+  void add_stage(const moment_equations& equations, double wave_number);
+  std::vector<lines> factorized_lines(const moment_equations& equations, int direction,
+                                      const std::vector<double>& scale) const;
+  Eigen::VectorXd without_sums(const Eigen::VectorXd& r) const;
+  /// Sums of a moment over the cells, divided by their number, of each column.
+  Eigen::RowVectorXd sums_of(const Eigen::MatrixXd& x, int moment) const;
+
+  const moment_mesh& mesh_;
+  std::vector<int> conserved_;
+  Eigen::SparseMatrix<double, Eigen::RowMajor> matrix_;  ///< J without the equations of sums
+  std::vector<stage> stages_;
+  Eigen::MatrixXd of_sources_;  ///< what this object makes of sources that are the same in all cells
+  Eigen::PartialPivLU<Eigen::MatrixXd> sums_;
+};
+
+}  // namespace apsis

@@ -1,0 +1,244 @@
+#include <apsis/steady/internal/moment_assembly.hpp>
+
+#include <apsis/core/index.hpp>
+#include <apsis/model/gas_model.hpp>
+#include <apsis/steady/dissection.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <utility>
+
+namespace apsis {
+namespace {
+
+/// Cells and their weights in the value at an edge.
+struct weighted_cells {
+  std::array<std::pair<int, double>, 5> terms{};
+  int count = 0;
+
+  void add(int cell, double weight) {
+    for (int k = 0; k < count; ++k)
+      if (terms[at(k)].first == cell) {
+        terms[at(k)].second += weight;
+        return;
+      }
+    terms[at(count++)] = {cell, weight};
+  }
+  const auto* begin() const { return terms.data(); }
+  const auto* end() const { return terms.data() + count; }
+};
+
+/// Adds the cell next to `cell`, or beyond the gas its value on the parabola through three cells inside, or
+/// the line or the constant where there are fewer.
+void add_neighbour(const cell_links& links, int direction, bool upper, int cell, double weight,
+                   weighted_cells& to) {
+  if (const int other = links.next_or_image(direction, upper, cell); other >= 0) return to.add(other, weight);
+  const int second = links.next(direction, !upper, cell),
+            third = second < 0 ? -1 : links.next(direction, !upper, second);
+  if (third >= 0) {
+    to.add(cell, 3.0 * weight);
+    to.add(second, -3.0 * weight);
+    to.add(third, weight);
+  } else if (second >= 0) {
+    to.add(cell, 2.0 * weight);
+    to.add(second, -weight);
+  } else {
+    to.add(cell, weight);
+  }
+}
+
+/// The value at the upper or lower edge of a cell, of what moves towards it.
+weighted_cells edge_of(const cell_links& links, int direction, bool upper, int cell, bool first_order) {
+  weighted_cells found;
+  if (first_order) {
+    found.add(cell, 1.0);
+    return found;
+  }
+  found.add(cell, 5.0 / 6.0);
+  add_neighbour(links, direction, upper, cell, 1.0 / 3.0, found);
+  add_neighbour(links, direction, !upper, cell, -1.0 / 6.0, found);
+  return found;
+}
+
+/// The derivatives of a flux by the moments of the cells around its face.
+class flux_derivative {
+ public:
+  explicit flux_derivative(std::size_t square) : square_(square) {}
+
+  void add(int cell, double factor, const double* block) {
+    std::size_t k = 0;
+    while (k < cells_.size() && cells_[k].first != cell) ++k;
+    if (k == cells_.size()) {
+      if (blocks_.size() == k) blocks_.emplace_back(square_);
+      std::fill(blocks_[k].begin(), blocks_[k].end(), 0.0);
+      cells_.emplace_back(cell, blocks_[k].data());
+    }
+    for (std::size_t i = 0; i < square_; ++i) blocks_[k][i] += factor * block[i];
+  }
+  void clear() { cells_.clear(); }
+  auto begin() const { return cells_.begin(); }
+  auto end() const { return cells_.end(); }
+
+ private:
+  std::size_t square_;
+  std::vector<std::pair<int, const double*>> cells_;
+  std::vector<std::vector<double>> blocks_;  ///< kept for the next face
+};
+
+std::vector<int> numbers_in_order_of_elimination(const domain& space) {
+  std::array<bool, 3> periodic{};
+  for (int d = 0; d < space.mesh().dimensions(); ++d) periodic[at(d)] = space.periodic(d);
+  std::vector<int> numbers(at(space.mesh().size()), -1);
+  int number = 0;
+  for (const int cell : dissected_cells(space.mesh(), periodic)) numbers[at(cell)] = number++;
+  return numbers;
+}
+
+}  // namespace
+
+moment_assembly::moment_assembly(const relaxation_model& equation, const domain& space,
+                                 const inside_domain& acts, const jacobian_layout& layout, bool first_order)
+    : equation_(equation),
+      space_(space),
+      acts_(acts),
+      layout_(layout),
+      links_(space),
+      first_order_(first_order),
+      count_(layout.moments),
+      number_(numbers_in_order_of_elimination(space)),
+      mesh_(described_mesh()) {}
+
+moment_mesh moment_assembly::described_mesh() const {
+  const grid& mesh = space_.mesh();
+  moment_mesh found{.directions = mesh.dimensions(),
+                    .moments = count_,
+                    .cells = static_cast<int>(links_.cells().size()),
+                    .extent = 0.0,
+                    .spacing = mesh.spacing(0)};
+  for (int d = 0; d < mesh.dimensions(); ++d) {
+    found.lines[at(d)] = lines_along(links_, d, number_);
+    found.extent = std::max(found.extent, mesh.spacing(d) * mesh.cells(d));
+    found.spacing = std::min(found.spacing, mesh.spacing(d));
+  }
+  return found;
+}
+
+moment_equations moment_assembly::assemble(std::span<const double> blocks, double pseudo_rate) const {
+  moment_equations all;
+  for (int d = 0; d < layout_.directions; ++d) add_faces(blocks, d, all.along[at(d)]);
+  add_forces(all.inside);
+  for (const int cell : links_.cells())
+    if (layout_.source)
+      add_block(number_[at(cell)], number_[at(cell)], -1.0, block_of(blocks, cell, layout_.of_source()),
+                all.inside);
+  find_conserved(all);
+  if (pseudo_rate > 0.0)
+    for (int k = 0; k < mesh_.unknowns(); ++k) all.inside.emplace_back(k, k, pseudo_rate);
+  add_scales(blocks, all);
+  return all;
+}
+
+void moment_assembly::add_block(int row, int column, double factor, const double* block, terms& to) const {
+  for (int i = 0; i < count_; ++i)
+    for (int j = 0; j < count_; ++j)
+      if (const double x = block[i * count_ + j]; x != 0.0)
+        to.emplace_back(row * count_ + i, column * count_ + j, factor * x);
+}
+
+/// Half-range sums of |v| and of v², averaged over the directions.
+void moment_assembly::add_scales(std::span<const double> blocks, moment_equations& all) const {
+  const std::size_t square = layout_.square();
+  all.flights.assign(at(mesh_.cells) * square, 0.0);
+  all.spreads = all.flights;
+  const double share = 1.0 / layout_.directions;
+  for (const int cell : links_.cells())
+    for (int d = 0; d < layout_.directions; ++d) {
+      const double *up = block_of(blocks, cell, layout_.transport(d, true)),
+                   *down = block_of(blocks, cell, layout_.transport(d, false)),
+                   *deviation = block_of(blocks, cell, layout_.deviation(d));
+      const std::size_t first = at(number_[at(cell)]) * square;
+      for (std::size_t k = 0; k < square; ++k) {
+        all.flights[first + k] += share * (up[k] - down[k]);
+        all.spreads[first + k] += share * deviation[k];
+      }
+    }
+}
+
+void moment_assembly::add_faces(std::span<const double> blocks, int direction, terms& to) const {
+  const double per_length = 1.0 / space_.mesh().spacing(direction);
+  const std::size_t up = layout_.transport(direction, true), down = layout_.transport(direction, false),
+                    deviation = layout_.deviation(direction);
+  flux_derivative flux(layout_.square());
+  // The flux towards larger coordinates through the face between two cells. One of them may be missing.
+  const auto add_flux = [&](int below, int above) {
+    for (const auto& [of, block] : flux) {
+      if (below >= 0) add_block(number_[at(below)], number_[at(of)], per_length, block, to);
+      if (above >= 0) add_block(number_[at(above)], number_[at(of)], -per_length, block, to);
+    }
+    flux.clear();
+  };
+  for (const int cell : links_.cells()) {
+    const int above = links_.next_or_image(direction, true, cell);
+    if (above < 0) continue;
+    for (const auto& [of, weight] : edge_of(links_, direction, true, cell, first_order_))
+      flux.add(of, weight, block_of(blocks, of, up));
+    for (const auto& [of, weight] : edge_of(links_, direction, false, above, first_order_))
+      flux.add(of, weight, block_of(blocks, of, down));
+    for (const int of_spread : {cell, above}) {
+      flux.add(above, -0.5 * per_length, block_of(blocks, of_spread, deviation));
+      flux.add(cell, 0.5 * per_length, block_of(blocks, of_spread, deviation));
+    }
+    add_flux(cell, above);
+  }
+  for (const gas_end_of_segment& end : links_.ends()) {
+    if (end.where.direction != direction) continue;
+    const bool upper = end.where.upper;
+    const int cell = end.cells[0];
+    for (const auto& [of, weight] : edge_of(links_, direction, upper, cell, first_order_))
+      flux.add(of, weight, block_of(blocks, cell, layout_.end(end.where)));
+    add_flux(upper ? cell : -1, upper ? -1 : cell);
+  }
+}
+
+/// A force a gives the momentum ρa and the energy ρu·a per unit of time.
+void moment_assembly::add_forces(terms& to) const {
+  const gas_model* gas = equation_.as_gas();
+  if (!acts_.force || gas == nullptr) return;
+  const int energy = count_ - 1;
+  for (const int cell : links_.cells()) {
+    const auto a = acts_.force->value(0.0, space_.mesh().centre(cell));
+    const int first = number_[at(cell)] * count_;
+    for (int k = 0; k < gas->molecules().dimensions(); ++k) {
+      if (a[at(k)] == 0.0) continue;
+      to.emplace_back(first + 1 + k, first, -a[at(k)]);
+      to.emplace_back(first + energy, first + 1 + k, -a[at(k)]);
+    }
+  }
+}
+
+void moment_assembly::find_conserved(moment_equations& all) const {
+  const int unknowns = mesh_.unknowns();
+  std::vector<double> sums(at(count_) * at(unknowns), 0.0), sizes(at(count_), 0.0);
+  const auto add = [&](const terms& some) {
+    for (const auto& term : some) {
+      const std::size_t moment = at(term.row() % count_);
+      sums[moment * at(unknowns) + at(term.col())] += term.value();
+      sizes[moment] = std::max(sizes[moment], std::abs(term.value()));
+    }
+  };
+  for (const terms& some : all.along) add(some);
+  add(all.inside);
+  // Fluxes between cells cancel to rounding, those at ends to half the digits, which differences of rows
+  // have.
+  constexpr double rounding = 1e-7;
+  for (int moment = 0; moment < count_; ++moment) {
+    const auto first = sums.begin() + static_cast<std::ptrdiff_t>(moment) * unknowns;
+    const double largest = std::abs(*std::max_element(
+        first, first + unknowns, [](double a, double b) { return std::abs(a) < std::abs(b); }));
+    if (largest <= rounding * sizes[at(moment)]) all.conserved.push_back(moment);
+  }
+}
+
+}  // namespace apsis

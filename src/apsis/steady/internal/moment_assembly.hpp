@@ -1,0 +1,54 @@
+#pragma once
+
+#include <apsis/boundary/domain.hpp>
+#include <apsis/core/index.hpp>
+#include <apsis/model/model.hpp>
+#include <apsis/steady/cell_jacobian.hpp>
+#include <apsis/steady/cell_links.hpp>
+#include <apsis/steady/internal/moment_equations.hpp>
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace apsis {
+
+/// Makes the moment equations of a whole mesh from the derivatives of its cells.
+class moment_assembly {
+ public:
+  /// All references must outlive the object. `first_order`: whether the fluxes of T are.
+  moment_assembly(const relaxation_model& equation, const domain& space, const inside_domain& acts,
+                  const jacobian_layout& layout, bool first_order);
+
+  const moment_mesh& mesh() const { return mesh_; }
+  const std::vector<int>& cells() const { return links_.cells(); }  ///< of the gas
+  /// Returns the number of a cell among those of the gas, in an order of elimination with little fill.
+  int number(int cell) const { return number_[at(cell)]; }
+  /// Returns J from the blocks of all cells, [cell][layout.numbers()]. `pseudo_rate`: added to its diagonal.
+  moment_equations assemble(std::span<const double> blocks, double pseudo_rate) const;
+
+ private:
+  using terms = moment_equations::terms;
+  /// Adds factor · block to the block of J at a row and a column of cells of the gas.
+  void add_block(int row, int column, double factor, const double* block, terms& to) const;
+  void add_faces(std::span<const double> blocks, int direction, terms& to) const;
+  void add_forces(terms& to) const;
+  void find_conserved(moment_equations& all) const;
+  void add_scales(std::span<const double> blocks, moment_equations& all) const;
+  moment_mesh described_mesh() const;
+  const double* block_of(std::span<const double> blocks, int cell, std::size_t place) const {
+    return blocks.data() + at(cell) * at(layout_.numbers()) + place;
+  }
+
+  const relaxation_model& equation_;
+  const domain& space_;
+  const inside_domain& acts_;
+  jacobian_layout layout_;
+  cell_links links_;
+  bool first_order_;
+  int count_;
+  std::vector<int> number_;
+  moment_mesh mesh_;
+};
+
+}  // namespace apsis

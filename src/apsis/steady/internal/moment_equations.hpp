@@ -1,0 +1,50 @@
+#pragma once
+
+#include <apsis/steady/cell_links.hpp>
+
+#include <array>
+#include <vector>
+
+#include <Eigen/SparseCore>
+
+namespace apsis {
+
+/// Cells that follow each other along a direction, by their numbers among the cells of the gas. The first one
+/// follows the last one on a line that is periodic.
+using line_of_cells = std::vector<int>;
+
+/// Returns the lines along a direction. Each cell of the gas is on one of them. `number`: of a cell among
+/// those of the gas.
+std::vector<line_of_cells> lines_along(const cell_links& links, int direction,
+                                       const std::vector<int>& number);
+
+/// What a solver of moment equations has to know about the mesh.
+struct moment_mesh {
+  int directions = 1,  ///< of the mesh
+      moments = 1,     ///< of a cell
+      cells = 0;       ///< of the gas
+  std::array<std::vector<line_of_cells>, 3> lines = {};
+  double extent = 1.0,  ///< the longest side of the domain
+      spacing = 1.0;    ///< the shortest side of a cell
+
+  /// Returns the number of rows that cells have.
+  int unknowns() const { return moments * cells; }
+};
+
+/// The linearised moment equations J δω = r of a whole mesh, term by term. Row and column of moment i of a
+/// cell are number · moments + i.
+struct moment_equations {
+  using terms = std::vector<Eigen::Triplet<double>>;
+
+  std::array<terms, 3> along = {};  ///< ∂ω-derivatives of the fluxes along every direction
+  terms inside = {};                ///< those of forces and sources, and the pseudo-time term
+  std::vector<int> conserved = {};  ///< moments whose sum is prescribed by an equation of its own
+  /// Scales of J for wave numbers k of a cell, [number][moments²]: |k| flights + k² spreads.
+  std::vector<double> flights = {}, spreads = {};
+};
+
+/// Returns J with a row and a column for each moment that is conserved: its sum divided by the number of
+/// cells, and a source of it that is the same in all cells.
+Eigen::SparseMatrix<double> bordered_matrix(const moment_mesh& mesh, const moment_equations& equations);
+
+}  // namespace apsis

@@ -1,0 +1,150 @@
+// Solvers of moment equations: of small and of large systems, of conserved sums, and with factors of earlier
+// ones.
+#include <apsis/steady/internal/moment_solver.hpp>
+
+#include <array>
+#include <cmath>
+#include <random>
+
+#include <gtest/gtest.h>
+
+namespace moment_solver_test {
+namespace {
+
+using apsis::moment_equations;
+using apsis::moment_mesh;
+
+/// A mesh of cubes with sides of n cells, whose cells are numbered with the last direction first.
+moment_mesh cube(int directions, int n, int moments) {
+  moment_mesh mesh{.directions = directions, .moments = moments, .cells = 1, .spacing = 1.0 / n};
+  for (int d = 0; d < directions; ++d) mesh.cells *= n;
+  int stride = mesh.cells;
+  for (int d = 0; d < directions; ++d) {
+    stride /= n;
+    for (int first = 0; first < mesh.cells; ++first) {
+      if (first / stride % n != 0) continue;
+      apsis::line_of_cells line;
+      for (int k = 0; k < n; ++k) line.push_back(first + k * stride);
+      mesh.lines[static_cast<std::size_t>(d)].push_back(line);
+    }
+  }
+  
+  return mesh;
+}
+
+/// Fluxes |a| upwind and ν ∇ of every moment and −c ∇ of its neighbour; walls absorb all moments but the
+/// first `closed` ones.
+moment_equations flows(const moment_mesh& mesh, double nu, int closed, unsigned seed = 1) {
+  std::mt19937 generator(seed);
+  std::uniform_real_distribution<double> share(0.5, 1.5);
+  moment_equations all;
+  const int m = mesh.moments;
+  const auto squares = static_cast<std::size_t>(mesh.cells * m * m);
+  all.flights.assign(squares, 0.0);
+  all.spreads.assign(squares, 0.0);
+  for (int cell = 0; cell < mesh.cells; ++cell)
+    for (int i = 0; i < m; ++i) {
+      const auto diagonal = static_cast<std::size_t>((cell * m + i) * m + i);
+      all.flights[diagonal] = 1.0;
+      all.spreads[diagonal] = nu;
+    }
+  for (int d = 0; d < mesh.directions; ++d) {
+    auto& terms = all.along[static_cast<std::size_t>(d)];
+    const auto leave = [&](int from, int to, int i, double rate) {
+      terms.emplace_back(from * m + i, from * m + i, rate);
+      if (to >= 0) terms.emplace_back(to * m + i, from * m + i, -rate);
+    };
+    for (const apsis::line_of_cells& line : mesh.lines[static_cast<std::size_t>(d)])
+      for (std::size_t k = 0; k <= line.size(); ++k) {
+        const int below = k > 0 ? line[k - 1] : -1, above = k < line.size() ? line[k] : -1;
+        for (int i = 0; i < m; ++i) {
+          const double across = nu / mesh.spacing, swept = share(generator);
+          if ((below < 0 || above < 0) && i < closed) continue;
+          if (below >= 0) leave(below, above, i, (swept + across) / mesh.spacing);
+          if (above >= 0) leave(above, below, i, (0.5 * swept + across) / mesh.spacing);
+          // A pressure of the neighbouring moment pushes this one, as in sound.
+          if (i == 0 || below < 0 || above < 0) continue;
+          terms.emplace_back(above * m + i, above * m + i - 1, 0.5 / mesh.spacing);
+          terms.emplace_back(below * m + i, below * m + i - 1, -0.5 / mesh.spacing);
+        }
+      }
+  }
+  for (int i = 0; i < closed; ++i) all.conserved.push_back(i);
+  return all;
+}
+
+Eigen::VectorXd noise(Eigen::Index rows, unsigned seed) {
+  std::mt19937 generator(seed);
+  std::normal_distribution<double> number;
+  Eigen::VectorXd r(rows);
+  for (double& x : r) x = number(generator);
+  return r;
+}
+
+double relative_residual(const moment_mesh& mesh, const moment_equations& equations, const Eigen::VectorXd& x,
+                         const Eigen::VectorXd& r) {
+  return (apsis::bordered_matrix(mesh, equations) * x - r).norm() / r.norm();
+}
+
+}  // namespace
+
+struct moment_solvers : testing::TestWithParam<std::array<int, 2>> {};
+
+TEST_P(moment_solvers, solve_dense_and_rare_systems_with_and_without_conserved_sums) {
+  const auto [directions, n] = GetParam();
+  const moment_mesh mesh = cube(directions, n, 3);
+  for (const double nu : {1e-3, 0.1, 10.0})
+    for (const int closed : {0, 1, 3}) {
+      const moment_equations equations = flows(mesh, nu, closed);
+      apsis::moment_solver solver(mesh);
+      solver.take(equations, false);
+      const Eigen::VectorXd r = noise(mesh.unknowns() + closed, 7);
+      const Eigen::VectorXd x = solver.solve(r);
+      // GMRES bounds the residual after preconditioning by 1e-6; the condition of what is left is below 1e3.
+      EXPECT_LT(relative_residual(mesh, equations, x, r), 1e-3) << nu << " " << closed;
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(sizes, moment_solvers,
+                         testing::Values(std::array{1, 50}, std::array{2, 20}, std::array{2, 150},
+                                         std::array{3, 6}, std::array{3, 16}));
+
+TEST(moment_solver, factorizes_what_is_small) {
+  EXPECT_TRUE(apsis::moment_solver::factorizes(1, 50000));
+  EXPECT_TRUE(apsis::moment_solver::factorizes(2, 16384));
+  EXPECT_FALSE(apsis::moment_solver::factorizes(2, 67500));
+  EXPECT_FALSE(apsis::moment_solver::factorizes(3, 20480));
+}
+
+TEST(moment_solver, solves_later_equations_with_earlier_factors_or_with_new_ones) {
+  const moment_mesh mesh = cube(2, 12, 3);
+  apsis::moment_solver solver(mesh);
+  solver.take(flows(mesh, 0.1, 1), false);
+  const Eigen::VectorXd r = noise(mesh.unknowns() + 1, 3);
+  // The same equations again, others, others of another size of ν, and one equation more.
+  for (const moment_equations& later :
+       {flows(mesh, 0.1, 1), flows(mesh, 0.1, 1, 2), flows(mesh, 30.0, 1, 3), flows(mesh, 1e-3, 1, 4)}) {
+    solver.take(later, false);
+    EXPECT_LT(relative_residual(mesh, later, solver.solve(r), r), 1e-5);
+  }
+  const moment_equations closed = flows(mesh, 0.1, 2);
+  solver.take(closed, false);
+  const Eigen::VectorXd longer = noise(mesh.unknowns() + 2, 3);
+  EXPECT_LT(relative_residual(mesh, closed, solver.solve(longer), longer), 1e-5);
+}
+
+TEST(alternating_directions, need_few_iterations_on_any_mesh) {
+  // Preconditioned by them, J is near the identity: the residual of the approximation alone is below 1.
+  for (const int n : {8, 16, 24}) {
+    const moment_mesh mesh = cube(3, n, 2);
+    const moment_equations equations = flows(mesh, 0.2, 1);
+    const apsis::alternating_directions approximate(mesh, equations);
+    const Eigen::SparseMatrix<double> matrix = apsis::bordered_matrix(mesh, equations);
+    Eigen::VectorXd error = noise(matrix.rows(), 5);
+    const double start = error.norm();
+    for (int k = 0; k < 10; ++k) error -= approximate.solve(matrix * error);
+    EXPECT_LT(error.norm() / start, 0.05) << n;
+  }
+}
+
+}  // namespace moment_solver_test

@@ -35,6 +35,8 @@ const char* kernel_name(kernel which) {
       return "equilibria";
     case kernel::relaxation:
       return "relaxation";
+    case kernel::derivatives:
+      return "derivatives";
     case kernel::correction:
       return "moment equations";
     case kernel::implicit:

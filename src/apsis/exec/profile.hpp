@@ -10,19 +10,20 @@ namespace apsis {
 
 /// Kernels timed by the profiler.
 enum class kernel {
-  edges,       ///< reconstruction of edge values
-  fluxes,      ///< flux limiter, T(u), and adding its multiples to the accumulators
-  multiples,   ///< adding multiples of u alone to the accumulators
-  halo,        ///< packing rows for other processes, and waiting for theirs
-  walls,       ///< rows beyond surfaces, and what enters through them
-  forces,      ///< forces and sources
-  points,      ///< values at Gauss points from cell averages
-  equilibria,  ///< moments and equilibria
-  relaxation,  ///< convex combination with the equilibrium
-  correction,  ///< of moments, in a steady run: derivatives, factors and solutions of J
-  implicit,    ///< implicit sweeps of a steady run
-  mixture,     ///< of iterates
-  monitor      ///< minimum, conserved sums, entropy
+  edges,        ///< reconstruction of edge values
+  fluxes,       ///< flux limiter, T(u), and adding its multiples to the accumulators
+  multiples,    ///< adding multiples of u alone to the accumulators
+  halo,         ///< packing rows for other processes, and waiting for theirs
+  walls,        ///< rows beyond surfaces, and what enters through them
+  forces,       ///< forces and sources
+  points,       ///< values at Gauss points from cell averages
+  equilibria,   ///< moments and equilibria
+  relaxation,   ///< convex combination with the equilibrium
+  derivatives,  ///< of fluxes and ends by moments, in a steady run
+  correction,   ///< of moments: assembly, factors and solutions of J
+  implicit,     ///< implicit sweeps of a steady run
+  mixture,      ///< of iterates
+  monitor       ///< minimum, conserved sums, entropy
 };
 /// Number of kernels.
 inline constexpr std::size_t kernel_count = static_cast<std::size_t>(kernel::monitor) + 1;

@@ -2,6 +2,8 @@
 
 #include <apsis/core/index.hpp>
 #include <apsis/exec/agreement.hpp>
+#include <apsis/exec/parallel.hpp>
+#include <apsis/exec/profile.hpp>
 #include <apsis/semidiscrete/gathered_cells.hpp>
 #include <apsis/steady/internal/moment_assembly.hpp>
 #include <apsis/steady/internal/moment_solver.hpp>
@@ -11,6 +13,15 @@
 #include <utility>
 
 namespace apsis {
+
+namespace {
+
+/// Times the enclosing scope on all threads.
+profile::section timed(kernel which, std::size_t numbers) {
+  return {which, static_cast<double>(numbers), {}, threads()};
+}
+
+}  // namespace
 
 /// J of the whole mesh.
 class macroscopic_system::whole_system {
@@ -79,7 +90,11 @@ bool macroscopic_system::build(const moments& omega, const std::vector<double>& 
                                bool holds_neutral) {
   communicator& processes = space_.processes();
   std::vector<double> blocks;
-  run_collectively(processes, [&] { blocks = jacobian_.compute(omega, rates); });
+  run_collectively(processes, [&] {
+    const auto section = timed(kernel::derivatives, rates.size());
+    blocks = jacobian_.compute(omega, rates);
+  });
+  const auto section = timed(kernel::correction, 0);
   blocks = gather_cells(space_, std::move(blocks), jacobian_.layout().numbers());
   run_collectively(processes, [&] {
     if (whole_) whole_->build(blocks, pseudo_rate, holds_neutral);
@@ -95,6 +110,7 @@ bool macroscopic_system::build(const moments& omega, const std::vector<double>& 
 
 macroscopic_system::moments macroscopic_system::solve(const moments& r,
                                                       const std::vector<double>& missing) const {
+  const auto section = timed(kernel::correction, r.size());
   moments all = gather_cells(space_, r, count_);
   if (whole_) all = whole_->solve(all, missing);
   return scatter_cells(space_, std::move(all), count_);

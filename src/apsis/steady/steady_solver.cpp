@@ -300,7 +300,6 @@ struct steady_solver::impl {
 
   /// Sets δω and its size.
   void correct_moments(steady_iteration& now) {
-    const auto section = timed(kernel::correction, count);
     build_system_if_due(now.residual);
     std::vector<double> missing = sums(omega);
     for (std::size_t i = 0; i < missing.size(); ++i) missing[i] = totals[i] - missing[i];

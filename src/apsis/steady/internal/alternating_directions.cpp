@@ -27,13 +27,33 @@ std::vector<double> wave_numbers(const moment_mesh& mesh) {
   return found;
 }
 
-/// Returns Θ x for a block-diagonal Θ.
-Eigen::VectorXd scaled(const std::vector<double>& scale, int moments, const Eigen::VectorXd& x) {
-  Eigen::VectorXd y(x.size());
+constexpr int rows_of_a_block = 512;
+
+using row_major = Eigen::SparseMatrix<double, Eigen::RowMajor>;
+
+/// y ← y − A x, row by row, on all threads.
+void subtract_product(const row_major& matrix, const Eigen::VectorXd& x, Eigen::VectorXd& y) {
+  parallel_blocks(static_cast<int>(matrix.rows()), rows_of_a_block, [&](int begin, int end) {
+    for (int row = begin; row < end; ++row) {
+      double sum = 0.0;
+      for (row_major::InnerIterator entry(matrix, row); entry; ++entry) sum += entry.value() * x[entry.col()];
+      y[row] -= sum;
+    }
+  });
+}
+
+/// Returns rows of Θ x for a block-diagonal Θ. `unknowns`: of whole cells.
+Eigen::VectorXd scaled_rows(const std::vector<double>& scale, int moments, const Eigen::VectorXd& x,
+                            const std::vector<int>& unknowns) {
   using block = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-  for (Eigen::Index first = 0; first < x.size(); first += moments)
-    y.segment(first, moments).noalias() =
-        Eigen::Map<const block>(scale.data() + first * moments, moments, moments) * x.segment(first, moments);
+  const auto count = static_cast<Eigen::Index>(unknowns.size());
+  Eigen::VectorXd y(count);
+  for (Eigen::Index k = 0; k < count; k += moments) {
+    const int first = unknowns[static_cast<std::size_t>(k)];
+    y.segment(k, moments).noalias() =
+        Eigen::Map<const block>(scale.data() + at(first) * at(moments), moments, moments) *
+        x.segment(first, moments);
+  }
   return y;
 }
 
@@ -115,14 +135,16 @@ Eigen::VectorXd alternating_directions::without_sums(const Eigen::VectorXd& r) c
   Eigen::VectorXd x = Eigen::VectorXd::Zero(r.size());
   for (std::size_t k = 0; k < stages_.size(); ++k) {
     Eigen::VectorXd y = r;
-    if (k > 0) y -= matrix_ * x;
+    if (k > 0) subtract_product(matrix_, x, y);
     for (int d = 0; d < mesh_.directions; ++d) {
-      if (d > 0) y = scaled(stages_[k].scale, mesh_.moments, y);
       const std::vector<lines>& groups = stages_[k].along[at(d)];
       parallel_blocks(static_cast<int>(groups.size()), 1, [&](int begin, int end) {
         for (int g = begin; g < end; ++g) {
           const std::vector<int>& unknowns = groups[at(g)].unknowns;
-          y(unknowns) = groups[at(g)].factors->solve(Eigen::VectorXd(y(unknowns)));
+          const Eigen::VectorXd of_lines = d > 0 ? scaled_rows(stages_[k].scale, mesh_.moments, y, unknowns)
+                                                 : Eigen::VectorXd(y(unknowns));
+          const Eigen::VectorXd solved = groups[at(g)].factors->solve(of_lines);  // contiguous, as it must be
+          y(unknowns) = solved;
         }
       });
     }

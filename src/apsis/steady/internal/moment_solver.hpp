@@ -38,7 +38,7 @@ class moment_solver {
   using preconditioner = std::function<Eigen::VectorXd(const Eigen::VectorXd&)>;
   void factorize_again();
   std::optional<Eigen::VectorXd> iterate(const Eigen::VectorXd& r, const preconditioner& approximate,
-                                         int iterations) const;
+                                         double tolerance, int iterations) const;
 
   const moment_mesh& mesh_;
   bool factorizes_;

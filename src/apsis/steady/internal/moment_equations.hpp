@@ -18,7 +18,7 @@ using line_of_cells = std::vector<int>;
 std::vector<line_of_cells> lines_along(const cell_links& links, int direction,
                                        const std::vector<int>& number);
 
-/// What a solver of moment equations has to know about the mesh.
+/// The mesh, as a solver of moment equations sees it.
 struct moment_mesh {
   int directions = 1,  ///< of the mesh
       moments = 1,     ///< of a cell

@@ -144,6 +144,56 @@ TEST(steady_run, needs_no_table_of_time) {
   EXPECT_LE(run.step(), 60);
 }
 
+TEST(steady_run, solves_moment_equations_in_space_that_are_too_large_for_factors) {
+  // 1701 cells of 5 moments, above the 8000 unknowns that are factorized.
+  const std::string text = R"toml(
+[parameters]
+delta = 5
+[model]
+name = "bgk"
+velocity_dimensions = 3
+degrees_of_freedom = 3
+collision_rate = "viscosity"
+viscosity_exponent = 0.5
+rarefaction = "delta"
+[initial]
+rho = 1
+T = 1
+[space]
+cells = [12, 12, 12]
+domain = [[0, 1], [0, 1], [0, 1]]
+formulation = "finite-difference"
+boundary = "diffuse"
+[[space.solid]]
+name = "box"
+from = [0.25, 0.25, 0.25]
+to = [0.5, 0.5, 0.5]
+T = 1.2
+[boundary.top]
+velocity = [0.1, 0, 0]
+[velocity]
+set = "graded"
+max = 4.5
+points = 8
+[steady]
+tolerance = 1e-6
+)toml";
+  simulation run(apsis::parse_case(text, "cube.toml"));
+  while (!run.finished()) run.advance();
+  EXPECT_LE(run.step(), 60);
+  // All walls together give nothing; the fluxes of each are of mass, momentum and energy.
+  const auto& flux = run.last().flux;
+  ASSERT_EQ(flux.size(), 7u * 5u);
+  for (std::size_t i = 0; i < 5; ++i) {
+    double sum = 0.0, largest = 0.0;
+    for (std::size_t wall = 0; wall < 7; ++wall) {
+      sum += flux[5 * wall + i];
+      largest = std::max(largest, std::abs(flux[5 * wall + i]));
+    }
+    EXPECT_NEAR(sum, 0.0, 1e-6 * std::max(largest, 1e-3)) << i;
+  }
+}
+
 TEST(steady_run, is_not_finished_where_the_iterations_are_over) {
   simulation run(apsis::load_case("gas/couette", {"space.cells=8", "steady.iterations=3"}));
   EXPECT_THROW(

@@ -30,7 +30,7 @@ class macroscopic_system {
   macroscopic_system(const macroscopic_system&) = delete;
   macroscopic_system& operator=(const macroscopic_system&) = delete;
 
-  /// Builds and factorizes J for the moments ω and the collision rates C/ε of all cells; `pseudo_rate`: added
+  /// Builds J for the moments ω and the collision rates C/ε of all cells; `pseudo_rate`: added
   /// to its diagonal. `holds_neutral`: whether solve() leaves a neutral mode as it is
   /// (internal/neutral_mode.hpp). Returns whether there is one that it leaves. Throws numerical_error with
   /// the cell where ω has no equilibrium, or if J is singular.

@@ -27,6 +27,7 @@ tangent_rows::tangent_rows(const relaxation_model& equation)
       row_(equilibrium_.size()),
       tail_(equilibrium_.size()),
       target_(equilibrium_.size()),
+      unchanged_(equilibrium_.size()),
       changed_(at(count_), equilibrium_),
       column_(at(count_)),
       s_(at(relaxing_)),
@@ -106,7 +107,8 @@ void tangent_rows::set_relaxation() {
   const double largest = *std::max_element(sizes_.begin(), sizes_.end());
   for (double& size : sizes_)
     if (!(size > 1e-12 * largest)) size = largest;
-  std::vector<double> s(at(relaxing_));
+  std::vector<double> s(at(relaxing_), 0.0);
+  set_target(s, 0.0, unchanged_);
   for (int i = 0; i < relaxing_; ++i) {
     std::fill(s.begin(), s.end(), 0.0);
     s[at(i)] = 1.0;
@@ -120,14 +122,21 @@ void tangent_rows::set_relaxation() {
 
 /// tail ← E_s s, as a difference over `size`. Returns false without a target.
 bool tangent_rows::set_tail(const std::vector<double>& s, double size) {
+  const bool known = size > 0.0 && set_target(s, size, target_);
+  for (std::size_t k = 0; k < tail_.size(); ++k) tail_[k] = known ? (target_[k] - unchanged_[k]) / size : 0.0;
+  return known;
+}
+
+/// row ← E(ω, s(E) + size s). For size = 0 it differs from E(ω) where few velocities give E a heat flux.
+/// Returns false, with row = E(ω), without a target.
+bool tangent_rows::set_target(const std::vector<double>& s, double size, aligned_vector<double>& row) {
   std::vector<double>& moved = s_of_row_;
   double cut = 0.0;
   moved = s_;
   for (std::size_t i = 0; i < s.size(); ++i) moved[i] += size * s[i];
-  const bool known = size > 0.0 && equation_.target(omega_.data(), moved.data(), equilibrium_.data(), 0.0,
-                                                    target_.data(), cut);
-  for (std::size_t k = 0; k < tail_.size(); ++k)
-    tail_[k] = known ? (target_[k] - equilibrium_[k]) / size : 0.0;
+  const bool known =
+      equation_.target(omega_.data(), moved.data(), equilibrium_.data(), 0.0, row.data(), cut);
+  if (!known) row = equilibrium_;
   return known;
 }
 

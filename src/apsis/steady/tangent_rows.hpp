@@ -37,12 +37,13 @@ class tangent_rows {
   void difference(int j, std::span<const double> factors);
   void set_relaxation();
   bool set_tail(const std::vector<double>& s, double size);
+  bool set_target(const std::vector<double>& s, double size, aligned_vector<double>& row);
   void add_slow_part();
 
   const relaxation_model& equation_;
   int count_, relaxing_;
   std::vector<double> omega_, scales_, steps_;
-  aligned_vector<double> equilibrium_, row_, tail_, target_;
+  aligned_vector<double> equilibrium_, row_, tail_, target_, unchanged_;
   std::vector<aligned_vector<double>> changed_;
   std::vector<double> column_;
   // Moments s that relax: those of the equilibrium, the sizes of their changes, and 𝒮E_s.

@@ -20,6 +20,8 @@ namespace {
 /// Marches before a failure is final, and the length of the first one in times of flight through the domain.
 constexpr int most_marches = 3;
 constexpr double flights_of_first_march = 5.0;
+/// Stronger pseudo-time terms that are tried before.
+constexpr int most_new_beginnings = 4;
 
 /// The message without its advice, which is that for a run in time.
 std::string cause_of(const numerical_error& failure) {
@@ -73,14 +75,27 @@ void steady_iterations::advance() {
 }
 
 steady_iteration steady_iterations::iterate() {
-  try {
-    return solver_->iterate(run_.state);
-  } catch (const steady_stall&) {
-    throw;
-  } catch (const numerical_error& failure) {
-    begin_march(failure);
+  for (;;) {
+    try {
+      return solver_->iterate(run_.state);
+    } catch (const steady_stall&) {
+      throw;
+    } catch (const numerical_error& failure) {
+      if (begin_again(failure)) continue;
+      begin_march(failure);
+      return march();
+    }
   }
-  return march();
+}
+
+/// Begins again from the first state with a stronger pseudo-time term. Returns false where that was tried.
+bool steady_iterations::begin_again(const numerical_error& failure) {
+  if (marches_ > 0 || begun_again_ == most_new_beginnings || !solver_->begin_again()) return false;
+  ++begun_again_;
+  log::info(fmt::format("iteration {}: {}; begins again from the first state with a stronger pseudo-time term",
+                        run_.march.step(), cause_of(failure)));
+  run_.state = first_;
+  return true;
 }
 
 /// Begins steps in time, twice as long as those before.

@@ -14,8 +14,9 @@ namespace apsis {
 /// residual; what the gas received since the start is nothing, and defects of conservation are the net rates.
 /// Nothing is promised.
 ///
-/// Where an iteration fails because f has no equilibrium, or because it diverges, the run marches in time
-/// from its first state, and then iterates again. A part of the march counts as an iteration.
+/// Where an iteration fails because f has no equilibrium, or because it diverges, it begins again from the
+/// first state with a stronger pseudo-time term. Where that fails too, the run marches in time from its first
+/// state, and then iterates again. A part of the march counts as an iteration.
 class steady_iterations final : public progression {
  public:
   /// `run` must outlive the object.
@@ -36,6 +37,7 @@ class steady_iterations final : public progression {
  private:
   void make_solver();
   steady_iteration iterate();
+  bool begin_again(const numerical_error& failure);
   void begin_march(const numerical_error& failure);
   steady_iteration march();
   void log_damping(int damping);
@@ -46,6 +48,7 @@ class steady_iterations final : public progression {
   std::optional<steady_solver> solver_;
   std::optional<interim_march> march_;  ///< between two attempts
   field first_;                         ///< the state of the first iteration
+  int begun_again_ = 0;                 ///< from that state, with a stronger pseudo-time term
   int marches_ = 0;                     ///< begun
   int damping_ = 0;                     ///< of the last iteration
   bool found_ = false;                  ///< the steady state

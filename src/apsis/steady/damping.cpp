@@ -28,6 +28,12 @@ constexpr int patience = 100;
 
 }  // namespace
 
+damping::damping(int strength) : strength_(static_cast<std::size_t>(std::min(strength, strongest()))) {}
+
+int damping::strongest() {
+  return static_cast<int>(terms.size()) - 1;
+}
+
 double damping::vanishing_rate(double residual) const {
   return terms[strength_].of_residual * std::min(residual, 1.0);
 }

@@ -19,6 +19,11 @@ class steady_stall : public numerical_error {
 /// stronger ones.
 class damping {
  public:
+  /// `strength`: that of the first iteration, at most that of the strongest term.
+  explicit damping(int strength = 0);
+  /// Returns the strength of the strongest term.
+  static int strongest();
+
   /// Largest relative change of density and energy in one iteration.
   static constexpr double largest_change = 0.3;
 
@@ -42,7 +47,7 @@ class damping {
 
   void strengthen(double residual);
 
-  std::size_t strength_ = 0;
+  std::size_t strength_;
   double best_ = infinite;     ///< residual with this term
   int idle_ = 0;               ///< iterations without progress
   int large_corrections_ = 0;  ///< with this term

@@ -160,9 +160,13 @@ void octant_sweep::pass(const octant& of, const strip& components, const std::ve
       const int two = one < 0 ? -1 : links_.next(d, !lower, one);
       if (one < 0) {
         const int end = links_.end_next_to(d, !lower, cell);
-        from.one = end < 0 ? row : entering_.row(end);
+        // A copy of this row changes with it: no difference enters. A change of 0 would hold the row where
+        // few collisions change it.
+        const bool copies = end >= 0 && links_.ends()[at(end)].side->cell_of_ghost(0, 1).has_value();
+        from.one = end < 0 || copies ? row : entering_.row(end);
         from.two = from.one;
-        from.first = end < 0 ? 0.0 : 1.0;
+        from.here = copies ? 0.0 : 1.0;
+        from.first = end < 0 || copies ? 0.0 : 1.0;
         continue;
       }
       from.here = 1.0 + slope;

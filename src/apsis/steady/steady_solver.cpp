@@ -278,7 +278,16 @@ struct steady_solver::impl {
     });
   }
 
-  /// Begins again with another J.
+  bool begin_again() {
+    if (damped.strength() == damping::strongest()) return false;
+    damped = damping(damped.strength() + 1);
+    lowest = pseudo_rate = 0.0;
+    holds_neutral_mode = false;
+    forget_system();
+    return true;
+  }
+
+  /// Begins with another J.
   void forget_system() {
     built = false;
     seeks_neutral_mode = true;
@@ -385,6 +394,10 @@ steady_iteration steady_solver::iterate(field& f) {
   return impl_->iterate(f);
 }
 
+bool steady_solver::begin_again() {
+  return impl_->begin_again();
+}
+
 double steady_solver::relative_residual(const field& f) {
   impl_->compute_residual(f);
   return impl_->norms(f)[0] / impl_->reference;
@@ -403,8 +416,18 @@ void steady_solver::set_reference(double residual) {
 }
 
 steady_iteration steady_solver::solve(field& f, const std::function<void(const steady_iteration&)>& watch) {
+  const field start = f;
   for (;;) {
-    const steady_iteration now = iterate(f);
+    steady_iteration now;
+    try {
+      now = iterate(f);
+    } catch (const steady_stall&) {
+      throw;
+    } catch (const numerical_error&) {
+      if (!begin_again()) throw;
+      f = start;
+      continue;
+    }
     if (watch) watch(now);
     if (now.converged) return now;
     if (now.number + 1 >= impl_->options.iterations)

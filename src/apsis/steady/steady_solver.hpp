@@ -57,6 +57,10 @@ class steady_solver {
   /// residual has become a million times that of the start, and steady_stall if it has not fallen for a
   /// hundred iterations.
   steady_iteration iterate(field& f);
+  /// Forgets all iterations but for reference(), and takes a stronger pseudo-time term than the last one; the
+  /// next iteration begins with f of the start again. Returns false, and does nothing, if there is no
+  /// stronger term.
+  bool begin_again();
   /// Returns ‖T(f) + Q(f)/ε‖₂ relative to reference(), once there is one.
   double relative_residual(const field& f);
   /// Returns the time of flight through the shortest extent of the domain at the thermal speed of the first
@@ -68,8 +72,9 @@ class steady_solver {
   /// Continues iterations with a unit of residuals that another solver had.
   void set_reference(double residual);
 
-  /// Iterates until convergence, calling `watch` after every iteration. Throws numerical_error as iterate(),
-  /// and after the last of options.iterations.
+  /// Iterates until convergence, calling `watch` after every iteration. Begins again with f of the start and a
+  /// stronger pseudo-time term where iterate() fails, other than by a stall. Throws numerical_error where the
+  /// strongest one does not help, and after the last of options.iterations.
   steady_iteration solve(field& f, const std::function<void(const steady_iteration&)>& watch = {});
 
  private:

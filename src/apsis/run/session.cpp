@@ -17,6 +17,7 @@
 #include <apsis/run/setup.hpp>
 #include <apsis/run/shared_files.hpp>
 #include <apsis/run/surface_files.hpp>
+#include <apsis/steady/steady_solver.hpp>
 
 #include <algorithm>
 #include <array>
@@ -259,12 +260,20 @@ run_session::run_session(const case_config& configured, session_options options)
   const std::string work = config.steady_state.tolerance
                                ? fmt::format("at most {} iterations to the steady state", steps)
                                : fmt::format("about {} steps of {}", steps, config.time.method);
-  const std::string promised = config.steady_state.tolerance ? "nothing is promised between iterations"
-                                                             : simulation_.promises().text();
+  const std::string promised =
+      config.steady_state.tolerance ? promise_of_steady_state() : simulation_.promises().text();
   log::info(fmt::format("{}: {} on {}{} thread{}; {}", config.source, work,
                         ranks == 1 ? "" : fmt::format("{} processes of ", ranks), threads(),
                         threads() == 1 ? "" : "s", promised));
   if (steps - simulation_.step() >= many_steps) warn_at_step_ = simulation_.step() + 1000;
+}
+
+std::string run_session::promise_of_steady_state() const {
+  const run_setup& setup = simulation_.setup();
+  const relaxation_model* relaxes = setup.equation->as_relaxation();
+  return relaxes != nullptr && is_nonnegative(*relaxes, setup.builder())
+             ? "of the steady state f >= 0 is promised, of iterates nothing"
+             : "nothing is promised";
 }
 
 void run_session::resume(const std::string& path) {
@@ -313,13 +322,22 @@ void run_session::finish_records() {
                     units.suffix(dimensions::time),
                     to_text(estimate_steady_state(shown_->history()), time, units.suffix(dimensions::time))));
   }
-  if (simulation_.config().steady_state.tolerance && simulation_.finished())
-    log::info(
-        fmt::format("the steady state is found after {} iterations: residual {:.2g}, change of the "
-                    "moments {:.2g}",
-                    simulation_.step(), simulation_.last().residual.front(), simulation_.last().change));
+  if (simulation_.config().steady_state.tolerance && simulation_.finished()) report_steady_state();
   const auto& taken = shown_->fields().snapshots;
   if (taken.empty() || taken.back().t != simulation_.t()) shown_->add_snapshot(simulation_);
+}
+
+void run_session::report_steady_state() const {
+  const step_record& last = simulation_.last();
+  log::info(
+      fmt::format("the steady state is found after {} iterations: residual {:.2g}, change of the moments "
+                  "{:.2g}",
+                  simulation_.step(), last.residual.front(), last.change));
+  const model& equation = *simulation_.setup().equation;
+  if (last.negative_values == 0 || !equation.positive()) return;
+  log::info(fmt::format(
+      "{} values of f are below 0; space.limiter = \"positivity\"{} keeps them at 0 or above",
+      last.negative_values, equation.why_signed().empty() ? "" : " with model.tails = \"nonnegative\""));
 }
 
 void run_session::take_snapshot() {

@@ -63,6 +63,8 @@ class run_session {
   void write_distribution_snapshot();
   void resume_snapshots(const std::string& checkpoint);
   void finish_records();
+  void report_steady_state() const;
+  std::string promise_of_steady_state() const;
   void write_results(result_folder* folder, run_end end, const std::string& message);
   void write_tables(result_folder& folder, const solution& final_state,
                     const std::vector<surface_table>& walls);

@@ -28,20 +28,15 @@ std::string cause_of(const numerical_error& failure) {
   return failure.problem().substr(0, failure.problem().find("; "));
 }
 
-/// Warns of fluxes that are not linear in f.
-void warn_of_nonlinear_fluxes(const run_setup& setup) {
+/// Warns of weights that depend on f. A limiter is weak enough to settle.
+void warn_of_weights(const run_setup& setup) {
   if (!setup.has_space()) return;
   const auto& space = setup.config().space;
-  const auto warn = [](const std::string& why, const char* key, const char* value) {
-    log::warning(fmt::format(
-        "the iteration may never settle where f jumps along rays ({}); write {} = \"{}\", or leave it out",
-        why, key, value));
-  };
   if (!find_reconstruction(space.reconstruction).linear)
-    warn(fmt::format("the weights of {} depend on f", space.reconstruction), "space.reconstruction",
-         "upwind5");
-  if (space.limiter != limiter_choice::none)
-    warn("the share of the limiter depends on f", "space.limiter", "none");
+    log::warning(
+        fmt::format("the iteration may never settle where f jumps along rays (the weights of {} depend "
+                    "on f); write space.reconstruction = \"upwind5\", or leave it out",
+                    space.reconstruction));
 }
 
 }  // namespace
@@ -51,7 +46,7 @@ void steady_iterations::start() {
   run_.first.residual = run_.last.residual = {unknown};
   first_ = run_.state;
   make_solver();
-  warn_of_nonlinear_fluxes(run_.setup);
+  warn_of_weights(run_.setup);
   warn_of_rays(run_.setup, run_.problem->relaxation_time(0.0, run_.state));
   run_.problem->take_cut();  // of the first residual
 }
@@ -69,6 +64,7 @@ void steady_iterations::advance() {
     run_.march.advance(1.0);
     record(done);
     found_ = done.converged;
+    log_removed(done);
   } catch (const numerical_error& failure) {
     throw run_.located(failure);
   }
@@ -92,8 +88,9 @@ steady_iteration steady_iterations::iterate() {
 bool steady_iterations::begin_again(const numerical_error& failure) {
   if (marches_ > 0 || begun_again_ == most_new_beginnings || !solver_->begin_again()) return false;
   ++begun_again_;
-  log::info(fmt::format("iteration {}: {}; begins again from the first state with a stronger pseudo-time term",
-                        run_.march.step(), cause_of(failure)));
+  log::info(
+      fmt::format("iteration {}: {}; begins again from the first state with a stronger pseudo-time term",
+                  run_.march.step(), cause_of(failure)));
   run_.state = first_;
   return true;
 }
@@ -141,6 +138,14 @@ void steady_iterations::log_damping(int damping) {
                     "fall)",
                     run_.march.step(), damping_ == 0 ? "" : "stronger "));
   damping_ = damping;
+}
+
+void steady_iterations::log_removed(const steady_iteration& done) {
+  if (const removed_values& removed = done.removed; removed.count > 0)
+    log::info(fmt::format(
+        "{} values below 0, the smallest {:.2g}, are set to 0 with the moments of their cells kept; "
+        "the residual is then {:.2g}",
+        removed.count, removed.lowest, done.residual));
 }
 
 void steady_iterations::record(const steady_iteration& done) {

@@ -12,7 +12,7 @@ namespace apsis {
 
 /// Iterations of a steady_solver in place of steps. They count as time. Fluxes are those of the last
 /// residual; what the gas received since the start is nothing, and defects of conservation are the net rates.
-/// Nothing is promised.
+/// Nothing is promised but for the sign of the steady state (is_nonnegative()).
 ///
 /// Where an iteration fails because f has no equilibrium, or because it diverges, it begins again from the
 /// first state with a stronger pseudo-time term. Where that fails too, the run marches in time from its first
@@ -41,6 +41,7 @@ class steady_iterations final : public progression {
   void begin_march(const numerical_error& failure);
   steady_iteration march();
   void log_damping(int damping);
+  static void log_removed(const steady_iteration& done);
   void record(const steady_iteration& done);
   void set_net_rates();
 

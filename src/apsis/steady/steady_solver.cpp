@@ -64,6 +64,11 @@ double global_highest(communicator& processes, double mine) {
 
 }  // namespace
 
+bool is_nonnegative(const relaxation_model& equation, const problem_builder& space) {
+  return equation.positive() && equation.collisions_keep_sign() && equation.why_signed().empty() &&
+         space.keeps_sign();
+}
+
 struct steady_solver::impl {
   impl(const relaxation_model& of, const problem_builder& space, semidiscrete_problem& operators,
        const field& start, const steady_options& given)
@@ -316,6 +321,18 @@ struct steady_solver::impl {
     now.change = largest_relative_change();
   }
 
+  /// Removes what the tolerance leaves below 0, if the steady state is not negative.
+  void remove_negatives(field& f, steady_iteration& now) {
+    if (!is_nonnegative(equation, builder)) return;
+    removed_values& removed = now.removed;
+    run_collectively(processes, [&] { removed = remove_negative_values(equation, links.cells(), f); });
+    removed.count = global_count(processes, removed.count);
+    removed.lowest = global_lowest(processes, removed.lowest);
+    if (removed.count == 0) return;
+    compute_residual(f);
+    if (reference > 0.0) now.residual = norms(f)[0] / reference;
+  }
+
   steady_iteration iterate(field& f) {
     compute_residual(f);
     const auto [residual, collisions] = norms(f);
@@ -349,7 +366,10 @@ struct steady_solver::impl {
           "the correction of the moments is not finite: the iteration to the steady state diverges; march in "
           "time");
     now.converged = (now.residual <= options.tolerance || now.rounding) && now.change <= options.tolerance;
-    if (now.converged) return now;
+    if (now.converged) {
+      remove_negatives(f, now);
+      return now;
+    }
     const double share = share_of_correction();
     run_collectively(processes, [&] {
       const auto section = timed(kernel::implicit, f.components());

@@ -4,6 +4,7 @@
 #include <apsis/model/model.hpp>
 #include <apsis/semidiscrete/problem_builder.hpp>
 #include <apsis/steady/damping.hpp>
+#include <apsis/steady/negative_values.hpp>
 
 #include <functional>
 #include <memory>
@@ -18,6 +19,12 @@ struct steady_options {
   int depth = 3;            ///< images that Anderson's mixture remembers
 };
 
+/// Returns whether steady states are nonnegative: the model is positive, its targets are not negative, and
+/// the fluxes of `space` are limited or of first order. In the cell with the smallest value of a component,
+/// T(f) is then at least that of first-order upwind fluxes, so that the value is at least a mean of its
+/// upstream neighbours and of the target.
+bool is_nonnegative(const relaxation_model& equation, const problem_builder& space);
+
 /// One iteration of steady_solver. Dimensionless.
 struct steady_iteration {
   int number = 0;         ///< iterations before
@@ -27,7 +34,8 @@ struct steady_iteration {
   double change = 0.0;
   int damping = 0;         ///< damping::strength() of its J
   bool rounding = false;   ///< whether the residual is that of rounding
-  bool converged = false;  ///< whether f was left as it is: it has the tolerance
+  bool converged = false;  ///< whether f has the tolerance; it is left as it is, but for `removed`
+  removed_values removed = {};  ///< by rounding and tolerance, where steady_solver keeps f nonnegative
 };
 
 /// Solves T(f) + Q(f)/ε = 0 for the discretization of a problem, without steps in time. Each iteration
@@ -35,6 +43,10 @@ struct steady_iteration {
 /// (macroscopic_system), solves (L + σ) δf = R + σ (E(ω + δω) − E(ω)) by an upwind sweep (octant_sweep), and
 /// mixes images by Anderson's method. Fixed points are exactly R = 0: J and L decide on the speed alone.
 /// Moments that nothing changes, such as the mass between walls, keep their sums.
+///
+/// With a limiter (problem_builder::keeps_sign()), and a model whose targets are not negative, no steady state
+/// is negative. Values that the tolerance leaves below 0 are then set to 0 with the moments of their cells
+/// kept, and the last residual is that of the state after it.
 ///
 /// On several processes every member is collective. J is that of the whole mesh, on the root; the sweep
 /// begins at the border of every process with δf = 0. The fixed points are the same, the iterates are not.

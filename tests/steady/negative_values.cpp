@@ -1,0 +1,117 @@
+// Rows with negative values made nonnegative, with the moments that they had.
+#include <apsis/steady/negative_values.hpp>
+
+#include "gas_problem.hpp"
+
+#include <apsis/core/errors.hpp>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <support/property.hpp>
+
+namespace negative_values_test {
+namespace {
+
+using apsis::field;
+
+std::shared_ptr<const apsis::relaxation_model> make_broadwell() {
+  const auto& entry = apsis::find_model("broadwell");
+  std::shared_ptr<const apsis::model> made = entry.make(apsis::default_config(entry));
+  return {made, made->as_relaxation()};
+}
+
+std::vector<double> moments_of(const apsis::relaxation_model& equation, const field& f) {
+  std::vector<double> omega(static_cast<std::size_t>(equation.moment_count()));
+  equation.moments(f.row(0), omega.data());
+  return omega;
+}
+
+/// A moving gas of one cell.
+field moving_gas(const apsis::relaxation_model& equation) {
+  const int d = equation.velocities().dimensions();
+  std::vector<double> omega(static_cast<std::size_t>(equation.moment_count()), 0.0);
+  omega[0] = 1.2;
+  omega[1] = 1.2 * 0.4;
+  omega[static_cast<std::size_t>(d + 1)] = 0.5 * 1.2 * (3.0 * 0.9 + 0.4 * 0.4);
+  field f(1, equation.components());
+  EXPECT_TRUE(equation.equilibrium(omega.data(), f.row(0)));
+  return f;
+}
+
+}  // namespace
+
+TEST(negative_values, of_a_gas_are_removed_with_its_moments_kept) {
+  for (const char* model : {"bgk", "shakhov", "es-bgk"})
+    for (const int d : {1, 2, 3}) {
+      const auto equation = make_gas(model, 1, {6.0, d == 3 ? 10 : 16}, d);
+      const field gas = moving_gas(*equation);
+      check_property("moments", [&] {
+        field f = gas;
+        // Up to a millionth of the largest value, also in the tails, where f is smaller than that.
+        std::int64_t negative = 0;
+        for (int k = 0; k < f.components(); ++k)
+          if (*rc::gen::inRange(0, 5) == 0) {
+            f.row(0)[k] = -*rc::gen::element(1e-6, 1e-9, 1e-13, 1e-200) * (1.0 + k % 3);
+            ++negative;
+          }
+        const std::vector<double> before = moments_of(*equation, f);
+        // Bumps of another kind may leave no temperature.
+        RC_PRE(equation->as_gas()->molecules().state(before.data()).admissible());
+        const apsis::removed_values removed = remove_negative_values(*equation, {0}, f);
+        RC_ASSERT(removed.count == negative);
+        const std::vector<double> after = moments_of(*equation, f);
+        for (std::size_t i = 0; i < after.size(); ++i)
+          RC_ASSERT(std::abs(after[i] - before[i]) < 2e-14 * 3.0);
+        for (int k = 0; k < f.components(); ++k) RC_ASSERT(f.row(0)[k] >= 0.0);
+      });
+    }
+}
+
+TEST(negative_values, change_a_gas_by_their_size_alone) {
+  const auto equation = make_gas("bgk", 1, {6.0, 16}, 2);
+  const field gas = moving_gas(*equation);
+  field f = gas;
+  f.row(0)[0] = -1e-9;  // a corner, where the gas has less than 1e-13
+  const apsis::removed_values removed = remove_negative_values(*equation, {0}, f);
+  EXPECT_EQ(removed.count, 1);
+  EXPECT_EQ(removed.lowest, -1e-9);
+  for (int k = 0; k < f.components(); ++k) EXPECT_NEAR(f.row(0)[k], gas.row(0)[k], 1e-7);
+}
+
+TEST(negative_values, of_discrete_velocities_are_mixed_with_the_equilibrium) {
+  const auto equation = make_broadwell();
+  field f(1, equation->components());
+  for (int k = 0; k < f.components(); ++k) f.row(0)[k] = 1.0 + k;
+  f.row(0)[0] = -1e-3;
+  const std::vector<double> before = moments_of(*equation, f);
+  EXPECT_EQ(remove_negative_values(*equation, {0}, f).count, 1);
+  const std::vector<double> after = moments_of(*equation, f);
+  for (std::size_t i = 0; i < after.size(); ++i)
+    EXPECT_NEAR(after[i], before[i], 1e-14 * std::abs(before[i]));
+  EXPECT_NEAR(f.row(0)[0], 0.0, 1e-15);
+  EXPECT_GE(f.row(0)[0], 0.0);
+}
+
+TEST(negative_values, leave_other_rows_and_cells_as_they_are) {
+  const auto equation = make_gas("bgk", 1, {6.0, 16}, 1);
+  field f(3, equation->components());
+  for (int cell = 0; cell < 3; ++cell)
+    for (int k = 0; k < f.components(); ++k) f.row(cell)[k] = moving_gas(*equation).row(0)[k];
+  f.row(2)[3] = -1e-5;
+  const field before = f;
+  EXPECT_EQ(remove_negative_values(*equation, {0, 1}, f).count, 0);
+  for (int cell = 0; cell < 3; ++cell)
+    for (int k = 0; k < f.components(); ++k) EXPECT_EQ(f.row(cell)[k], before.row(cell)[k]);
+}
+
+TEST(negative_values, refuse_a_row_without_equilibrium) {
+  const auto equation = make_gas("bgk", 1, {6.0, 16}, 1);
+  field f(1, equation->components());
+  for (int k = 0; k < f.components(); ++k) f.row(0)[k] = -1.0;
+  EXPECT_THROW(remove_negative_values(*equation, {0}, f), apsis::numerical_error);
+}
+
+}  // namespace negative_values_test

@@ -318,6 +318,7 @@ TEST_P(strong_flows, are_nonnegative_with_the_limiter_and_have_the_tolerance) {
   EXPECT_GE(run.last().min_value, 0.0);
   EXPECT_LE(run.last().residual.front(), 1e-8);
   EXPECT_LE(run.step(), 160);
+  EXPECT_LE(run.last().change, 1e-8);
   EXPECT_LT(found(name, more).last().min_value, 0.0);
 }
 

@@ -141,7 +141,7 @@ void steady_iterations::log_damping(int damping) {
 }
 
 void steady_iterations::log_removed(const steady_iteration& done) {
-  if (const removed_values& removed = done.removed; removed.count > 0)
+  if (const removed_values& removed = done.removed; done.converged && removed.count > 0)
     log::info(fmt::format(
         "{} values below 0, the smallest {:.2g}, are set to 0 with the moments of their cells kept; "
         "the residual is then {:.2g}",

@@ -321,7 +321,8 @@ struct steady_solver::impl {
     now.change = largest_relative_change();
   }
 
-  /// Removes what the tolerance leaves below 0, if the steady state is not negative.
+  /// Removes what the tolerance leaves below 0, if the steady state is not negative. Where the residual is
+  /// then above the tolerance, more iterations follow.
   void remove_negatives(field& f, steady_iteration& now) {
     if (!is_nonnegative(equation, builder)) return;
     removed_values& removed = now.removed;
@@ -331,6 +332,7 @@ struct steady_solver::impl {
     if (removed.count == 0) return;
     compute_residual(f);
     if (reference > 0.0) now.residual = norms(f)[0] / reference;
+    now.converged = now.residual <= options.tolerance || now.rounding;
   }
 
   steady_iteration iterate(field& f) {

@@ -46,7 +46,7 @@ struct steady_iteration {
 ///
 /// With a limiter (problem_builder::keeps_sign()), and a model whose targets are not negative, no steady state
 /// is negative. Values that the tolerance leaves below 0 are then set to 0 with the moments of their cells
-/// kept, and the last residual is that of the state after it.
+/// kept; the state after it has the tolerance.
 ///
 /// On several processes every member is collective. J is that of the whole mesh, on the root; the sweep
 /// begins at the border of every process with δf = 0. The fixed points are the same, the iterates are not.

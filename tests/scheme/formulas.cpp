@@ -55,6 +55,7 @@ template <class N>
 edges edges_of(const std::string& scheme, const stencil5& u, bool forward) {
   if (scheme == "teno5") return weno5_edges<scalar::weights_teno, N>(u, forward);
   if (scheme == "weno5-z") return weno5_edges<scalar::weights_z, N>(u, forward);
+  if (scheme == "weno5-z-smooth") return weno5_edges<scalar::weights_z_smooth, N>(u, forward);
   if (scheme == "weno5-js") return weno5_edges<scalar::weights_js, N>(u, forward);
   edges of{};
   if (scheme == "upwind1") {
@@ -72,7 +73,7 @@ edges edges_of(const std::string& scheme, const stencil5& u, bool forward) {
 }  // namespace
 
 TEST(formulas, edges_are_those_of_single_numbers) {
-  for (const std::string name : {"upwind1", "upwind5", "weno5-js", "weno5-z"})
+  for (const std::string name : {"upwind1", "upwind5", "weno5-js", "weno5-z", "weno5-z-smooth"})
     check_property(name, [&name] {
       const int width = *rc::gen::inRange(1, 28), cells = *rc::gen::inRange(1, 9);
       random_source random(*rc::gen::arbitrary<std::uint32_t>());

@@ -28,14 +28,14 @@ std::string cause_of(const numerical_error& failure) {
   return failure.problem().substr(0, failure.problem().find("; "));
 }
 
-/// Warns of weights that depend on f. A limiter is weak enough to settle.
+/// Warns of weights that may change without end. A limiter is weak enough to settle.
 void warn_of_weights(const run_setup& setup) {
   if (!setup.has_space()) return;
   const auto& space = setup.config().space;
-  if (!find_reconstruction(space.reconstruction).linear)
+  if (!find_reconstruction(space.reconstruction).settles)
     log::warning(
         fmt::format("the iteration may never settle where f jumps along rays (the weights of {} depend "
-                    "on f); write space.reconstruction = \"upwind5\", or leave it out",
+                    "on f); write space.reconstruction = \"upwind5\" or \"weno5-z-smooth\"",
                     space.reconstruction));
 }
 

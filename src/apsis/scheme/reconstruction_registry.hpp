@@ -11,10 +11,11 @@ namespace apsis {
 /// A reconstruction scheme: a file of scheme/reconstructions/ defines `extern
 /// const reconstruction_entry reconstruction_<file>`.
 struct reconstruction_entry {
-  std::string name;                           ///< "weno5-z"
-  std::string description;                    ///< one line
-  std::string source;                         ///< citation
-  bool linear = false;                        ///< whether edge values are linear in the data
+  std::string name;         ///< "weno5-z"
+  std::string description;  ///< one line
+  std::string source;       ///< citation
+  bool linear = false;      ///< whether edge values are linear in the data
+  bool settles = false;     ///< whether steady states are found also where f jumps along rays
   std::unique_ptr<reconstruction> (*make)();  ///< makes an instance; schemes have no parameters
 };
 

@@ -97,11 +97,11 @@ APSIS_FORMULA smoothness<N> scale(const smoothness<N>& s, N delta) {
   return {fma(s.s0, by, least), fma(s.s1, by, least), fma(s.s2, by, least)};
 }
 
-/// Indicators scaled with a δ relative to the data, so that a scheme is scale-invariant: variations below a
-/// thousandth of the value count as smooth, even where the first two derivatives vanish together.
+/// Indicators scaled with δ = share u², so that a scheme is scale-invariant: variations below √share of the
+/// value count as smooth, even where the first two derivatives vanish together.
 template <class Weights, class N>
-APSIS_FORMULA smoothness<N> relative_to_data(const window<Weights, N>& u) {
-  return scale(indicators(u), fma(1e-6 * u.here, u.here, N(1e-200)));
+APSIS_FORMULA smoothness<N> relative_to_data(const window<Weights, N>& u, double share = 1e-6) {
+  return scale(indicators(u), fma(share * u.here, u.here, N(1e-200)));
 }
 
 /// Base of weights with these indicators. They are correct for data of any size.

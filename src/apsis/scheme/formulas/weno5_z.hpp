@@ -23,6 +23,15 @@ struct weights_z : weno5::weights_relative_to_data {
   }
 };
 
+/// weights_z with δ = u²: jumps by less than the value count as smooth. The weights hardly change where f
+/// jumps along rays, so that iterations to a steady state settle there.
+struct weights_z_smooth : weights_z {
+  template <class Window>
+  static APSIS_FORMULA auto smoothness(const Window& u) {
+    return weno5::relative_to_data(u, 1.0);
+  }
+};
+
 }  // namespace apsis::APSIS_NUMBERS
 APSIS_AFTER_FORMULAS();
 

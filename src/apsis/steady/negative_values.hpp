@@ -8,7 +8,7 @@
 
 namespace apsis {
 
-/// What remove_negative_values() removed.
+/// The values that remove_negative_values() removed.
 struct removed_values {
   std::int64_t count = 0;  ///< negative values
   double lowest = 0.0;     ///< the smallest of them

@@ -66,7 +66,7 @@ double global_highest(communicator& processes, double mine) {
 
 bool is_nonnegative(const relaxation_model& equation, const problem_builder& space) {
   return equation.positive() && equation.collisions_keep_sign() && equation.why_signed().empty() &&
-         space.keeps_sign();
+         !equation.has_source() && !space.source() && space.keeps_sign() && space.collisions().reach == 0;
 }
 
 struct steady_solver::impl {

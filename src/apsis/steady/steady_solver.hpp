@@ -19,10 +19,10 @@ struct steady_options {
   int depth = 3;            ///< images that Anderson's mixture remembers
 };
 
-/// Returns whether steady states are nonnegative: the model is positive, its targets are not negative, and
-/// the fluxes of `space` are limited or of first order. In the cell with the smallest value of a component,
-/// T(f) is then at least that of first-order upwind fluxes, so that the value is at least a mean of its
-/// upstream neighbours and of the target.
+/// Returns whether steady states are nonnegative: the model is positive, its targets are not negative, there
+/// is no source, cells collide by themselves, and the fluxes of `space` are limited or of first order. In the
+/// cell with the smallest value of a component, T(f) is then at least that of first-order upwind fluxes, so
+/// that the value is at least a mean of its upstream neighbours and of the target.
 bool is_nonnegative(const relaxation_model& equation, const problem_builder& space);
 
 /// One iteration of steady_solver. Dimensionless.

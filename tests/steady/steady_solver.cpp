@@ -200,8 +200,8 @@ TEST_P(heated, gas_between_walls_of_two_temperatures_settles) {
 INSTANTIATE_TEST_SUITE_P(gases, heated, testing::ValuesIn(all_enclosed()));
 
 TEST(steady_solver, settles_with_few_velocities_whose_equilibria_have_a_heat_flux) {
-  // Eight velocities miss 5 % of a Maxwellian. The heat flux of a moving one is then not 0, so that the target
-  // of Shakhov's model is not the equilibrium.
+  // Eight velocities miss 5 % of a Maxwellian. The heat flux of a moving one is then not 0, so that the
+  // target of Shakhov's model is not the equilibrium.
   for (const char* model : {"bgk", "shakhov", "es-bgk"})
     for (const int space : {2, 3}) {
       apsis::velocity_config velocity{5.0, 8};

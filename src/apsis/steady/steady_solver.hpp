@@ -32,9 +32,9 @@ struct steady_iteration {
   /// Largest change δω_i of a moment in the correction of this iteration, relative to its scale
   /// (model::invariant_scales()).
   double change = 0.0;
-  int damping = 0;         ///< damping::strength() of its J
-  bool rounding = false;   ///< whether the residual is that of rounding
-  bool converged = false;  ///< whether f has the tolerance; it is left as it is, but for `removed`
+  int damping = 0;              ///< damping::strength() of its J
+  bool rounding = false;        ///< whether the residual is that of rounding
+  bool converged = false;       ///< whether f has the tolerance; it is left as it is, but for `removed`
   removed_values removed = {};  ///< by rounding and tolerance, where steady_solver keeps f nonnegative
 };
 
@@ -44,9 +44,9 @@ struct steady_iteration {
 /// mixes images by Anderson's method. Fixed points are exactly R = 0: J and L decide on the speed alone.
 /// Moments that nothing changes, such as the mass between walls, keep their sums.
 ///
-/// With a limiter (problem_builder::keeps_sign()), and a model whose targets are not negative, no steady state
-/// is negative. Values that the tolerance leaves below 0 are then set to 0 with the moments of their cells
-/// kept; the state after it has the tolerance.
+/// With a limiter (problem_builder::keeps_sign()), and a model whose targets are not negative, no steady
+/// state is negative. Values that the tolerance leaves below 0 are then set to 0 with the moments of their
+/// cells kept; the state after it has the tolerance.
 ///
 /// On several processes every member is collective. J is that of the whole mesh, on the root; the sweep
 /// begins at the border of every process with δf = 0. The fixed points are the same, the iterates are not.
@@ -84,9 +84,9 @@ class steady_solver {
   /// Continues iterations with a unit of residuals that another solver had.
   void set_reference(double residual);
 
-  /// Iterates until convergence, calling `watch` after every iteration. Begins again with f of the start and a
-  /// stronger pseudo-time term where iterate() fails, other than by a stall. Throws numerical_error where the
-  /// strongest one does not help, and after the last of options.iterations.
+  /// Iterates until convergence, calling `watch` after every iteration. Begins again with f of the start and
+  /// a stronger pseudo-time term where iterate() fails, other than by a stall. Throws numerical_error where
+  /// the strongest one does not help, and after the last of options.iterations.
   steady_iteration solve(field& f, const std::function<void(const steady_iteration&)>& watch = {});
 
  private:

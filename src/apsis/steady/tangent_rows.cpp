@@ -134,8 +134,7 @@ bool tangent_rows::set_target(const std::vector<double>& s, double size, aligned
   double cut = 0.0;
   moved = s_;
   for (std::size_t i = 0; i < s.size(); ++i) moved[i] += size * s[i];
-  const bool known =
-      equation_.target(omega_.data(), moved.data(), equilibrium_.data(), 0.0, row.data(), cut);
+  const bool known = equation_.target(omega_.data(), moved.data(), equilibrium_.data(), 0.0, row.data(), cut);
   if (!known) row = equilibrium_;
   return known;
 }

@@ -1,17 +1,16 @@
 #include <apsis/steady/steady_solver.hpp>
 
 #include <apsis/core/errors.hpp>
-#include <apsis/core/exact_sum.hpp>
 #include <apsis/core/index.hpp>
 #include <apsis/exec/agreement.hpp>
 #include <apsis/exec/global_sum.hpp>
 #include <apsis/exec/parallel.hpp>
 #include <apsis/exec/profile.hpp>
-#include <apsis/model/gas_model.hpp>
 #include <apsis/semidiscrete/gathered_cells.hpp>
 #include <apsis/steady/anderson.hpp>
 #include <apsis/steady/cell_links.hpp>
 #include <apsis/steady/damping.hpp>
+#include <apsis/steady/internal/cell_measures.hpp>
 #include <apsis/steady/macroscopic_system.hpp>
 #include <apsis/steady/octant_sweep.hpp>
 
@@ -19,9 +18,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <cstdint>
 #include <limits>
-#include <optional>
 #include <utility>
 
 #include <fmt/format.h>
@@ -58,10 +55,6 @@ std::vector<double> checked_epsilon(const problem_builder& space) {
   return found;
 }
 
-double global_highest(communicator& processes, double mine) {
-  return -global_lowest(processes, -mine);
-}
-
 }  // namespace
 
 bool is_nonnegative(const relaxation_model& equation, const problem_builder& space) {
@@ -80,6 +73,7 @@ struct steady_solver::impl {
         problem(operators),
         links(builder.space()),
         count(equation.moment_count()),
+        cells(equation, builder, links),
         system(equation, builder, links),
         sweep(equation, builder.space(), links),
         mixture(given.depth),
@@ -88,107 +82,22 @@ struct steady_solver::impl {
         of_transport(omega.size()),
         changes_of_moments(omega.size()),
         rates(at(start.cells())) {
-    moments_of(start, omega);
-    totals = sums(omega);
-    scales = largest_scales();
-    cells = global_count(processes, static_cast<std::int64_t>(links.cells().size()));
-  }
-
-  void moments_of(const field& u, std::vector<double>& to) const {
-    parallel_blocks(u.cells(), cells_of_a_block, [&](int begin, int end) {
-      equation.moments_of_rows(u.row(begin), u.stride(), end - begin, to.data() + at(begin * count));
-    });
-  }
-  /// Sums over the cells of all processes.
-  std::vector<double> sums(const std::vector<double>& of) const {
-    std::vector<exact_sum> all(at(count));
-    for (const int cell : links.cells())
-      for (std::size_t i = 0; i < all.size(); ++i) all[i].add(of[at(cell * count) + i]);
-    return global_values(processes, all);
-  }
-  /// Scales of the moments of a cell, or their absolute values where the model has other invariants.
-  std::vector<double> scales_of(const double* moments) const {
-    std::vector<double> found(moments, moments + count);
-    if (equation.invariants().size() == at(count)) {
-      equation.invariant_scales({moments, at(count)}, found.data());
-    } else {
-      for (double& x : found) x = std::abs(x);
-    }
-    return found;
-  }
-  std::vector<double> largest_scales() const {
-    std::vector<double> largest(at(count), std::numeric_limits<double>::min());
-    for (const int cell : links.cells()) {
-      const auto here = scales_of(omega.data() + at(cell * count));
-      for (std::size_t i = 0; i < largest.size(); ++i) largest[i] = std::max(largest[i], here[i]);
-    }
-    for (double& scale : largest) scale = global_highest(processes, scale);
-    return largest;
+    cells.moments_of(start, omega);
+    totals = cells.sums(omega);
+    scales = cells.largest_scales(omega);
   }
 
   /// r ← T(f) + Q(f)/ε, with the moments of f and of T(f), and the rates.
   void compute_residual(const field& f) {
     const std::array<target<field, double>, 1> fresh = {{{&r, 0.0, 1.0, true}}};
     problem.add_transport(0.0, f, fresh);
-    moments_of(f, omega);
-    moments_of(r, of_transport);
+    cells.moments_of(f, omega);
+    cells.moments_of(r, of_transport);
     const std::array<target<field, double>, 1> added = {{{&r, 0.0, 1.0, false}}};
     problem.add_collision(0.0, f, added);
     problem.throw_late_errors();
     for (const int cell : links.cells())
       rates[at(cell)] = equation.rate(omega.data() + at(cell * count)) / epsilon[at(cell)];
-  }
-
-  /// {‖r‖, ‖σ f‖}.
-  std::array<double, 2> norms(const field& f) const {
-    std::vector<std::array<double, 2>> of_cells(links.cells().size());
-    parallel_blocks(static_cast<int>(links.cells().size()), cells_of_a_block, [&](int begin, int end) {
-      for (int n = begin; n < end; ++n) {
-        const int cell = links.cells()[at(n)];
-        double residual = 0.0, collisions = 0.0;
-        for (int k = 0; k < f.components(); ++k) {
-          const double x = r.row(cell)[k], y = rates[at(cell)] * f.row(cell)[k];
-          residual += x * x;
-          collisions += y * y;
-        }
-        of_cells[at(n)] = {residual, collisions};
-      }
-    });
-    std::array<exact_sum, 2> all;
-    for (const auto& [x, y] : of_cells) {
-      all[0].add(x);
-      all[1].add(y);
-    }
-    const std::vector<double> squares = global_values(processes, all);
-    return {std::sqrt(squares[0]), std::sqrt(squares[1])};
-  }
-
-  /// The shortest extent L of the domain.
-  double extent() const {
-    const grid& mesh = builder.whole_mesh();
-    double shortest = infinite;
-    for (int d = 0; d < mesh.dimensions(); ++d)
-      shortest = std::min(shortest, mesh.spacing(d) * mesh.cells(d));
-    return shortest;
-  }
-  /// The lowest √T of the first cell of a process, of a gas; the largest speed of other models.
-  double thermal_speed() const {
-    double speed = 0.0;
-    if (const gas_model* gas = equation.as_gas()) {
-      speed = infinite;
-      if (!links.cells().empty())
-        speed = std::sqrt(gas->molecules().state(omega.data() + at(links.cells().front() * count)).T);
-      return global_lowest(processes, speed);
-    }
-    for (int d = 0; d < builder.mesh().dimensions(); ++d)
-      for (const double v : equation.speeds(d)) speed = std::max(speed, std::abs(v));
-    return speed;
-  }
-  /// √π/2 · L/λ with the mean rate of collisions.
-  double rarefaction_parameter() const {
-    std::array<exact_sum, 1> rate;
-    for (const int cell : links.cells()) rate[0].add(rates[at(cell)]);
-    return global_values(processes, rate)[0] / static_cast<double>(cells) / (std::sqrt(2.0) * flight_rate);
   }
 
   void build_system_if_due(double relative) {
@@ -208,33 +117,6 @@ struct steady_solver::impl {
     }
     if (built && relative <= share_to_keep_system) mixture.clear();
     built = true;
-  }
-
-  /// Returns the largest change of a moment relative to its scale.
-  double largest_relative_change() const {
-    double largest = 0.0;
-    for (const int cell : links.cells()) {
-      const auto here = scales_of(omega.data() + at(cell * count));
-      for (std::size_t i = 0; i < at(count); ++i) {
-        const double change = std::abs(changes_of_moments[at(cell * count) + i]);
-        const double relative = change / std::max(here[i], std::numeric_limits<double>::min());
-        if (!(relative <= largest)) largest = std::isnan(relative) ? infinite : relative;
-      }
-    }
-    return global_highest(processes, largest);
-  }
-
-  /// Returns the share of the correction that changes density and energy of no cell too much.
-  double share_of_correction() const {
-    double share = 1.0;
-    if (equation.as_gas() == nullptr) return share;
-    for (const int cell : links.cells())
-      for (const std::size_t i : {std::size_t{0}, at(count - 1)}) {
-        const std::size_t k = at(cell * count) + i;
-        share = std::min(
-            share, damping::largest_change * omega[k] / std::max(std::abs(changes_of_moments[k]), 1e-300));
-      }
-    return global_lowest(processes, share);
   }
 
   /// r ← r + σ (E(ω + share δω) − E(ω)); less of δω where that has no equilibrium.
@@ -264,7 +146,7 @@ struct steady_solver::impl {
   void update(field& f, bool mix) {
     const auto section = timed(kernel::mixture, f.components());
     std::vector<double> of_change(omega.size());
-    moments_of(r, of_change);
+    cells.moments_of(r, of_change);
     parallel_blocks(f.cells(), cells_of_a_block, [&](int begin, int end) {
       double* u = f.row(begin);
       const double* delta = r.row(begin);
@@ -275,8 +157,8 @@ struct steady_solver::impl {
       mixture.mix(processes, gather_cells(builder, std::move(of_change), count), f);
     }
     if (equation.as_gas() == nullptr || !system.conserved()[0]) return;
-    moments_of(f, omega);
-    const double factor = totals[0] / sums(omega)[0];
+    cells.moments_of(f, omega);
+    const double factor = totals[0] / cells.sums(omega)[0];
     parallel_blocks(f.cells(), cells_of_a_block, [&](int begin, int end) {
       double* u = f.row(begin);
       for (std::size_t k = 0; k < at((end - begin) * f.stride()); ++k) u[k] *= factor;
@@ -315,10 +197,10 @@ struct steady_solver::impl {
   /// Sets δω and its size.
   void correct_moments(steady_iteration& now) {
     build_system_if_due(now.residual);
-    std::vector<double> missing = sums(omega);
+    std::vector<double> missing = cells.sums(omega);
     for (std::size_t i = 0; i < missing.size(); ++i) missing[i] = totals[i] - missing[i];
     changes_of_moments = system.solve(of_transport, missing);
-    now.change = largest_relative_change();
+    now.change = cells.largest_relative_change(omega, changes_of_moments);
   }
 
   /// Removes what the tolerance leaves below 0, if the steady state is not negative. Where the residual is
@@ -331,16 +213,17 @@ struct steady_solver::impl {
     removed.lowest = global_lowest(processes, removed.lowest);
     if (removed.count == 0) return;
     compute_residual(f);
-    if (reference > 0.0) now.residual = norms(f)[0] / reference;
+    if (reference > 0.0) now.residual = cells.norm(r) / reference;
     now.converged = now.residual <= options.tolerance || now.rounding;
   }
 
   steady_iteration iterate(field& f) {
     compute_residual(f);
-    const auto [residual, collisions] = norms(f);
+    const double residual = cells.norm(r), collisions = cells.weighted_norm(f, rates);
     if (number == 0) {
-      flight_rate = thermal_speed() / extent();
-      mixes_at_once = rarefaction_parameter() < rare;
+      flight_rate = cells.thermal_speed(omega) / cells.extent();
+      // √π/2 · L/λ
+      mixes_at_once = cells.mean(rates) / (std::sqrt(2.0) * flight_rate) < rare;
     }
     if (std::isnan(reference)) reference = residual;
     steady_iteration now;
@@ -372,7 +255,7 @@ struct steady_solver::impl {
       remove_negatives(f, now);
       return now;
     }
-    const double share = share_of_correction();
+    const double share = cells.largest_share(omega, changes_of_moments, damping::largest_change);
     run_collectively(processes, [&] {
       const auto section = timed(kernel::implicit, f.components());
       add_correction(share);
@@ -391,7 +274,7 @@ struct steady_solver::impl {
   semidiscrete_problem& problem;
   cell_links links;
   int count;
-  std::int64_t cells = 0;  ///< of the gas, on all processes
+  cell_measures cells;
   macroscopic_system system;
   octant_sweep sweep;
   anderson mixture;
@@ -422,7 +305,7 @@ bool steady_solver::begin_again() {
 
 double steady_solver::relative_residual(const field& f) {
   impl_->compute_residual(f);
-  return impl_->norms(f)[0] / impl_->reference;
+  return impl_->cells.norm(impl_->r) / impl_->reference;
 }
 
 double steady_solver::flight_time() const {

@@ -39,7 +39,6 @@ constexpr double share_to_mix = 0.05;
 constexpr double rare = 5.0;
 /// A residual of this multiple of the start does not come back.
 constexpr double hopeless = 1e6;
-constexpr double infinite = std::numeric_limits<double>::infinity();
 
 /// Returns ε of the cells. Throws input_error where there is no steady state to solve for.
 std::vector<double> checked_epsilon(const problem_builder& space) {

@@ -338,4 +338,26 @@ TEST(messages_and_results, do_not_obey_a_case) {
   }
 }
 
+TEST(safety_of_results, iterations_that_were_not_enough_continue_from_their_checkpoint) {
+  const work_folder folder;
+  const auto run = [&](const std::string& iterations, std::vector<std::string> more) {
+    std::vector<std::string> all = {
+        "run", "gas/couette", "space.cells=8", "steady.iterations=" + iterations, "--out", "o"};
+    all.insert(all.end(), more.begin(), more.end());
+    return run_apsis(folder, all);
+  };
+  const outcome first = run("5", {});
+  EXPECT_EQ(first.code, 3);
+  EXPECT_THAT(first.err, HasSubstr("no steady state in 5 iterations"));
+  const outcome second = run("100", {"--restart", "o/checkpoint.h5"});
+  EXPECT_EQ(second.code, 0) << second.err;
+  // Every iteration is in the history once.
+  std::istringstream history(read(folder.path() / "o/history.csv"));
+  std::string line;
+  std::getline(history, line);
+  long step = 0;
+  for (; std::getline(history, line); ++step) EXPECT_EQ(std::stol(line), step);
+  EXPECT_GT(step, 10);
+}
+
 }  // namespace safety_of_results_test

@@ -299,6 +299,7 @@ run_end run_session::run() {
     loop();
   } catch (const numerical_error& failure) {
     if (options_.stepped) options_.stepped();
+    if (simulation_.may_continue()) records_->add_step(simulation_.last());
     save_failure(failure.what());
     throw;
   }
@@ -450,7 +451,7 @@ void run_session::write_results(result_folder* folder, run_end end, const std::s
   };
   by_all("solution.h5",
          [&](const std::string& path) { write_solution(path, final_state, options_.processes); });
-  if (end != run_end::failed) {
+  if (end != run_end::failed || simulation_.may_continue()) {
     // Without the snapshot of the current time, which the continued run would not have taken.
     if (end_ != run_end::complete || !before_end_) before_end_ = make_checkpoint(simulation_, *records_);
     by_all("checkpoint.h5",

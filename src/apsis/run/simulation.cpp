@@ -126,6 +126,10 @@ const step_record& simulation::advance() {
   return run.last;
 }
 
+bool simulation::may_continue() const {
+  return config().steady_state.tolerance && !impl_->inside_step;
+}
+
 const step_record& simulation::last() const {
   return impl_->run.last;
 }

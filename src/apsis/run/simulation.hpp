@@ -67,6 +67,9 @@ class simulation {
   /// that of the last good step; if a promise was broken, it is the state that broke it, and last() describes
   /// it.
   const step_record& advance();
+  /// Whether the run may continue from its state after advance() has thrown: all iterations to a steady state
+  /// were used.
+  bool may_continue() const;
   const step_record& last() const;  ///< record of the last step, or of the initial state
   run_summary summary() const;      ///< totals of all steps so far
 

@@ -70,3 +70,14 @@ def test_it_says_what_it_cannot_do():
     plane = apsis.KineticProblem("discrete-velocity", cells=10, domain=(0, 1), epsilon=1)
     with pytest.raises(apsis.InputError, match="no steady solver"):
         apsis.solve_steady(plane, np.ones(plane.shape))
+
+
+def test_with_positivity_the_state_is_not_negative():
+    hot = [{"kind": "diffuse", "T": 9}, {"kind": "diffuse", "T": 1}]
+    given = {"parameters": {"velocity_dimensions": 1, "degrees_of_freedom": 3}, "velocities": (18, 48), "boundary": hot, "cells": 30}
+    states = {}
+    for positivity in (False, True):
+        problem = plates(positivity=positivity, **given)
+        states[positivity] = apsis.solve_steady(problem, problem.state(rho=1, T=1)).u
+    assert states[False].min() < 0 <= states[True].min()
+    np.testing.assert_allclose(states[True], states[False], atol=1e-3 * states[False].max())

@@ -78,6 +78,14 @@ class SteadyStates(Folder):
         self.write("channel.toml", CHANNEL)
         self.expect_close("channel.toml", counts=(2, 5))
 
+    def test_a_nonnegative_state_between_cold_and_hot_plates(self):
+        # Values that the tolerance leaves below 0 lie on several processes.
+        self.expect_close("gas/fourier", "parameters.delta=10", "boundary.left.T=9", "velocity.max=18", "velocity.points=48",
+                          "model.name=es-bgk", "space.cells=24", "space.limiter=positivity", "steady.tolerance=1e-9", counts=(2, 3), most=6)
+        for folder in ("one", "on-2", "on-3"):
+            with open(self.folder / folder / "history.csv", encoding="utf-8") as file:
+                self.assertGreaterEqual(float(list(csv.DictReader(file))[-1]["min_value"]), 0)
+
     def test_a_restart_on_another_number_of_processes(self):
         self.found(1, *CAVITY, out="one")
         self.completed(2, "run", *CAVITY, "steady.tolerance=1e-3", "--out", "coarse")

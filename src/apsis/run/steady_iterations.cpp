@@ -20,8 +20,6 @@ namespace {
 /// Marches before a failure is final, and the length of the first one in times of flight through the domain.
 constexpr int most_marches = 3;
 constexpr double flights_of_first_march = 5.0;
-/// Stronger pseudo-time terms that are tried before.
-constexpr int most_new_beginnings = 4;
 
 /// The message without its advice, which is that for a run in time.
 std::string cause_of(const numerical_error& failure) {
@@ -32,7 +30,7 @@ std::string cause_of(const numerical_error& failure) {
 void warn_of_weights(const run_setup& setup) {
   if (!setup.has_space()) return;
   const auto& space = setup.config().space;
-  if (!find_reconstruction(space.reconstruction).settles)
+  if (const auto& scheme = find_reconstruction(space.reconstruction); !scheme.linear && !scheme.settles)
     log::warning(
         fmt::format("the iteration may never settle where f jumps along rays (the weights of {} depend "
                     "on f); write space.reconstruction = \"upwind5\" or \"weno5-z-smooth\"",
@@ -84,10 +82,10 @@ steady_iteration steady_iterations::iterate() {
   }
 }
 
-/// Begins again from the first state with a stronger pseudo-time term. Returns false where that was tried.
+/// Begins again from the first state with a stronger pseudo-time term. Returns false if there is none, or
+/// after a march.
 bool steady_iterations::begin_again(const numerical_error& failure) {
-  if (marches_ > 0 || begun_again_ == most_new_beginnings || !solver_->begin_again()) return false;
-  ++begun_again_;
+  if (marches_ > 0 || !solver_->begin_again()) return false;
   log::info(
       fmt::format("iteration {}: {}; begins again from the first state with a stronger pseudo-time term",
                   run_.march.step(), cause_of(failure)));

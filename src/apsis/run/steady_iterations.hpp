@@ -49,7 +49,6 @@ class steady_iterations final : public progression {
   std::optional<steady_solver> solver_;
   std::optional<interim_march> march_;  ///< between two attempts
   field first_;                         ///< the state of the first iteration
-  int begun_again_ = 0;                 ///< from that state, with a stronger pseudo-time term
   int marches_ = 0;                     ///< begun
   int damping_ = 0;                     ///< of the last iteration
   bool found_ = false;                  ///< the steady state

@@ -19,6 +19,7 @@ struct gas_end_of_segment {
   const boundary* side;        ///< of the surface
   position at;                 ///< where the segment meets the surface
   std::array<int, 3> cells{};  ///< of the segment, counted inwards; the last one repeated where it is shorter
+  bool copies = false;         ///< whether what enters is the row of the first cell
 };
 
 /// Neighbours of the cells of a domain, along every direction. Cells of other processes do not count.

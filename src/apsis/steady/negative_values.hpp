@@ -17,7 +17,7 @@ struct removed_values {
 /// Makes all rows of `cells` nonnegative. Their moments ω = ℛf change by rounding alone. A row of a gas
 /// becomes max(f, 0)(1 + α + β·c + γ|c|²) with the ω of f, or where that is negative too, and for other
 /// models, f + θ(E(ω) − f) with the least θ ∈ [0, 1]. Throws numerical_error for a cell where ω has no
-/// equilibrium. Dimensionless.
+/// equilibrium, with its number on this process. Dimensionless.
 removed_values remove_negative_values(const relaxation_model& equation, const std::vector<int>& cells,
                                       field& f);
 

@@ -162,7 +162,7 @@ void octant_sweep::pass(const octant& of, const strip& components, const std::ve
         const int end = links_.end_next_to(d, !lower, cell);
         // A copy of this row changes with it: no difference enters. A change of 0 would hold the row where
         // few collisions change it.
-        const bool copies = end >= 0 && links_.ends()[at(end)].side->cell_of_ghost(0, 1).has_value();
+        const bool copies = end >= 0 && links_.ends()[at(end)].copies;
         from.one = end < 0 || copies ? row : entering_.row(end);
         from.two = from.one;
         from.here = copies ? 0.0 : 1.0;

@@ -20,9 +20,9 @@ struct steady_options {
 };
 
 /// Returns whether steady states are nonnegative: the model is positive, its targets are not negative, there
-/// is no source, cells collide by themselves, and the fluxes of `space` are limited or of first order. In the
-/// cell with the smallest value of a component, T(f) is then at least that of first-order upwind fluxes, so
-/// that the value is at least a mean of its upstream neighbours and of the target.
+/// is no source, cells collide by themselves, and the fluxes of `space` are limited or of first order. Where
+/// the smallest value is negative, T(f) is then at least that of first-order upwind fluxes, so that T(f) +
+/// Q(f)/ε > 0 (docs/steady.md has the proof).
 bool is_nonnegative(const relaxation_model& equation, const problem_builder& space);
 
 /// One iteration of steady_solver. Dimensionless.

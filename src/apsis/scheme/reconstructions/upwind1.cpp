@@ -36,7 +36,6 @@ const reconstruction_entry reconstruction_upwind1 = {
     .description = "first-order upwind: monotone, positive and entropy-decaying up to CFL 1",
     .source = "Courant, Isaacson, Rees (1952)",
     .linear = true,
-    .settles = true,
     .make = []() -> std::unique_ptr<reconstruction> { return std::make_unique<upwind1>(); }};
 
 }  // namespace apsis

@@ -62,7 +62,6 @@ const reconstruction_entry reconstruction_upwind5 = {
     .description = "fifth-order linear upwind: for smooth solutions, without protection against oscillations",
     .source = "the linear weights of Jiang, Shu, JCP 126 (1996)",
     .linear = true,
-    .settles = true,
     .make = [] {
       return make_fifth_order(
           {.edges = [](auto... of) { HWY_DYNAMIC_DISPATCH(edges)(of...); },

@@ -339,6 +339,21 @@ TEST_P(strong_flows, are_nonnegative_with_the_limiter_and_have_the_tolerance) {
   EXPECT_LT(found(name, more).last().min_value, 0.0);
 }
 
+TEST(steady_run, with_a_source_and_the_limiter_is_nonnegative) {
+  const std::string jet =
+      "[model]\nname = \"bgk\"\nepsilon = 0.3\n[initial]\nrho = 1\nT = 1\n[space]\ncells = 30\n"
+      "formulation = \"finite-difference\"\n[boundary.left]\nkind = \"vacuum\"\n[boundary.right]\n"
+      "kind = \"vacuum\"\n[velocity]\nmax = 9\npoints = 40\n[source]\nrho = \"x < 0.2 ? 1 : 0\"\n"
+      "u = 1\nT = 0.5\n[steady]\ntolerance = 1e-8\n";
+  const auto lowest = [&](const std::string& limiter) {
+    simulation run(apsis::parse_case(jet, "jet.toml", {"space.limiter=" + limiter}));
+    while (!run.finished()) run.advance();
+    return run.last().min_value;
+  };
+  EXPECT_LT(lowest("none"), 0.0);
+  EXPECT_GE(lowest("positivity"), 0.0);
+}
+
 INSTANTIATE_TEST_SUITE_P(gases, strong_flows, testing::ValuesIn(all_strong_flows()));
 
 TEST(steady_run, settles_at_an_outflow_at_every_speed_and_rarefaction) {

@@ -271,9 +271,10 @@ run_session::run_session(const case_config& configured, session_options options)
 std::string run_session::promise_of_steady_state() const {
   const run_setup& setup = simulation_.setup();
   const relaxation_model* relaxes = setup.equation->as_relaxation();
-  return relaxes != nullptr && is_nonnegative(*relaxes, setup.builder())
-             ? "of the steady state f >= 0 is promised, of iterates nothing"
-             : "nothing is promised";
+  if (relaxes != nullptr && is_nonnegative(*relaxes, setup.builder()))
+    return "of the steady state f >= 0 is promised, of iterates nothing";
+  const std::string why = setup.builder().keeps_sign() ? setup.equation->why_signed() : "";
+  return "nothing is promised" + (why.empty() ? "" : "; " + why);
 }
 
 void run_session::resume(const std::string& path) {

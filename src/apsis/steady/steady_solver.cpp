@@ -58,7 +58,7 @@ std::vector<double> checked_epsilon(const problem_builder& space) {
 
 bool is_nonnegative(const relaxation_model& equation, const problem_builder& space) {
   return equation.positive() && equation.collisions_keep_sign() && equation.why_signed().empty() &&
-         !equation.has_source() && !space.source() && space.keeps_sign() && space.collisions().reach == 0;
+         !equation.has_source() && space.keeps_sign() && space.collisions().reach == 0;
 }
 
 struct steady_solver::impl {

@@ -19,8 +19,9 @@ struct steady_options {
   int depth = 3;            ///< images that Anderson's mixture remembers
 };
 
-/// Returns whether steady states are nonnegative: the model is positive, its targets are not negative, there
-/// is no source, cells collide by themselves, and the fluxes of `space` are limited or of first order. Where
+/// Returns whether steady states are nonnegative: the model is positive and has no source of its own, its
+/// targets are not negative, cells collide by themselves, and the fluxes of `space` are limited or of first
+/// order. A source of `space` must not be negative. Where
 /// the smallest value is negative, T(f) is then at least that of first-order upwind fluxes, so that T(f) +
 /// Q(f)/ε > 0 (docs/steady.md has the proof).
 bool is_nonnegative(const relaxation_model& equation, const problem_builder& space);

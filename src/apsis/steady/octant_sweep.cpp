@@ -7,41 +7,18 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <map>
 
 namespace apsis {
 namespace {
 
-constexpr int longest_strip = 64;
 /// Share of the slope in the value at an edge: between first order and the scheme of second order, ½.
-constexpr double slope = 0.25;
+constexpr double slope = 0.35;
 
-/// The terms of one direction: upstream values and their factors, relative to |v|/Δx.
-struct upstream {
-  double here = 1.0, first = 0.0, second = 0.0;
-  const double *one = nullptr, *two = nullptr;
-};
-
-/// row ← δ of a cell, for components begin … end−1.
-template <std::size_t directions>
-void advance_row(const std::array<upstream, 3>& terms, const std::array<const double*, 3>& speeds,
-                 double rate, int begin, int end, double* row) {
-  // Copies of what does not change: the compiler cannot know that the row is not among them.
-  std::array<upstream, directions> from;
-  std::array<const double*, directions> speed;
-  for (std::size_t d = 0; d < directions; ++d) {
-    from[d] = terms[d];
-    speed[d] = speeds[d];
-  }
-#pragma omp simd
-  for (int k = begin; k < end; ++k) {
-    double sum = row[k], factor = rate;
-    for (std::size_t d = 0; d < directions; ++d) {
-      sum += speed[d][k] * (from[d].first * from[d].one[k] + from[d].second * from[d].two[k]);
-      factor += speed[d][k] * from[d].here;
-    }
-    row[k] = sum / factor;
-  }
+/// Returns n · number / parts.
+int share_of(int n, int number, int parts) {
+  return static_cast<int>(std::int64_t{n} * number / parts);
 }
 
 }  // namespace
@@ -68,9 +45,7 @@ octant_sweep::octant_sweep(const relaxation_model& equation, const domain& space
     for (int d = 0; d < directions; ++d) up[at(d)] = equation.speeds(d)[at(k)] > 0.0;
     octant& of = found[up];
     of.up = up;
-    const bool goes_on =
-        k > 0 && up == last && of.strips.back().end == k && k - of.strips.back().begin < longest_strip;
-    if (goes_on)
+    if (k > 0 && up == last)
       of.strips.back().end = k + 1;
     else
       of.strips.push_back({k, k + 1});
@@ -111,7 +86,8 @@ void octant_sweep::solve(const field& f, const std::vector<double>& rates, field
   });
   for (const octant& of : octants_) {
     respond(of, f, r);
-    parallel_for(static_cast<int>(of.strips.size()), [&](int k) { pass(of, of.strips[at(k)], rates, r); });
+    const int threads = threads_here();
+    parallel_for(threads, [&](int k) { pass(of, of.part(k, threads), rates, r); });
   }
 }
 
@@ -133,7 +109,7 @@ void octant_sweep::respond(const octant& of, const field& f, const field& delta)
       for (std::size_t before = 0; before < begun; ++before) {
         const octant& other = octants_[before];
         if (here.where.upper != other.up[at(here.where.direction)]) continue;
-        for (const strip& some : other.strips)
+        for (const sweep_rows::strip& some : other.strips)
           for (int k = some.begin; k < some.end; ++k) own.state[at(k)] += changes[k];
         any = true;
       }
@@ -145,41 +121,57 @@ void octant_sweep::respond(const octant& of, const field& f, const field& delta)
   });
 }
 
-void octant_sweep::pass(const octant& of, const strip& components, const std::vector<double>& rates,
-                        field& r) const {
-  const int directions = links_.directions();
-  std::array<const double*, 3> speeds{};
-  for (int d = 0; d < directions; ++d) speeds[at(d)] = per_cell_[at(d)].data();
-  for (const int cell : of.order) {
-    std::array<upstream, 3> terms;
-    double* row = r.row(cell);
-    for (int d = 0; d < directions; ++d) {
-      upstream& from = terms[at(d)];
-      const bool lower = of.up[at(d)];
-      const int one = links_.next(d, !lower, cell);
-      const int two = one < 0 ? -1 : links_.next(d, !lower, one);
-      if (one < 0) {
-        const int end = links_.end_next_to(d, !lower, cell);
-        // A copy of this row changes with it: no difference enters. A change of 0 would hold the row where
-        // few collisions change it.
-        const bool copies = end >= 0 && links_.ends()[at(end)].copies;
-        from.one = end < 0 || copies ? row : entering_.row(end);
-        from.two = from.one;
-        from.here = copies ? 0.0 : 1.0;
-        from.first = end < 0 || copies ? 0.0 : 1.0;
-        continue;
-      }
-      from.here = 1.0 + slope;
-      from.one = r.row(one);
-      from.first = two < 0 ? 1.0 + slope : 1.0 + 2.0 * slope;
-      from.two = two < 0 ? from.one : r.row(two);
-      from.second = two < 0 ? 0.0 : -slope;
-    }
-    const auto advance = directions == 1   ? &advance_row<1>
-                         : directions == 2 ? &advance_row<2>
-                                           : &advance_row<3>;
-    advance(terms, speeds, rates[at(cell)], components.begin, components.end, row);
+/// Returns the strips with the components of one of so many equal parts.
+std::vector<sweep_rows::strip> octant_sweep::octant::part(int number, int parts) const {
+  int all = 0;
+  for (const auto& some : strips) all += some.end - some.begin;
+  // Relative to the next strip.
+  int begin = share_of(all, number, parts), end = share_of(all, number + 1, parts);
+  std::vector<sweep_rows::strip> found;
+  for (const auto& some : strips) {
+    const int length = some.end - some.begin;
+    if (begin < length && end > 0)
+      found.push_back({some.begin + std::max(begin, 0), some.begin + std::min(end, length)});
+    begin -= length;
+    end -= length;
   }
+  return found;
+}
+
+void octant_sweep::pass(const octant& of, std::span<const sweep_rows::strip> strips,
+                        const std::vector<double>& rates, field& r) const {
+  const int directions = links_.directions();
+  std::array<const double*, 3> lambda{};
+  for (int d = 0; d < directions; ++d) lambda[at(d)] = per_cell_[at(d)].data();
+  for (const int cell : of.order) {
+    std::array<sweep_rows::upstream, 3> terms;
+    double* row = r.row(cell);
+    for (int d = 0; d < directions; ++d) terms[at(d)] = terms_of(cell, d, of.up[at(d)], r);
+    sweep_rows::solve({terms.data(), at(directions)}, lambda, rates[at(cell)], strips, row);
+  }
+}
+
+/// The terms of a cell along one direction, for velocities that are positive or negative.
+sweep_rows::upstream octant_sweep::terms_of(int cell, int direction, bool up, const field& r) const {
+  sweep_rows::upstream from;
+  const int one = links_.next(direction, !up, cell);
+  if (one < 0) {
+    const int end = links_.end_next_to(direction, !up, cell);
+    // A copy of this row changes with it: no difference enters. A change of 0 would hold the row where few
+    // collisions change it.
+    const bool copies = end >= 0 && links_.ends()[at(end)].copies;
+    from.one = from.two = end < 0 || copies ? r.row(cell) : entering_.row(end);
+    from.here = copies ? 0.0 : 1.0;
+    from.first = end < 0 || copies ? 0.0 : 1.0;
+    return from;
+  }
+  const int two = links_.next(direction, !up, one);
+  from.here = 1.0 + slope;
+  from.one = r.row(one);
+  from.first = two < 0 ? 1.0 + slope : 1.0 + 2.0 * slope;
+  from.two = two < 0 ? from.one : r.row(two);
+  from.second = two < 0 ? 0.0 : -slope;
+  return from;
 }
 
 }  // namespace apsis

@@ -3,16 +3,18 @@
 #include <apsis/boundary/domain.hpp>
 #include <apsis/model/model.hpp>
 #include <apsis/steady/cell_links.hpp>
+#include <apsis/steady/sweep_rows.hpp>
 
 #include <array>
 #include <memory>
+#include <span>
 #include <vector>
 
 namespace apsis {
 
 /// An implicit step of upwind transport and relaxation, solved exactly by one pass in the direction of flight
 /// of every component: (L + σ) δ = r with L δ = Σ_k v_k ∂_k δ, whose value at the downstream edge of cell i
-/// is δ_i + ¼ (δ_i − δ_{i−1}), δ_i itself next to where the gas begins. Components whose velocities have
+/// is δ_i + 0.35 (δ_i − δ_{i−1}), δ_i itself next to where the gas begins. Components whose velocities have
 /// equal signs form an octant; one octant follows another, and what leaves at an end of the gas in one of
 /// them enters, by the boundary condition, in those that follow. Across periodic faces nothing enters.
 class octant_sweep {
@@ -28,20 +30,20 @@ class octant_sweep {
   void solve(const field& f, const std::vector<double>& rates, field& r);
 
  private:
-  /// Consecutive components of one octant.
-  struct strip {
-    int begin = 0, end = 0;
-  };
   struct octant {
     std::array<bool, 3> up{};  ///< whether the velocity is positive along each direction
-    std::vector<strip> strips;
+    std::vector<sweep_rows::strip> strips;
     std::vector<int> order;  ///< of the cells
+
+    std::vector<sweep_rows::strip> part(int number, int parts) const;
   };
   struct scratch;
 
   void set_order(octant& of) const;
   void respond(const octant& of, const field& f, const field& delta);
-  void pass(const octant& of, const strip& components, const std::vector<double>& rates, field& r) const;
+  void pass(const octant& of, std::span<const sweep_rows::strip> strips, const std::vector<double>& rates,
+            field& r) const;
+  sweep_rows::upstream terms_of(int cell, int direction, bool up, const field& r) const;
 
   const relaxation_model& equation_;
   const domain& space_;

@@ -1,0 +1,63 @@
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "apsis/steady/sweep_rows.cpp"
+#include <hwy/foreach_target.h>
+
+#include <apsis/steady/sweep_rows.hpp>
+
+#include <apsis/steady/formulas/sweep.hpp>
+
+#include <algorithm>
+
+HWY_BEFORE_NAMESPACE();
+namespace apsis::HWY_NAMESPACE {
+
+using sweep_rows::strip;
+using sweep_rows::upstream;
+
+template <std::size_t directions>
+void solve_along(const upstream* terms, const std::array<const double*, 3>& lambda, double rate,
+                 std::span<const strip> strips, double* row) {
+  using N = pack<wide>;
+  const int length = static_cast<int>(hn::Lanes(wide()));
+  // Copies, which the compiler knows to stay as they are when the row is stored.
+  std::array<upstream, directions> from;
+  std::array<const double*, directions> speed;
+  for (std::size_t d = 0; d < directions; ++d) {
+    from[d] = terms[d];
+    speed[d] = lambda[d];
+  }
+  for (const strip components : strips)
+    for (int k = components.begin; k < components.end; k += length) {
+      const int count = std::min(length, components.end - k);
+      upwind_equation<N> equation(load_some(row + k, count), N(rate));
+      for (std::size_t d = 0; d < directions; ++d)
+        equation.add(load_some(speed[d] + k, count), N(from[d].here), N(from[d].first),
+                     load_some(from[d].one + k, count), N(from[d].second), load_some(from[d].two + k, count));
+      store_some(equation.solution(), count, row + k);
+    }
+}
+
+void solve(std::span<const upstream> terms, const std::array<const double*, 3>& lambda, double rate,
+           std::span<const strip> strips, double* row) {
+  const auto solved = terms.size() == 1   ? &solve_along<1>
+                      : terms.size() == 2 ? &solve_along<2>
+                                          : &solve_along<3>;
+  solved(terms.data(), lambda, rate, strips, row);
+}
+
+}  // namespace apsis::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace apsis {
+namespace {
+HWY_EXPORT(solve);
+}  // namespace
+
+void sweep_rows::solve(std::span<const upstream> terms, const std::array<const double*, 3>& lambda,
+                       double rate, std::span<const strip> strips, double* row) {
+  HWY_DYNAMIC_DISPATCH(solve)(terms, lambda, rate, strips, row);
+}
+
+}  // namespace apsis
+#endif

@@ -1,0 +1,64 @@
+// Kernels against their formulas on single numbers, point by point: the same bits in every instruction set.
+#include <apsis/core/random_source.hpp>
+#include <apsis/steady/formulas/sweep.hpp>
+#include <apsis/steady/sweep_rows.hpp>
+
+#include <algorithm>
+#include <array>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <support/property.hpp>
+#include <support/reference_numbers.hpp>
+
+namespace steady_formulas_test {
+
+namespace {
+
+using apsis::random_source;
+using apsis::sweep_rows::upstream;
+namespace scalar = apsis::scalar;
+
+}  // namespace
+
+TEST(formulas, implicit_upwind_equations_are_those_of_single_numbers) {
+  check_property("sweep", [] {
+    random_source random(*rc::gen::arbitrary<std::uint32_t>());
+    const auto n = static_cast<std::size_t>(*rc::gen::inRange(1, 40));
+    const auto directions = static_cast<std::size_t>(*rc::gen::inRange(1, 4));
+    const auto width = static_cast<int>(n);
+    const auto row = drawn(n, random, any_sign);
+    std::vector<std::vector<double>> one, two, lambda;
+    std::array<upstream, 3> terms;
+    std::array<const double*, 3> speeds{};
+    for (std::size_t d = 0; d < directions; ++d) {
+      one.push_back(drawn(n, random, any_sign));
+      two.push_back(drawn(n, random, any_sign));
+      lambda.push_back(drawn(n, random, [](random_source& r) { return r.uniform(0.0, 100.0); }));
+    }
+    for (std::size_t d = 0; d < directions; ++d) {
+      terms[d] = {random.uniform(0.0, 2.0), random.uniform(0.0, 2.0), random.uniform(-1.0, 0.0),
+                  one[d].data(), two[d].data()};
+      speeds[d] = lambda[d].data();
+    }
+    // Two strips with a component between them that keeps its value.
+    const int first = width / 2;
+    const std::array<apsis::sweep_rows::strip, 2> strips = {
+        {{0, first}, {std::min(first + 1, width), width}}};
+    for_each_number([&](auto number, int) {
+      using N = decltype(number);
+      auto solved = row;
+      apsis::sweep_rows::solve({terms.data(), directions}, speeds, 0.75, strips, solved.data());
+      for (std::size_t k = 0; k < n; ++k) {
+        scalar::upwind_equation<N> of(N(row[k]), N(0.75));
+        for (std::size_t d = 0; d < directions; ++d)
+          of.add(N(lambda[d][k]), N(terms[d].here), N(terms[d].first), N(one[d][k]), N(terms[d].second),
+                 N(two[d][k]));
+        const bool between = k == static_cast<std::size_t>(first);
+        RC_ASSERT(same_bits(solved[k], between ? row[k] : value_of(of.solution())));
+      }
+    });
+  });
+}
+
+}  // namespace steady_formulas_test

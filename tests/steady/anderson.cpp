@@ -1,6 +1,7 @@
 // Anderson's mixture on iterations whose fixed points are known.
 #include <apsis/steady/anderson.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -38,11 +39,12 @@ double iterate(const linear_map& map, int depth, int iterations) {
   apsis::anderson mixture(depth);
   field x(1, n);
   for (int k = 0; k < iterations; ++k) {
-    field g = map.image(x);
+    const field g = map.image(x);
     std::vector<double> r(n);
     for (int i = 0; i < n; ++i) r[static_cast<std::size_t>(i)] = g.row(0)[i] - x.row(0)[i];
-    mixture.mix(*apsis::single_process(), r, g);
-    x = g;
+    field delta(1, n);
+    std::copy_n(r.begin(), n, delta.row(0));
+    mixture.move(mixture.weigh(*apsis::single_process(), r, 0.0), delta, 1.0, x);
   }
   return map.residual(x);
 }
@@ -77,17 +79,53 @@ TEST(anderson, finds_fixed_points_from_which_the_iteration_itself_runs_away) {
   EXPECT_LT(iterate(map, n, 8), 1e-10);
 }
 
-TEST(anderson, without_images_or_after_forgetting_them_changes_nothing) {
+TEST(anderson, without_images_or_after_forgetting_them_moves_to_the_image) {
   apsis::anderson none(0), some(3);
-  field g(1, n);
-  for (int i = 0; i < n; ++i) g.row(0)[i] = i;
-  const std::vector<double> r(n, 1.0);
-  none.mix(*apsis::single_process(), r, g);
-  none.mix(*apsis::single_process(), std::vector<double>(n, 2.0), g);
-  some.mix(*apsis::single_process(), r, g);
+  const auto move = [](apsis::anderson& mixture, double r, field& x) {
+    field delta(1, n);
+    for (int i = 0; i < n; ++i) delta.row(0)[i] = r;
+    const auto weights = mixture.weigh(*apsis::single_process(), std::vector<double>(n, r), 7.0);
+    EXPECT_EQ(weights.total, 7.0);
+    mixture.move(weights, delta, 1.0, x);
+  };
+  field x(1, n), y(1, n);
+  move(none, 1.0, x);
+  move(none, 2.0, x);
+  move(some, 1.0, y);
   some.clear();
-  some.mix(*apsis::single_process(), std::vector<double>(n, 2.0), g);
-  for (int i = 0; i < n; ++i) EXPECT_EQ(g.row(0)[i], i);
+  move(some, 2.0, y);
+  for (int i = 0; i < n; ++i) EXPECT_EQ(x.row(0)[i], 3.0);
+  for (int i = 0; i < n; ++i) EXPECT_EQ(y.row(0)[i], 3.0);
+}
+
+TEST(anderson, knows_the_total_of_the_mixture_and_scales_it) {
+  check_property("total", [] {
+    const linear_map map = random_map();
+    apsis::anderson mixture(2);
+    field x(1, n);
+    const auto total = [](const field& of) {
+      double sum = 0.0;
+      for (int i = 0; i < n; ++i) sum += of.row(0)[i];
+      return sum;
+    };
+    double size = 0.0;  // of all images
+    for (int k = 0; k < 6; ++k) {
+      const field g = map.image(x);
+      field delta(1, n);
+      std::vector<double> r(n);
+      for (int i = 0; i < n; ++i) {
+        r[static_cast<std::size_t>(i)] = delta.row(0)[i] = g.row(0)[i] - x.row(0)[i];
+        size += std::abs(g.row(0)[i]);
+      }
+      const auto weights = mixture.weigh(*apsis::single_process(), r, total(g));
+      double amplified = 1.0;
+      for (const double theta : weights.theta) amplified += std::abs(theta);
+      const double factor = k < 5 ? 1.0 : 0.5;
+      mixture.move(weights, delta, factor, x);
+      // Rounding of the sums, amplified by the weights.
+      RC_ASSERT(std::abs(total(x) - factor * weights.total) <= 1e-14 * amplified * (1.0 + size));
+    }
+  });
 }
 
 }  // namespace anderson_test

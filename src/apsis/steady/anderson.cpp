@@ -1,5 +1,6 @@
 #include <apsis/steady/anderson.hpp>
 
+#include <apsis/core/index.hpp>
 #include <apsis/exec/parallel.hpp>
 #include <apsis/steady/cell_links.hpp>
 
@@ -13,62 +14,95 @@
 namespace apsis {
 namespace {
 
-/// to ← to + factor · from.
-void add(double factor, const field& from, field& to) {
-  parallel_blocks(to.cells(), cells_of_a_block, [&](int begin, int end) {
-    const double* source = from.row(begin);
-    double* target = to.row(begin);
-    const std::size_t numbers = static_cast<std::size_t>(end - begin) * static_cast<std::size_t>(to.stride());
-    for (std::size_t k = 0; k < numbers; ++k) target[k] += factor * source[k];
+/// Numbers that stay in the first-level cache while several operations pass over them.
+constexpr std::size_t numbers_of_a_piece = 512;
+
+/// Calls body(first, length) for pieces of the numbers of a field.
+template <class Body>
+void for_pieces(const field& x, const Body& body) {
+  const std::size_t stride = at(x.stride());
+  parallel_blocks(x.cells(), cells_of_a_block, [&](int begin, int end) {
+    const std::size_t last = at(end) * stride;
+    for (std::size_t k = at(begin) * stride; k < last; k += numbers_of_a_piece)
+      body(k, std::min(numbers_of_a_piece, last - k));
   });
 }
 
 }  // namespace
 
-void anderson::clear() {
-  known_ = false;
-  changes_.clear();
-  changes_of_r_.clear();
+void move(const field& delta, double factor, field& x) {
+  for_pieces(x, [&, from = delta.row(0), to = x.row(0)](std::size_t first, std::size_t length) {
+    for (std::size_t k = first; k < first + length; ++k) to[k] = factor * (to[k] + from[k]);
+  });
 }
 
-void anderson::mix(communicator& processes, std::vector<double> r, field& g) {
-  if (depth_ == 0) return;
+void anderson::clear() {
+  known_ = false;
+  differences_.clear();
+}
+
+anderson::weights anderson::weigh(communicator& processes, std::vector<double> r, double total) {
+  weights found{{}, total};
+  if (depth_ == 0) return found;
   if (known_) {
-    // The oldest change gives its memory to the new one.
-    field change;
-    if (static_cast<int>(changes_.size()) == depth_) {
-      change = std::move(changes_.front());
-      changes_.pop_front();
-      changes_of_r_.pop_front();
+    // The oldest difference gives its memory to the new one.
+    difference newest;
+    if (static_cast<int>(differences_.size()) == depth_) {
+      newest = std::move(differences_.front());
+      differences_.pop_front();
     }
-    change = g;
-    add(-1.0, last_image_, change);
-    changes_.push_back(std::move(change));
-    for (std::size_t k = 0; k < r.size(); ++k) last_r_[k] = r[k] - last_r_[k];
-    changes_of_r_.push_back(std::move(last_r_));
-  }
-  last_image_ = g;
-  known_ = true;
-  if (!changes_.empty()) {
-    std::vector<double> theta(changes_.size(), 0.0);
-    if (processes.is_root()) theta = shares(r);
-    processes.broadcast(std::as_writable_bytes(std::span(theta)));
-    for (std::size_t j = 0; j < theta.size(); ++j)
-      if (theta[j] != 0.0) add(-theta[j], changes_[j], g);
+    newest.of_r = std::move(last_r_);
+    for (std::size_t k = 0; k < r.size(); ++k) newest.of_r[k] = r[k] - newest.of_r[k];
+    newest.of_total = total - last_total_;
+    differences_.push_back(std::move(newest));
+    found.theta.assign(differences_.size(), 0.0);
+    if (processes.is_root()) found.theta = shares(r);
+    processes.broadcast(std::as_writable_bytes(std::span(found.theta)));
+    for (std::size_t j = 0; j < found.theta.size(); ++j)
+      found.total -= found.theta[j] * differences_[j].of_total;
   }
   last_r_ = std::move(r);
+  last_total_ = total;
+  return found;
+}
+
+void anderson::move(const weights& of, const field& delta, double factor, field& x) {
+  if (depth_ == 0) return apsis::move(delta, factor, x);
+  if (last_image_.cells() != x.cells()) last_image_ = field(x.cells(), x.components());
+  double* newest = nullptr;
+  if (known_) {
+    field& memory = differences_.back().of_image;
+    if (memory.cells() != x.cells()) memory = field(x.cells(), x.components());
+    newest = memory.row(0);
+  }
+  known_ = true;
+  for_pieces(x, [&, to = x.row(0), from = delta.row(0), last = last_image_.row(0)](std::size_t first,
+                                                                                   std::size_t length) {
+    const std::size_t end = first + length;
+    for (std::size_t k = first; k < end; ++k) to[k] += from[k];
+    if (newest != nullptr)
+      for (std::size_t k = first; k < end; ++k) newest[k] = to[k] - last[k];
+    std::copy(to + first, to + end, last + first);
+    for (std::size_t j = 0; j < of.theta.size(); ++j) {
+      const double theta = of.theta[j];
+      const double* other = differences_[j].of_image.row(0);
+      for (std::size_t k = first; k < end; ++k) to[k] -= theta * other[k];
+    }
+    for (std::size_t k = first; k < end; ++k) to[k] *= factor;
+  });
 }
 
 /// Returns the θ that minimize ‖r − Σ_j θ_j Δr_j‖₂.
 std::vector<double> anderson::shares(const std::vector<double>& r) const {
-  const auto rows = static_cast<Eigen::Index>(r.size()), columns = static_cast<Eigen::Index>(changes_.size());
-  Eigen::MatrixXd differences(rows, columns);
+  const auto rows = static_cast<Eigen::Index>(r.size()),
+             columns = static_cast<Eigen::Index>(differences_.size());
+  Eigen::MatrixXd of_r(rows, columns);
   for (Eigen::Index j = 0; j < columns; ++j)
-    differences.col(j) =
-        Eigen::Map<const Eigen::VectorXd>(changes_of_r_[static_cast<std::size_t>(j)].data(), rows);
+    of_r.col(j) =
+        Eigen::Map<const Eigen::VectorXd>(differences_[static_cast<std::size_t>(j)].of_r.data(), rows);
   Eigen::ColPivHouseholderQR<Eigen::MatrixXd> decomposed;
   decomposed.setThreshold(1e-12);  // images that hardly differ
-  decomposed.compute(differences);
+  decomposed.compute(of_r);
   const Eigen::VectorXd theta = decomposed.solve(Eigen::Map<const Eigen::VectorXd>(r.data(), rows));
   return {theta.data(), theta.data() + theta.size()};
 }

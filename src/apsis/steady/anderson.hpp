@@ -8,29 +8,45 @@
 
 namespace apsis {
 
-/// Anderson's mixture of the images g of a fixed-point iteration x → g: g ← g − Σ_j θ_j Δg_j with the θ that
+/// Anderson's mixture g − Σ_j θ_j Δg_j of the images g = x + δ of a fixed-point iteration, with the θ that
 /// minimize ‖r − Σ_j θ_j Δr_j‖₂ over the last differences. Source: Walker & Ni, SIAM J. Numer. Anal. 49,
-/// 2011, with β = 1.
+/// 2011, with β = 1. An iteration calls weigh(), then move().
 class anderson {
  public:
+  struct weights {
+    std::vector<double> theta;  ///< of the differences, the oldest one first
+    double total = 0.0;         ///< of the mixture
+  };
+
   /// `depth`: differences that it remembers.
   explicit anderson(int depth) : depth_(depth) {}
 
-  /// Mixes an image with those of the calls before; `r`: any linear function of g − x, always the same, on
-  /// the root of the processes that share g. Collective.
-  void mix(communicator& processes, std::vector<double> r, field& g);
+  /// Returns the weights for the next image. `r`: any linear function of δ, always the same, on the root of
+  /// the processes that share x. `total`: any linear function of the image. Collective.
+  weights weigh(communicator& processes, std::vector<double> r, double total);
+  /// x ← factor · mixture, and remembers the image; `of`: from weigh().
+  void move(const weights& of, const field& delta, double factor, field& x);
   /// Forgets all images.
   void clear();
 
  private:
+  struct difference {
+    field of_image;
+    std::vector<double> of_r = {};  ///< on the root
+    double of_total = 0.0;
+  };
+
   std::vector<double> shares(const std::vector<double>& r) const;
 
   int depth_;
   bool known_ = false;
   field last_image_;
   std::vector<double> last_r_;
-  std::deque<field> changes_;
-  std::deque<std::vector<double>> changes_of_r_;  ///< on the root
+  double last_total_ = 0.0;
+  std::deque<difference> differences_;
 };
+
+/// x ← factor (x + δ).
+void move(const field& delta, double factor, field& x);
 
 }  // namespace apsis

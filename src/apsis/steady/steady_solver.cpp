@@ -144,24 +144,20 @@ struct steady_solver::impl {
   /// f ← f + δ, mixed with earlier images, with the total mass of the start where walls enclose it.
   void update(field& f, bool mix) {
     const auto section = timed(kernel::mixture, f.components());
-    std::vector<double> of_change(omega.size());
-    cells.moments_of(r, of_change);
-    parallel_blocks(f.cells(), cells_of_a_block, [&](int begin, int end) {
-      double* u = f.row(begin);
-      const double* delta = r.row(begin);
-      for (std::size_t k = 0; k < at((end - begin) * f.stride()); ++k) u[k] += delta[k];
-    });
+    std::vector<double> change(omega.size());
+    cells.moments_of(r, change);
+    for (std::size_t k = 0; k < change.size(); ++k) omega[k] += change[k];
+    anderson::weights weights{{}, cells.sums(omega)[0]};
     if (mix) {
-      for (std::size_t k = 0; k < of_change.size(); ++k) of_change[k] /= scales[k % at(count)];
-      mixture.mix(processes, gather_cells(builder, std::move(of_change), count), f);
+      for (std::size_t k = 0; k < change.size(); ++k) change[k] /= scales[k % at(count)];
+      weights = mixture.weigh(processes, gather_cells(builder, std::move(change), count), weights.total);
     }
-    if (equation.as_gas() == nullptr || !system.conserved()[0]) return;
-    cells.moments_of(f, omega);
-    const double factor = totals[0] / cells.sums(omega)[0];
-    parallel_blocks(f.cells(), cells_of_a_block, [&](int begin, int end) {
-      double* u = f.row(begin);
-      for (std::size_t k = 0; k < at((end - begin) * f.stride()); ++k) u[k] *= factor;
-    });
+    const bool is_closed = equation.as_gas() != nullptr && system.conserved()[0];
+    const double factor = is_closed ? totals[0] / weights.total : 1.0;
+    if (mix)
+      mixture.move(weights, r, factor, f);
+    else
+      move(r, factor, f);
   }
 
   bool begin_again() {

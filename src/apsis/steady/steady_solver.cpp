@@ -26,7 +26,9 @@
 namespace apsis {
 namespace {
 
-/// J is built anew in every iteration until the residual is this share of that of the start, and then kept.
+/// J is built anew where a moment has changed by more than this share of its scale,
+constexpr double change_for_new_system = 0.1;
+/// until the residual is this share of that of the start. It is kept then.
 constexpr double share_to_keep_system = 0.01;
 /// A residual that has grown by this factor since J was built calls for a new one.
 constexpr double growth_for_new_system = 10.0;
@@ -99,13 +101,25 @@ struct steady_solver::impl {
       rates[at(cell)] = equation.rate(omega.data() + at(cell * count)) / epsilon[at(cell)];
   }
 
+  /// Returns the largest relative change of a moment since J was built.
+  double change_since_system() {
+    std::vector<double> change(omega);
+    for (std::size_t k = 0; k < change.size(); ++k) change[k] -= omega_of_system[k];
+    return cells.largest_relative_change(omega_of_system, change);
+  }
+
   void build_system_if_due(double relative) {
     const double vanishing = flight_rate * damped.vanishing_rate(relative),
                  constant = flight_rate * damped.constant_rate();
-    const bool due = !built || relative > share_to_keep_system || relative > growth_for_new_system * lowest ||
-                     pseudo_rate > change_of_pseudo_rate * std::max(vanishing, constant);
+    const bool due = !built || relative > growth_for_new_system * lowest ||
+                     pseudo_rate > change_of_pseudo_rate * std::max(vanishing, constant) ||
+                     (relative > share_to_keep_system && change_since_system() > change_for_new_system);
     lowest = due ? relative : std::min(lowest, relative);
-    if (!due) return;
+    if (!due) {
+      kept = true;
+      return;
+    }
+    omega_of_system = omega;
     // A neutral mode takes any change. If it is the cause, nothing else needs to be damped.
     pseudo_rate = 0.0;
     holds_neutral_mode = constant > 0.0 && seeks_neutral_mode && system.build(omega, rates, 0.0, true);
@@ -114,8 +128,9 @@ struct steady_solver::impl {
       pseudo_rate = std::max(vanishing, constant);
       system.build(omega, rates, pseudo_rate);
     }
-    if (built && relative <= share_to_keep_system) mixture.clear();
+    if (built && kept) mixture.clear();
     built = true;
+    kept = false;
   }
 
   /// r ← r + σ (E(ω + share δω) − E(ω)); less of δω where that has no equilibrium.
@@ -275,12 +290,13 @@ struct steady_solver::impl {
   anderson mixture;
   damping damped;
   field r;
-  std::vector<double> omega, of_transport, changes_of_moments, rates, totals, scales;
+  std::vector<double> omega, omega_of_system, of_transport, changes_of_moments, rates, totals, scales;
   double reference = std::numeric_limits<double>::quiet_NaN();
-  double lowest = 0.0;       ///< residual since J was built
-  double flight_rate = 0.0;  ///< thermal speed over the extent of the domain
-  double pseudo_rate = 0.0;  ///< of J
-  bool built = false, holds_neutral_mode = false, seeks_neutral_mode = true, mixes_at_once = false;
+  double lowest = 0.0;               ///< residual since J was built
+  double flight_rate = 0.0;          ///< thermal speed over the extent of the domain
+  double pseudo_rate = 0.0;          ///< of J
+  bool built = false, kept = false,  ///< J, and more than once
+      holds_neutral_mode = false, seeks_neutral_mode = true, mixes_at_once = false;
   int number = 0;
 };
 

@@ -38,13 +38,14 @@ class moment_solver {
   using preconditioner = std::function<Eigen::VectorXd(const Eigen::VectorXd&)>;
   void factorize_again();
   std::optional<Eigen::VectorXd> iterate(const Eigen::VectorXd& r, const preconditioner& approximate,
-                                         double tolerance, int iterations) const;
+                                         double tolerance, int iterations);
 
   const moment_mesh& mesh_;
   bool factorizes_;
   Eigen::SparseMatrix<double, Eigen::RowMajor> matrix_;
   std::unique_ptr<sparse_factors> factors_;
   bool are_those_of_matrix_ = false;  ///< the factors
+  int iterations_ = 0;                ///< with this matrix
   std::unique_ptr<alternating_directions> directions_;
   std::optional<neutral_mode> neutral_;
 };

@@ -44,7 +44,7 @@ double iterate(const linear_map& map, int depth, int iterations) {
     for (int i = 0; i < n; ++i) r[static_cast<std::size_t>(i)] = g.row(0)[i] - x.row(0)[i];
     field delta(1, n);
     std::copy_n(r.begin(), n, delta.row(0));
-    mixture.move(mixture.weigh(*apsis::single_process(), r, 0.0), delta, 1.0, x);
+    mixture.move(mixture.weigh(*apsis::single_process(), r, {}), delta, 1.0, x);
   }
   return map.residual(x);
 }
@@ -84,8 +84,8 @@ TEST(anderson, without_images_or_after_forgetting_them_moves_to_the_image) {
   const auto move = [](apsis::anderson& mixture, double r, field& x) {
     field delta(1, n);
     for (int i = 0; i < n; ++i) delta.row(0)[i] = r;
-    const auto weights = mixture.weigh(*apsis::single_process(), std::vector<double>(n, r), 7.0);
-    EXPECT_EQ(weights.total, 7.0);
+    const auto weights = mixture.weigh(*apsis::single_process(), std::vector<double>(n, r), {7.0});
+    EXPECT_EQ(weights.of_mixture, std::vector{7.0});
     mixture.move(weights, delta, 1.0, x);
   };
   field x(1, n), y(1, n);
@@ -98,7 +98,7 @@ TEST(anderson, without_images_or_after_forgetting_them_moves_to_the_image) {
   for (int i = 0; i < n; ++i) EXPECT_EQ(y.row(0)[i], 3.0);
 }
 
-TEST(anderson, knows_the_total_of_the_mixture_and_scales_it) {
+TEST(anderson, knows_linear_functions_of_the_mixture_and_scales_it) {
   check_property("total", [] {
     const linear_map map = random_map();
     apsis::anderson mixture(2);
@@ -117,13 +117,13 @@ TEST(anderson, knows_the_total_of_the_mixture_and_scales_it) {
         r[static_cast<std::size_t>(i)] = delta.row(0)[i] = g.row(0)[i] - x.row(0)[i];
         size += std::abs(g.row(0)[i]);
       }
-      const auto weights = mixture.weigh(*apsis::single_process(), r, total(g));
+      const auto weights = mixture.weigh(*apsis::single_process(), r, {total(g)});
       double amplified = 1.0;
       for (const double theta : weights.theta) amplified += std::abs(theta);
       const double factor = k < 5 ? 1.0 : 0.5;
       mixture.move(weights, delta, factor, x);
       // Rounding of the sums, amplified by the weights.
-      RC_ASSERT(std::abs(total(x) - factor * weights.total) <= 1e-14 * amplified * (1.0 + size));
+      RC_ASSERT(std::abs(total(x) - factor * weights.of_mixture[0]) <= 1e-14 * amplified * (1.0 + size));
     }
   });
 }

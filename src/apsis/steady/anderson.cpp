@@ -28,11 +28,17 @@ void for_pieces(const field& x, const Body& body) {
   });
 }
 
+std::vector<double> difference_of(const std::vector<double>& a, const std::vector<double>& b) {
+  std::vector<double> found(a);
+  for (std::size_t k = 0; k < a.size(); ++k) found[k] -= b[k];
+  return found;
+}
+
 }  // namespace
 
-void move(const field& delta, double factor, field& x) {
+void move(const field& delta, double share, double factor, field& x) {
   for_pieces(x, [&, from = delta.row(0), to = x.row(0)](std::size_t first, std::size_t length) {
-    for (std::size_t k = first; k < first + length; ++k) to[k] = factor * (to[k] + from[k]);
+    for (std::size_t k = first; k < first + length; ++k) to[k] = factor * (to[k] + share * from[k]);
   });
 }
 
@@ -41,8 +47,9 @@ void anderson::clear() {
   differences_.clear();
 }
 
-anderson::weights anderson::weigh(communicator& processes, std::vector<double> r, double total) {
-  weights found{{}, total};
+anderson::weights anderson::weigh(communicator& processes, std::vector<double> r,
+                                  std::vector<double> of_image) {
+  weights found{{}, of_image};
   if (depth_ == 0) return found;
   if (known_) {
     // The oldest difference gives its memory to the new one.
@@ -51,23 +58,23 @@ anderson::weights anderson::weigh(communicator& processes, std::vector<double> r
       newest = std::move(differences_.front());
       differences_.pop_front();
     }
-    newest.of_r = std::move(last_r_);
-    for (std::size_t k = 0; k < r.size(); ++k) newest.of_r[k] = r[k] - newest.of_r[k];
-    newest.of_total = total - last_total_;
+    newest.of_r = difference_of(r, last_r_);
+    newest.of_functions = difference_of(of_image, last_functions_);
     differences_.push_back(std::move(newest));
     found.theta.assign(differences_.size(), 0.0);
     if (processes.is_root()) found.theta = shares(r);
     processes.broadcast(std::as_writable_bytes(std::span(found.theta)));
     for (std::size_t j = 0; j < found.theta.size(); ++j)
-      found.total -= found.theta[j] * differences_[j].of_total;
+      for (std::size_t k = 0; k < found.of_mixture.size(); ++k)
+        found.of_mixture[k] -= found.theta[j] * differences_[j].of_functions[k];
   }
   last_r_ = std::move(r);
-  last_total_ = total;
+  last_functions_ = std::move(of_image);
   return found;
 }
 
 void anderson::move(const weights& of, const field& delta, double factor, field& x) {
-  if (depth_ == 0) return apsis::move(delta, factor, x);
+  if (depth_ == 0) return apsis::move(delta, 1.0, factor, x);
   if (last_image_.cells() != x.cells()) last_image_ = field(x.cells(), x.components());
   double* newest = nullptr;
   if (known_) {

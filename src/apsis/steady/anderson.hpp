@@ -14,17 +14,18 @@ namespace apsis {
 class anderson {
  public:
   struct weights {
-    std::vector<double> theta;  ///< of the differences, the oldest one first
-    double total = 0.0;         ///< of the mixture
+    std::vector<double> theta;       ///< of the differences, the oldest one first
+    std::vector<double> of_mixture;  ///< ℓ of the mixture
   };
 
   /// `depth`: differences that it remembers.
   explicit anderson(int depth) : depth_(depth) {}
 
   /// Returns the weights for the next image. `r`: any linear function of δ, always the same, on the root of
-  /// the processes that share x. `total`: any linear function of the image. Collective.
-  weights weigh(communicator& processes, std::vector<double> r, double total);
-  /// x ← factor · mixture, and remembers the image; `of`: from weigh().
+  /// the processes that share x. `of_image`: any linear functions ℓ of the image on this process. Collective.
+  weights weigh(communicator& processes, std::vector<double> r, std::vector<double> of_image);
+  /// x ← factor · mixture, and remembers the image; `of`: from weigh(), or without theta for the image
+  /// itself.
   void move(const weights& of, const field& delta, double factor, field& x);
   /// Forgets all images.
   void clear();
@@ -33,7 +34,7 @@ class anderson {
   struct difference {
     field of_image;
     std::vector<double> of_r = {};  ///< on the root
-    double of_total = 0.0;
+    std::vector<double> of_functions = {};
   };
 
   std::vector<double> shares(const std::vector<double>& r) const;
@@ -41,12 +42,11 @@ class anderson {
   int depth_;
   bool known_ = false;
   field last_image_;
-  std::vector<double> last_r_;
-  double last_total_ = 0.0;
+  std::vector<double> last_r_, last_functions_;
   std::deque<difference> differences_;
 };
 
-/// x ← factor (x + δ).
-void move(const field& delta, double factor, field& x);
+/// x ← factor (x + share δ).
+void move(const field& delta, double share, double factor, field& x);
 
 }  // namespace apsis

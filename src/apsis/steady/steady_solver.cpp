@@ -39,6 +39,10 @@ constexpr double share_to_mix = 0.05;
 /// Rarefaction parameter √π/2 · L/λ below which a gas is rare, so that mixing pays from the first iteration
 /// on.
 constexpr double rare = 5.0;
+/// One iteration leaves at least this share of the temperature of every cell,
+constexpr double lowest_cooling = 0.1;
+/// if a correction of this share of its size can.
+constexpr double smallest_share = 1e-3;
 /// A residual of this multiple of the start does not come back.
 constexpr double hopeless = 1e6;
 
@@ -53,6 +57,12 @@ std::vector<double> checked_epsilon(const problem_builder& space) {
       if (!(epsilon > 0.0))
         throw input_error("epsilon is 0 in some cell (the steady solver divides by it); give a positive one");
   });
+  return found;
+}
+
+std::vector<double> sum_of(const std::vector<double>& a, double share, const std::vector<double>& b) {
+  std::vector<double> found(a);
+  for (std::size_t k = 0; k < a.size(); ++k) found[k] += share * b[k];
   return found;
 }
 
@@ -156,23 +166,32 @@ struct steady_solver::impl {
     });
   }
 
-  /// f ← f + δ, mixed with earlier images, with the total mass of the start where walls enclose it.
+  /// f ← f + δ, mixed with earlier images, with the total mass of the start where walls enclose it. Less of
+  /// δ where it leaves too little temperature, and the image itself where the mixture does.
   void update(field& f, bool mix) {
     const auto section = timed(kernel::mixture, f.components());
     std::vector<double> change(omega.size());
     cells.moments_of(r, change);
-    for (std::size_t k = 0; k < change.size(); ++k) omega[k] += change[k];
-    anderson::weights weights{{}, cells.sums(omega)[0]};
-    if (mix) {
+    double share = 1.0;
+    anderson::weights weights{{}, sum_of(omega, 1.0, change)};
+    while (share > smallest_share && !cells.keeps_temperature(omega, weights.of_mixture, lowest_cooling)) {
+      share *= 0.5;
+      weights.of_mixture = sum_of(omega, share, change);
+    }
+    if (share < 1.0) {
+      mixture.clear();
+    } else if (mix) {
       for (std::size_t k = 0; k < change.size(); ++k) change[k] /= scales[k % at(count)];
-      weights = mixture.weigh(processes, gather_cells(builder, std::move(change), count), weights.total);
+      anderson::weights mixed =
+          mixture.weigh(processes, gather_cells(builder, std::move(change), count), weights.of_mixture);
+      if (cells.keeps_temperature(omega, mixed.of_mixture, lowest_cooling)) weights = std::move(mixed);
     }
     const bool is_closed = equation.as_gas() != nullptr && system.conserved()[0];
-    const double factor = is_closed ? totals[0] / weights.total : 1.0;
-    if (mix)
+    const double factor = is_closed ? totals[0] / cells.sums(weights.of_mixture)[0] : 1.0;
+    if (mix && share == 1.0)
       mixture.move(weights, r, factor, f);
     else
-      move(r, factor, f);
+      move(r, share, factor, f);
   }
 
   bool begin_again() {

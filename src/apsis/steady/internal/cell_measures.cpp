@@ -125,6 +125,20 @@ double cell_measures::largest_share(const std::vector<double>& omega, const std:
   return global_lowest(processes_, share);
 }
 
+bool cell_measures::keeps_temperature(const std::vector<double>& before, const std::vector<double>& after,
+                                      double share) const {
+  const gas_model* gas = equation_.as_gas();
+  if (gas == nullptr) return true;
+  double least = 1.0;
+  for (const int cell : links_.cells()) {
+    const double *from = before.data() + at(cell) * count_, *to = after.data() + at(cell) * count_;
+    const double kept =
+        to[0] > 0.0 ? gas->molecules().state(to).T / gas->molecules().state(from).T : -infinite;
+    least = std::isnan(kept) ? -infinite : std::min(least, kept);
+  }
+  return global_lowest(processes_, least) >= share;
+}
+
 double cell_measures::extent() const {
   const grid& mesh = space_.whole_mesh();
   double shortest = infinite;

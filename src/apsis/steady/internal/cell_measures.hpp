@@ -39,6 +39,11 @@ class cell_measures {
   double largest_share(const std::vector<double>& omega, const std::vector<double>& changes,
                        double most) const;
 
+  /// Returns whether all cells of a gas have at least `share` of the temperature that they had before; true
+  /// for other models.
+  bool keeps_temperature(const std::vector<double>& before, const std::vector<double>& after,
+                         double share) const;
+
   /// Returns the shortest extent of the domain.
   double extent() const;
   /// Returns the lowest √T of the first cells of processes, of a gas; the largest speed of other models.

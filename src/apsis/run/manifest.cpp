@@ -52,7 +52,9 @@ void add_iterations(json& out, const simulation& run) {
                    {"tolerance", *tolerance},
                    {"iterations", run.step()},
                    {"residual", number(run.last().residual.front())},
-                   {"change", number(run.last().change)}};
+                   {"change", number(run.last().change)},
+                   {"removed_values", run.last().removed.count},
+                   {"smallest_removed", run.last().removed.lowest}};
 }
 
 /// Adds the estimate of the distance from the steady state, in a case with time.steady.

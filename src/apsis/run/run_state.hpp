@@ -3,6 +3,7 @@
 #include <apsis/integrate/equal_steps.hpp>
 #include <apsis/integrate/error_control.hpp>
 #include <apsis/integrate/integrate.hpp>
+#include <apsis/steady/negative_values.hpp>
 
 #include <limits>
 #include <optional>
@@ -51,6 +52,7 @@ struct step_record {
   /// kept.
   std::vector<double> defect_of_step = {};
   std::optional<condition_violation> violation = {};  ///< not kept either
+  removed_values removed = {};                        ///< steady_iteration::removed; not kept
   /// Σ_cells |ρ^n − ρ^{n−1}| of the last invariant, relative to its scale; not kept.
   double density_change = 0.0;
   /// Σ_cells |ρ^n − 2ρ^{n−1} + ρ^{n−2}| of the same invariant, relative to the same scale; not kept.

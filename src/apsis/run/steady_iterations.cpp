@@ -155,6 +155,7 @@ void steady_iterations::record(const steady_iteration& done) {
   last = run_.watch.check(run_.now, 1.0, last, run_.problem->take_cut());
   last.change = done.change;
   last.residual = {done.residual};
+  last.removed = done.removed;
   last.received = run_.first.received;
   last.entropy_change = std::numeric_limits<double>::quiet_NaN();
   set_net_rates();

@@ -17,6 +17,7 @@
 #include <apsis/semidiscrete/formulas/face.hpp>
 #include <apsis/semidiscrete/formulas/lattice.hpp>
 #include <apsis/semidiscrete/formulas/upwind.hpp>
+#include <apsis/steady/formulas/sweep.hpp>
 
 namespace scalar = apsis::scalar;
 
@@ -96,4 +97,10 @@ extern "C" void equilibria(const double* u, double* to) {
   to[3] = moments.energy;
   to[4] = contents.lowest + contents.not_finite;
   to[5] = squares.difference + squares.size;
+}
+
+extern "C" void sweeps(const double* u, double* to) {
+  scalar::upwind_equation<double> equation(u[0], u[1]);
+  equation.add(u[2], u[3], u[4], u[5], u[6], u[7]);
+  to[0] = equation.solution();
 }

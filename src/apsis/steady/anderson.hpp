@@ -13,6 +13,7 @@ namespace apsis {
 /// 2011, with β = 1. An iteration calls weigh(), then move().
 class anderson {
  public:
+  /// The weights of the next mixture.
   struct weights {
     std::vector<double> theta;       ///< of the differences, the oldest one first
     std::vector<double> of_mixture;  ///< ℓ of the mixture

@@ -9,16 +9,19 @@ namespace apsis {
 /// The implicit upwind equations of one cell, for the instruction set of this processor.
 namespace sweep_rows {
 
-/// Components begin … end−1.
+/// Consecutive components.
 struct strip {
-  int begin = 0, end = 0;
+  int begin = 0,  ///< the first one
+      end = 0;    ///< behind the last one
 };
 
-/// The terms of one direction, relative to λ = |v|/Δx: the factor of δ itself, and those of two upstream
-/// rows.
+/// The terms of one direction, relative to λ = |v|/Δx.
 struct upstream {
-  double here = 1.0, first = 0.0, second = 0.0;
-  const double *one = nullptr, *two = nullptr;
+  double here = 1.0,            ///< factor of δ itself
+      first = 0.0,              ///< of the row `one`
+      second = 0.0;             ///< of the row `two`
+  const double *one = nullptr,  ///< δ in the cell upstream, or what enters
+      *two = nullptr;           ///< in the next one
 };
 
 /// row ← the solution δ of (Σ_d λ_d here_d + rate) δ = row + Σ_d λ_d (first_d one_d + second_d two_d) for the

@@ -42,6 +42,15 @@ void subtract_product(const row_major& matrix, const Eigen::VectorXd& x, Eigen::
   });
 }
 
+/// Returns the solution for a right side of any size, which may be beyond that of single precision.
+Eigen::VectorXd solved_with(const sparse_factors_of<float>& factors, const Eigen::VectorXd& r) {
+  const double size = r.cwiseAbs().maxCoeff();
+  if (!(size > 0.0)) return Eigen::VectorXd::Zero(r.size());
+  const Eigen::VectorXf scaled = (r / size).cast<float>();
+  const Eigen::VectorXf solved = factors.solve(scaled);  // contiguous, as it must be
+  return solved.cast<double>() * size;
+}
+
 /// Returns rows of Θ x for a block-diagonal Θ. `unknowns`: of whole cells.
 Eigen::VectorXd scaled_rows(const std::vector<double>& scale, int moments, const Eigen::VectorXd& x,
                             const std::vector<int>& unknowns) {
@@ -124,8 +133,8 @@ std::vector<alternating_directions::lines> alternating_directions::factorized_li
       const auto size = static_cast<Eigen::Index>(groups[at(g)].unknowns.size());
       Eigen::SparseMatrix<double> matrix(size, size);
       matrix.setFromTriplets(terms[at(g)].begin(), terms[at(g)].end());
-      groups[at(g)].factors = std::make_unique<sparse_factors>();
-      factorize(matrix, *groups[at(g)].factors);
+      groups[at(g)].factors = std::make_unique<sparse_factors_of<float>>();
+      factorize(Eigen::SparseMatrix<float>(matrix.cast<float>()), *groups[at(g)].factors);
     }
   });
   return groups;
@@ -143,8 +152,7 @@ Eigen::VectorXd alternating_directions::without_sums(const Eigen::VectorXd& r) c
           const std::vector<int>& unknowns = groups[at(g)].unknowns;
           const Eigen::VectorXd of_lines = d > 0 ? scaled_rows(stages_[k].scale, mesh_.moments, y, unknowns)
                                                  : Eigen::VectorXd(y(unknowns));
-          const Eigen::VectorXd solved = groups[at(g)].factors->solve(of_lines);  // contiguous, as it must be
-          y(unknowns) = solved;
+          y(unknowns) = solved_with(*groups[at(g)].factors, of_lines);
         }
       });
     }

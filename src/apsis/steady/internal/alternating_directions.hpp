@@ -27,10 +27,11 @@ class alternating_directions {
   Eigen::VectorXd solve(const Eigen::VectorXd& r) const;
 
  private:
-  /// Some lines along a direction.
+  /// Some lines along a direction. Reading the factors takes most of the time of solve(), and their digits
+  /// are more than an approximation needs.
   struct lines {
     std::vector<int> unknowns;  ///< in the order of the rows of `factors`
-    std::unique_ptr<sparse_factors> factors = {};
+    std::unique_ptr<sparse_factors_of<float>> factors = {};
   };
   struct stage {
     std::vector<double> scale;                ///< Θ_k, [number][moments²]

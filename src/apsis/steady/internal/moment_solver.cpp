@@ -88,7 +88,7 @@ void moment_solver::take(moment_equations equations, bool holds_neutral) {
 
 void moment_solver::factorize_again() {
   factors_ = std::make_unique<sparse_factors>();
-  factorize(matrix_, *factors_);
+  factorize(Eigen::SparseMatrix<double>(matrix_), *factors_);
   are_those_of_matrix_ = true;
 }
 

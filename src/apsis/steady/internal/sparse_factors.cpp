@@ -4,13 +4,17 @@
 
 namespace apsis {
 
-void factorize(const Eigen::SparseMatrix<double>& matrix, sparse_factors& to) {
+template <class Number>
+void factorize(const Eigen::SparseMatrix<Number>& matrix, sparse_factors_of<Number>& to) {
   // Pivots off the diagonal would undo the order; they are taken where that is a hundred times smaller.
   to.isSymmetric(true);
-  to.setPivotThreshold(0.01);
+  to.setPivotThreshold(Number{0.01F});
   to.compute(matrix);
   if (to.info() != Eigen::Success)
     throw numerical_error("the moment equations of the steady state are singular", {});
 }
+
+template void factorize(const Eigen::SparseMatrix<double>& matrix, sparse_factors_of<double>& to);
+template void factorize(const Eigen::SparseMatrix<float>& matrix, sparse_factors_of<float>& to);
 
 }  // namespace apsis

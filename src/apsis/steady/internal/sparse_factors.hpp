@@ -6,9 +6,12 @@
 namespace apsis {
 
 /// Factors of a matrix in the order of its unknowns.
-using sparse_factors = Eigen::SparseLU<Eigen::SparseMatrix<double>, Eigen::NaturalOrdering<int>>;
+template <class Number>
+using sparse_factors_of = Eigen::SparseLU<Eigen::SparseMatrix<Number>, Eigen::NaturalOrdering<int>>;
+using sparse_factors = sparse_factors_of<double>;
 
 /// Factorizes a matrix whose unknowns have an order of little fill. Throws numerical_error if it is singular.
-void factorize(const Eigen::SparseMatrix<double>& matrix, sparse_factors& to);
+template <class Number>
+void factorize(const Eigen::SparseMatrix<Number>& matrix, sparse_factors_of<Number>& to);
 
 }  // namespace apsis

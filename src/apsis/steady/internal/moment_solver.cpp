@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include <unsupported/Eigen/IterativeSolvers>
 
@@ -29,7 +28,7 @@ class called_preconditioner {
   called_preconditioner() = default;
   void call(const function& approximate) { approximate_ = &approximate; }
   template <class Matrix>
-  called_preconditioner& analyzePattern(const Matrix&) {
+  called_preconditioner& analyzePattern(const Matrix&) {  // NOLINT(readability-identifier-naming): of Eigen
     return *this;
   }
   template <class Matrix>
@@ -69,7 +68,7 @@ double moment_solver::numbers_of_cell(int directions, int moments, double cells)
 moment_solver::moment_solver(const moment_mesh& mesh)
     : mesh_(mesh), factorizes_(factorizes(mesh.directions, mesh.unknowns())) {}
 
-void moment_solver::take(moment_equations equations, bool holds_neutral) {
+void moment_solver::take(const moment_equations& equations, bool holds_neutral) {
   const Eigen::Index rows = matrix_.rows();
   matrix_ = bordered_matrix(mesh_, equations);
   are_those_of_matrix_ = false;

@@ -23,7 +23,7 @@ class moment_solver {
 
   /// Takes another J. `holds_neutral`: whether solve() leaves a neutral mode as it is; it is only sought
   /// where J is factorized. Throws numerical_error if J is singular.
-  void take(moment_equations equations, bool holds_neutral);
+  void take(const moment_equations& equations, bool holds_neutral);
   /// Whether solve() leaves a neutral mode as it is.
   bool has_neutral_mode() const { return neutral_.has_value(); }
   /// Returns x with J x = r, and prescribed sums. Throws numerical_error if J is singular.

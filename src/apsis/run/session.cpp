@@ -13,6 +13,7 @@
 #include <apsis/run/distribution_rows.hpp>
 #include <apsis/run/memory_need.hpp>
 #include <apsis/run/probe_files.hpp>
+#include <apsis/run/restart.hpp>
 #include <apsis/run/result_units.hpp>
 #include <apsis/run/setup.hpp>
 #include <apsis/run/shared_files.hpp>
@@ -55,28 +56,6 @@ std::vector<distribution_file> distribution_files(const result_folder& folder, d
 
 constexpr long many_steps = 100'000'000;
 
-[[noreturn]] void refuse_size(const std::string& path, const checkpoint& saved, int cells, int components) {
-  throw input_error(fmt::format(
-      "'{}' holds {} x {} unknowns (the case has {} x {}); restart with the case it was written for", path,
-      saved.cells, saved.components, cells, components));
-}
-
-/// Returns the case with the method of the checkpoint where the program chose it: a run continues with the
-/// method with which it began, whatever a newer table of choices says.
-case_config with_method_of_restart(case_config config, const session_options& options) {
-  if (!options.restart || config.time.method_reason.empty()) return config;
-  std::string text;
-  run_collectively(*options.processes, [&] {
-    if (options.processes->is_root()) text = read_case_of_checkpoint(*options.restart);
-  });
-  broadcast_text(*options.processes, text);
-  const std::string before = parse_case(text, *options.restart).time.method;
-  if (before == config.time.method) return config;
-  config.time.method = before;
-  config.time.method_reason = "the method of the checkpoint";
-  return config;
-}
-
 /// Names what a case with a table [steady] has for a run in time.
 void log_unused_times(const case_config& config) {
   if (!config.steady_state.tolerance) return;
@@ -93,7 +72,8 @@ void log_unused_times(const case_config& config) {
 /// together; reports what it needs.
 std::unique_ptr<run_setup> setup_with_room_for_results(const case_config& configured,
                                                        const session_options& options) {
-  const case_config config = with_method_of_restart(with_chosen_method(configured), options);
+  const case_config config =
+      with_method_of(options.restart, with_chosen_method(configured), *options.processes);
   if (!config.time.method_reason.empty() && !config.steady_state.tolerance)
     log::info(fmt::format("{}: time.method = \"{}\" is {} ({})", config.source, automatic_method,
                           config.time.method, config.time.method_reason));
@@ -106,17 +86,6 @@ std::unique_ptr<run_setup> setup_with_room_for_results(const case_config& config
     log::info(fmt::format("{}: needs {}", config.source, memory_need(*setup, copies).text()));
   });
   return setup;
-}
-
-/// Returns the first line of each text that differs from that of the other; equal ones if there is none.
-std::pair<std::string, std::string> first_difference(const std::string& a, const std::string& b) {
-  std::istringstream of_a(a), of_b(b);
-  for (;;) {
-    std::pair<std::string, std::string> lines;
-    const bool more = static_cast<bool>(std::getline(of_a, lines.first));
-    if (!std::getline(of_b, lines.second) && !more) return lines;
-    if (lines.first != lines.second) return lines;
-  }
 }
 
 /// Everything on which the collective operations of a run depend.
@@ -145,37 +114,6 @@ const case_config& same_on_all(const case_config& mine, const session_options& o
   return mine;
 }
 
-/// Reads a checkpoint: the root verifies it before the others read their parts.
-checkpoint read_by_all(const std::string& path, communicator& processes,
-                       const std::optional<dataset_part>& part) {
-  checkpoint saved;
-  run_collectively(processes, [&] {
-    if (processes.is_root()) saved = read_checkpoint(path, part);
-  });
-  run_collectively(processes, [&] {
-    if (!processes.is_root()) saved = read_checkpoint(path, part, false);
-  });
-  return saved;
-}
-
-/// The state of a checkpoint as that from which a run starts.
-state_source state_of_checkpoint(const std::string& path) {
-  return [path](const run_setup& setup) {
-    const grid& block = setup.mesh();
-    std::optional<dataset_part> part;
-    if (!setup.processes().is_single()) part = part_of(block);
-    const checkpoint saved = read_by_all(path, setup.processes(), part);
-    field u(block.size(), setup.equation->components());
-    const auto components = static_cast<std::size_t>(u.components());
-    if (saved.state.size() != static_cast<std::size_t>(u.cells()) * components)
-      refuse_size(path, saved, setup.whole_mesh().size(), u.components());
-    for (int cell = 0; cell < u.cells(); ++cell)
-      std::copy_n(saved.state.begin() + static_cast<std::ptrdiff_t>(cell) * u.components(), u.components(),
-                  u.row(cell));
-    return u;
-  };
-}
-
 /// Where a run starts: data that are not in the case are not needed by a restart.
 state_source start_of(const case_config& config, const session_options& options) {
   if (!options.restart) return options.initial;
@@ -186,34 +124,6 @@ std::string duration(double seconds) {
   if (seconds < 7200.0) return fmt::format("{:.0f} minutes", seconds / 60.0);
   if (seconds < 172800.0) return fmt::format("{:.0f} hours", seconds / 3600.0);
   return fmt::format("{:.3g} days", seconds / 86400.0);
-}
-
-void warn_of_another_commit(const checkpoint& saved, const std::string& path) {
-  const std::string here = commit();
-  if (saved.commit == here || saved.commit == "unknown" || here == "unknown") return;
-  log::warning(fmt::format(
-      "'{}' was written by commit {} of version {} (this is {}; the results may differ in their last "
-      "digits); run the case again from its beginning where that matters",
-      path, saved.commit, version(), here));
-}
-
-// Keys that may differ between a run and its continuation, because they do not enter a step.
-std::string essential_text(case_config config) {
-  config.title.clear();
-  config.output = {};
-  config.time.end = 1.0;
-  config.space.blocks.reset();
-  if (config.steady_state.tolerance) config.steady_state = {.tolerance = usual_steady_tolerance};
-  return to_toml(config);
-}
-
-void check_same_case(const case_config& mine, const std::string& saved_text, const std::string& path) {
-  const auto [here, there] =
-      first_difference(essential_text(mine), essential_text(parse_case(saved_text, path)));
-  if (here != there)
-    throw input_error(fmt::format(
-        "'{}' belongs to another case ('{}' there, '{}' here); restart with the case it was written for",
-        path, there, here));
 }
 
 }  // namespace
@@ -279,11 +189,7 @@ std::string run_session::promise_of_steady_state() const {
 
 void run_session::resume(const std::string& path) {
   const checkpoint saved = read_by_all(path, processes(), part_of(simulation_));
-  warn_of_another_commit(saved, path);
-  check_same_case(simulation_.config(), saved.case_text, path);
-  if (saved.cells != static_cast<std::uint64_t>(simulation_.mesh().size()) ||
-      saved.components != static_cast<std::uint64_t>(simulation_.setup().equation->components()))
-    refuse_size(path, saved, simulation_.mesh().size(), simulation_.setup().equation->components());
+  check_checkpoint(saved, path, simulation_);
   const run_state state = to_run_state(saved);
   if (!(state.march.t < simulation_.config().time.end) && simulation_.config().steady_state.tolerance)
     throw input_error(fmt::format("'{}' is already after {} iterations (steady.iterations is {}); give more",

@@ -24,7 +24,6 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
-#include <sstream>
 #include <utility>
 
 #include <fmt/format.h>

@@ -7,6 +7,7 @@
 #include <apsis/core/printable.hpp>
 #include <apsis/core/suggest.hpp>
 #include <apsis/core/version.hpp>
+#include <apsis/exec/memory.hpp>
 
 #include <algorithm>
 #include <csignal>
@@ -129,6 +130,7 @@ int run_and_report_errors(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   apsis::app::occupy_standard_descriptors();
+  apsis::keep_freed_memory();
   // A file that exceeds its limit (ulimit -f) is an output error and must not kill the process.
   std::signal(SIGXFSZ, SIG_IGN);
   const int code = apsis::app::run_and_report_errors(argc, argv);

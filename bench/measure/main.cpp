@@ -4,6 +4,7 @@
 #include <apsis/core/errors.hpp>
 #include <apsis/core/log.hpp>
 #include <apsis/core/suggest.hpp>
+#include <apsis/exec/memory.hpp>
 #include <apsis/exec/processes.hpp>
 
 #include <cstdio>
@@ -96,6 +97,7 @@ int main(int argc, char** argv) {
   program.add_flag("--quick", options.quick, "smoke test on small problems, without meaningful results");
   program.add_flag("--list", list, "list the measurements");
   CLI11_PARSE(program, argc, argv);
+  apsis::keep_freed_memory();  // as the program does
   try {
     options.processes = apsis::launched_processes();
     if (!options.processes->is_root()) apsis::log::set_level(apsis::log::level::quiet);

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include <malloc.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -72,6 +73,14 @@ memory_limit available_memory(const fs::path& root) {
            "limit of the control group");
   consider(left_of_address_space(root), "limit of the address space");
   return least;
+}
+
+void keep_freed_memory() {
+#ifdef __GLIBC__
+  constexpr int most = 0x7fffffff, largest_block_of_heap = 32 << 20;  // the largest that it accepts
+  mallopt(M_TRIM_THRESHOLD, most);
+  mallopt(M_MMAP_THRESHOLD, largest_block_of_heap);
+#endif
 }
 
 }  // namespace apsis

@@ -3,17 +3,32 @@
 #include <apsis/exec/aligned.hpp>
 
 #include <algorithm>
+#include <memory>
 #include <utility>
+
+#include <sys/mman.h>
 
 namespace apsis {
 
 namespace {
 
+/// A page of this size costs about as much to take as one of 4 KiB. The system may ignore the advice.
+void advise_huge_pages(void* memory, std::size_t bytes) {
+  constexpr std::size_t huge = std::size_t{2} << 20;
+  void* first = memory;
+  if (bytes < 2 * huge || std::align(huge, huge, first, bytes) == nullptr) return;
+  madvise(first, bytes / huge * huge, MADV_HUGEPAGE);
+}
+
 class host final : public memory_space {
  public:
   std::string_view name() const override { return "host"; }
   bool on_host() const override { return true; }
-  double* allocate(std::size_t count) const override { return aligned_allocator<double>().allocate(count); }
+  double* allocate(std::size_t count) const override {
+    double* numbers = aligned_allocator<double>().allocate(count);
+    advise_huge_pages(numbers, count * sizeof(double));
+    return numbers;
+  }
   void release(double* numbers, std::size_t count) const noexcept override {
     aligned_allocator<double>().deallocate(numbers, count);
   }

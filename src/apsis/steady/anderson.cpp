@@ -44,6 +44,7 @@ void move(const field& delta, double share, double factor, field& x) {
 
 void anderson::clear() {
   known_ = false;
+  for (difference& one : differences_) spare_.push_back(std::move(one.of_image));
   differences_.clear();
 }
 
@@ -57,6 +58,9 @@ anderson::weights anderson::weigh(communicator& processes, std::vector<double> r
     if (static_cast<int>(differences_.size()) == depth_) {
       newest = std::move(differences_.front());
       differences_.pop_front();
+    } else if (!spare_.empty()) {
+      newest.of_image = std::move(spare_.back());
+      spare_.pop_back();
     }
     newest.of_r = difference_of(r, last_r_);
     newest.of_functions = difference_of(of_image, last_functions_);

@@ -45,6 +45,7 @@ class anderson {
   field last_image_;
   std::vector<double> last_r_, last_functions_;
   std::deque<difference> differences_;
+  std::vector<field> spare_;  ///< memory of forgotten ones
 };
 
 /// x ← factor (x + share δ).

@@ -33,24 +33,26 @@ class dissection {
   }
 
   void append(std::array<int, 3> begin, std::array<int, 3> end) {
+    const std::size_t before = found_.cells.size();
     for (int x = begin[0]; x < end[0]; ++x)
       for (int y = begin[1]; y < end[1]; ++y)
         for (int z = begin[2]; z < end[2]; ++z) {
           const int cell = x * mesh_.stride(0) + y * mesh_.stride(1) + z * mesh_.stride(2);
-          if (mesh_.solid(cell) < 0) order_.push_back(cell);
+          if (mesh_.solid(cell) < 0) found_.cells.push_back(cell);
         }
+    if (found_.cells.size() > before) found_.parts.push_back(static_cast<int>(found_.cells.size() - before));
   }
 
-  std::vector<int> take() { return std::move(order_); }
+  dissected_mesh take() { return std::move(found_); }
 
  private:
   const grid& mesh_;
-  std::vector<int> order_;
+  dissected_mesh found_;
 };
 
 }  // namespace
 
-std::vector<int> dissected_cells(const grid& mesh, const std::array<bool, 3>& periodic) {
+dissected_mesh dissect(const grid& mesh, const std::array<bool, 3>& periodic) {
   const std::array<int, 3> begin{};
   std::array<int, 3> end{};
   for (int d = 0; d < 3; ++d) end[at(d)] = mesh.cells(d);

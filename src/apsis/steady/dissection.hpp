@@ -7,9 +7,14 @@
 
 namespace apsis {
 
-/// Returns the cells of the gas in an order of elimination with little fill: nested dissection of the mesh
-/// (George, SIAM J. Numer. Anal. 10, 1973). Slabs of two cells, which is how far fluxes reach, separate the
-/// halves and follow them. `periodic`: of each direction.
-std::vector<int> dissected_cells(const grid& mesh, const std::array<bool, 3>& periodic);
+/// Cells of the gas in an order of elimination with little fill.
+struct dissected_mesh {
+  std::vector<int> cells;  ///< in order
+  std::vector<int> parts;  ///< numbers of cells that are eliminated together, one after the other
+};
+
+/// Orders cells by nested dissection of the mesh (George, SIAM J. Numer. Anal. 10, 1973). Slabs of two cells,
+/// which is how far fluxes reach, separate the halves and follow them. `periodic`: of each direction.
+dissected_mesh dissect(const grid& mesh, const std::array<bool, 3>& periodic);
 
 }  // namespace apsis

@@ -65,12 +65,12 @@ macroscopic_system::moments macroscopic_system::whole_system::solve(const moment
 }
 
 double macroscopic_system::bytes_of_cell(int directions, int moments, double cells) {
-  const double square = moments * moments, of_term = sizeof(Eigen::Triplet<double>),
-               of_entry = sizeof(double) + sizeof(int);
-  // A face has four cells around it. Terms are copied once; the matrix is sorted by columns, then by rows.
-  const double terms = 2.0 * 8.0 * directions * square * of_term,
-               matrices = 2.0 * (4.0 * directions + 1.0) * square * of_entry;
-  return terms + matrices + moment_solver::numbers_of_cell(directions, moments, cells) * of_entry;
+  const double square = moments * moments, of_entry = sizeof(double) + sizeof(int),
+               around = 4.0 * directions + 1.0;  // cells whose moments an equation has
+  // Blocks of J by directions and of their sum; the matrix by rows, the one before it, and by columns.
+  const double blocks = (5.0 * directions + 1.0 + around) * square * sizeof(double),
+               matrices = 3.0 * around * square * of_entry;
+  return blocks + matrices + moment_solver::numbers_of_cell(directions, moments, cells) * sizeof(double);
 }
 
 macroscopic_system::macroscopic_system(const relaxation_model& equation, const problem_builder& space,

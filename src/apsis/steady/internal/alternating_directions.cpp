@@ -20,23 +20,22 @@ constexpr int unknowns_of_a_group = 1000;
 /// Wave numbers from 1/extent to those of the mesh.
 std::vector<double> wave_numbers(const moment_mesh& mesh) {
   const double lowest = 1.0 / mesh.extent, highest = std::max(shortest / mesh.spacing, lowest);
-  const int steps = static_cast<int>(std::ceil(std::log(highest / lowest) / std::log(ratio)));
+  const int count = alternating_directions::steps(highest / lowest);
   std::vector<double> found;
-  for (int k = 0; k <= steps; ++k)
-    found.push_back(lowest * std::pow(highest / lowest, static_cast<double>(k) / std::max(steps, 1)));
+  for (int k = 0; k < count; ++k)
+    found.push_back(lowest * std::pow(highest / lowest, static_cast<double>(k) / std::max(count - 1, 1)));
   return found;
 }
 
 constexpr int rows_of_a_block = 512;
 
-using row_major = Eigen::SparseMatrix<double, Eigen::RowMajor>;
-
 /// y ← y − A x, row by row, on all threads.
-void subtract_product(const row_major& matrix, const Eigen::VectorXd& x, Eigen::VectorXd& y) {
+void subtract_product(const row_matrix& matrix, const Eigen::VectorXd& x, Eigen::VectorXd& y) {
   parallel_blocks(static_cast<int>(matrix.rows()), rows_of_a_block, [&](int begin, int end) {
     for (int row = begin; row < end; ++row) {
       double sum = 0.0;
-      for (row_major::InnerIterator entry(matrix, row); entry; ++entry) sum += entry.value() * x[entry.col()];
+      for (row_matrix::InnerIterator entry(matrix, row); entry; ++entry)
+        sum += entry.value() * x[entry.col()];
       y[row] -= sum;
     }
   });
@@ -68,11 +67,12 @@ Eigen::VectorXd scaled_rows(const std::vector<double>& scale, int moments, const
 
 }  // namespace
 
+int alternating_directions::steps(double range) {
+  return static_cast<int>(std::ceil(std::log(range) / std::log(ratio))) + 1;
+}
+
 alternating_directions::alternating_directions(const moment_mesh& mesh, const moment_equations& equations)
-    : mesh_(mesh), conserved_(equations.conserved), matrix_(mesh.unknowns(), mesh.unknowns()) {
-  moment_equations::terms all = equations.inside;
-  for (const auto& terms : equations.along) all.insert(all.end(), terms.begin(), terms.end());
-  matrix_.setFromTriplets(all.begin(), all.end());
+    : mesh_(mesh), conserved_(equations.conserved), matrix_(bare_matrix(mesh, equations)) {
   for (const double k : wave_numbers(mesh)) add_stage(equations, k);
   if (conserved_.empty()) return;
   const int count = static_cast<int>(conserved_.size());
@@ -118,12 +118,20 @@ std::vector<alternating_directions::lines> alternating_directions::factorized_li
         unknowns.push_back(cell * moments + i);
       }
   }
-  std::vector<moment_equations::terms> terms(groups.size());
+  std::vector<std::vector<Eigen::Triplet<double>>> terms(groups.size());
   const auto add = [&](int row, int column, double value) {
     terms[at(place[at(row)].first)].emplace_back(place[at(row)].second, place[at(column)].second, value);
   };
-  for (const auto& term : equations.along[at(direction)]) add(term.row(), term.col(), term.value());
-  for (const auto& term : equations.inside) add(term.row(), term.col(), term.value() / mesh_.directions);
+  const auto add_blocks = [&](const block_matrix& some, double factor) {
+    for (int row = 0; row < some.rows(); ++row)
+      some.visit_row(row, [&](int column, const double* block) {
+        for (int i = 0; i < moments; ++i)
+          for (int j = 0; j < moments; ++j)
+            add(row * moments + i, column * moments + j, factor * block[i * moments + j]);
+      });
+  };
+  add_blocks(equations.along[at(direction)], 1.0);
+  add_blocks(equations.inside, 1.0 / mesh_.directions);
   for (int cell = 0; cell < mesh_.cells; ++cell)
     for (int i = 0; i < moments; ++i)
       for (int j = 0; j < moments; ++j)

@@ -23,6 +23,9 @@ class alternating_directions {
   /// singular.
   alternating_directions(const moment_mesh& mesh, const moment_equations& equations);
 
+  /// Returns the number of wave numbers where the largest one is `range` times the smallest one.
+  static int steps(double range);
+
   /// Returns an approximation of J⁻¹ r, with the rows and columns of bordered_matrix().
   Eigen::VectorXd solve(const Eigen::VectorXd& r) const;
 
@@ -47,7 +50,7 @@ class alternating_directions {
 
   const moment_mesh& mesh_;
   std::vector<int> conserved_;
-  Eigen::SparseMatrix<double, Eigen::RowMajor> matrix_;  ///< J without the equations of sums
+  row_matrix matrix_;  ///< J without the equations of sums
   std::vector<stage> stages_;
   Eigen::MatrixXd of_sources_;  ///< what this object makes of sources that are the same in all cells
   Eigen::PartialPivLU<Eigen::MatrixXd> sums_;

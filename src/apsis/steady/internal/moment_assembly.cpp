@@ -13,6 +13,9 @@
 namespace apsis {
 namespace {
 
+/// Fluxes along a direction reach two cells on both sides.
+constexpr std::size_t blocks_of_row = 5;
+
 /// Cells and their weights in the value at an edge.
 struct weighted_cells {
   std::array<std::pair<int, double>, 5> terms{};
@@ -87,13 +90,10 @@ class flux_derivative {
   std::vector<std::vector<double>> blocks_;  ///< kept for the next face
 };
 
-std::vector<int> numbers_in_order_of_elimination(const domain& space) {
+dissected_mesh dissected(const domain& space) {
   std::array<bool, 3> periodic{};
   for (int d = 0; d < space.mesh().dimensions(); ++d) periodic[at(d)] = space.periodic(d);
-  std::vector<int> numbers(at(space.mesh().size()), -1);
-  int number = 0;
-  for (const int cell : dissected_cells(space.mesh(), periodic)) numbers[at(cell)] = number++;
-  return numbers;
+  return dissect(space.mesh(), periodic);
 }
 
 }  // namespace
@@ -107,14 +107,18 @@ moment_assembly::moment_assembly(const relaxation_model& equation, const domain&
       links_(space),
       first_order_(first_order),
       count_(layout.moments),
-      number_(numbers_in_order_of_elimination(space)),
-      mesh_(described_mesh()) {}
+      number_(at(space.mesh().size()), -1),
+      mesh_(number_cells()) {}
 
-moment_mesh moment_assembly::described_mesh() const {
+moment_mesh moment_assembly::number_cells() {
   const grid& mesh = space_.mesh();
+  dissected_mesh order = dissected(space_);
+  int number = 0;
+  for (const int cell : order.cells) number_[at(cell)] = number++;
   moment_mesh found{.directions = mesh.dimensions(),
                     .moments = count_,
                     .cells = static_cast<int>(links_.cells().size()),
+                    .parts = std::move(order.parts),
                     .extent = 0.0,
                     .spacing = mesh.spacing(0)};
   for (int d = 0; d < mesh.dimensions(); ++d) {
@@ -126,7 +130,7 @@ moment_mesh moment_assembly::described_mesh() const {
 }
 
 moment_equations moment_assembly::assemble(std::span<const double> blocks, double pseudo_rate) const {
-  moment_equations all;
+  moment_equations all(mesh_);
   for (int d = 0; d < layout_.directions; ++d) add_faces(blocks, d, all.along[at(d)]);
   add_forces(all.inside);
   for (const int cell : links_.cells())
@@ -135,16 +139,15 @@ moment_equations moment_assembly::assemble(std::span<const double> blocks, doubl
                 all.inside);
   find_conserved(all);
   if (pseudo_rate > 0.0)
-    for (int k = 0; k < mesh_.unknowns(); ++k) all.inside.emplace_back(k, k, pseudo_rate);
+    for (int k = 0; k < mesh_.unknowns(); ++k) all.inside.entry(k, k) += pseudo_rate;
   add_scales(blocks, all);
   return all;
 }
 
-void moment_assembly::add_block(int row, int column, double factor, const double* block, terms& to) const {
-  for (int i = 0; i < count_; ++i)
-    for (int j = 0; j < count_; ++j)
-      if (const double x = block[i * count_ + j]; x != 0.0)
-        to.emplace_back(row * count_ + i, column * count_ + j, factor * x);
+void moment_assembly::add_block(int row, int column, double factor, const double* block,
+                                block_matrix& to) const {
+  double* sum = to.block(row, column);
+  for (int k = 0; k < count_ * count_; ++k) sum[k] += factor * block[k];
 }
 
 /// Half-range sums of |v| and of v², averaged over the directions.
@@ -166,8 +169,9 @@ void moment_assembly::add_scales(std::span<const double> blocks, moment_equation
     }
 }
 
-void moment_assembly::add_faces(std::span<const double> blocks, int direction, terms& to) const {
+void moment_assembly::add_faces(std::span<const double> blocks, int direction, block_matrix& to) const {
   const double per_length = 1.0 / space_.mesh().spacing(direction);
+  to.reserve(blocks_of_row * at(mesh_.cells));
   const std::size_t up = layout_.transport(direction, true), down = layout_.transport(direction, false),
                     deviation = layout_.deviation(direction);
   flux_derivative flux(layout_.square());
@@ -203,7 +207,7 @@ void moment_assembly::add_faces(std::span<const double> blocks, int direction, t
 }
 
 /// A force a gives the momentum ρa and the energy ρu·a per unit of time.
-void moment_assembly::add_forces(terms& to) const {
+void moment_assembly::add_forces(block_matrix& to) const {
   const gas_model* gas = equation_.as_gas();
   if (!acts_.force || gas == nullptr) return;
   const int energy = count_ - 1;
@@ -212,8 +216,8 @@ void moment_assembly::add_forces(terms& to) const {
     const int first = number_[at(cell)] * count_;
     for (int k = 0; k < gas->molecules().dimensions(); ++k) {
       if (a[at(k)] == 0.0) continue;
-      to.emplace_back(first + 1 + k, first, -a[at(k)]);
-      to.emplace_back(first + energy, first + 1 + k, -a[at(k)]);
+      to.entry(first + 1 + k, first) -= a[at(k)];
+      to.entry(first + energy, first + 1 + k) -= a[at(k)];
     }
   }
 }
@@ -221,14 +225,18 @@ void moment_assembly::add_forces(terms& to) const {
 void moment_assembly::find_conserved(moment_equations& all) const {
   const int unknowns = mesh_.unknowns();
   std::vector<double> sums(at(count_) * at(unknowns), 0.0), sizes(at(count_), 0.0);
-  const auto add = [&](const terms& some) {
-    for (const auto& term : some) {
-      const std::size_t moment = at(term.row() % count_);
-      sums[moment * at(unknowns) + at(term.col())] += term.value();
-      sizes[moment] = std::max(sizes[moment], std::abs(term.value()));
-    }
+  const auto add = [&](const block_matrix& some) {
+    for (int row = 0; row < some.rows(); ++row)
+      some.visit_row(row, [&](int column, const double* block) {
+        for (int i = 0; i < count_; ++i)
+          for (int j = 0; j < count_; ++j) {
+            const double value = block[i * count_ + j];
+            sums[at(i) * at(unknowns) + at(column * count_ + j)] += value;
+            sizes[at(i)] = std::max(sizes[at(i)], std::abs(value));
+          }
+      });
   };
-  for (const terms& some : all.along) add(some);
+  for (const block_matrix& some : all.along) add(some);
   add(all.inside);
   // Fluxes between cells cancel to rounding, those at ends to half the digits, which differences of rows
   // have.

@@ -28,14 +28,14 @@ class moment_assembly {
   moment_equations assemble(std::span<const double> blocks, double pseudo_rate) const;
 
  private:
-  using terms = moment_equations::terms;
-  /// Adds factor · block to the block of J at a row and a column of cells of the gas.
-  void add_block(int row, int column, double factor, const double* block, terms& to) const;
-  void add_faces(std::span<const double> blocks, int direction, terms& to) const;
-  void add_forces(terms& to) const;
+  /// Adds factor · block to the block at a row and a column of cells of the gas.
+  void add_block(int row, int column, double factor, const double* block, block_matrix& to) const;
+  void add_faces(std::span<const double> blocks, int direction, block_matrix& to) const;
+  void add_forces(block_matrix& to) const;
   void find_conserved(moment_equations& all) const;
   void add_scales(std::span<const double> blocks, moment_equations& all) const;
-  moment_mesh described_mesh() const;
+  /// Sets number_, and returns the mesh with these numbers.
+  moment_mesh number_cells();
   const double* block_of(std::span<const double> blocks, int cell, std::size_t place) const {
     return blocks.data() + at(cell) * at(layout_.numbers()) + place;
   }

@@ -2,6 +2,8 @@
 
 #include <apsis/core/index.hpp>
 
+#include <cstddef>
+
 namespace apsis {
 
 std::vector<line_of_cells> lines_along(const cell_links& links, int direction,
@@ -22,21 +24,60 @@ std::vector<line_of_cells> lines_along(const cell_links& links, int direction,
   return found;
 }
 
-Eigen::SparseMatrix<double> bordered_matrix(const moment_mesh& mesh, const moment_equations& equations) {
-  moment_equations::terms all = equations.inside;
-  for (const auto& terms : equations.along) all.insert(all.end(), terms.begin(), terms.end());
-  int extra = mesh.unknowns();
-  for (const int moment : equations.conserved) {
-    for (int cell = 0; cell < mesh.cells; ++cell) {
-      all.emplace_back(cell * mesh.moments + moment, extra, 1.0);
-      all.emplace_back(extra, cell * mesh.moments + moment, 1.0 / mesh.cells);
-    }
-    ++extra;
+moment_equations::moment_equations(const moment_mesh& mesh) : inside(mesh.cells, mesh.moments) {
+  for (int d = 0; d < mesh.directions; ++d) along[at(d)] = block_matrix(mesh.cells, mesh.moments);
+}
+
+namespace {
+
+/// Returns J with so many rows and columns of sums.
+row_matrix with_sums(const moment_mesh& mesh, const moment_equations& equations,
+                     const std::vector<int>& conserved) {
+  const int moments = mesh.moments, unknowns = mesh.unknowns(), sums = static_cast<int>(conserved.size());
+  block_matrix all(mesh.cells, moments);
+  std::size_t most = equations.inside.blocks();
+  for (const block_matrix& some : equations.along) most += some.blocks();
+  all.reserve(most);
+  const auto add = [&](const block_matrix& some) {
+    for (int row = 0; row < some.rows(); ++row)
+      some.visit_row(row, [&](int column, const double* block) {
+        double* to = all.block(row, column);
+        for (int k = 0; k < moments * moments; ++k) to[k] += block[k];
+      });
+  };
+  for (const block_matrix& some : equations.along) add(some);
+  add(equations.inside);
+  row_matrix matrix(unknowns + sums, unknowns + sums);
+  const auto of_blocks = static_cast<Eigen::Index>(all.blocks()) * moments * moments;
+  matrix.reserve(of_blocks + 2 * static_cast<Eigen::Index>(mesh.cells) * sums);
+  for (int row = 0; row < unknowns; ++row) {
+    matrix.startVec(row);
+    all.visit_row(row / moments, [&](int column, const double* block) {
+      for (int j = 0; j < moments; ++j)
+        matrix.insertBackByOuterInnerUnordered(row, column * moments + j) =
+            block[row % moments * moments + j];
+    });
+    for (int k = 0; k < sums; ++k)
+      if (row % moments == conserved[at(k)]) matrix.insertBackByOuterInnerUnordered(row, unknowns + k) = 1.0;
   }
-  Eigen::SparseMatrix<double> matrix(extra, extra);
-  matrix.setFromTriplets(all.begin(), all.end());
-  matrix.makeCompressed();
+  for (int k = 0; k < sums; ++k) {
+    matrix.startVec(unknowns + k);
+    for (int cell = 0; cell < mesh.cells; ++cell)
+      matrix.insertBackByOuterInnerUnordered(unknowns + k, cell * moments + conserved[at(k)]) =
+          1.0 / mesh.cells;
+  }
+  matrix.finalize();
   return matrix;
+}
+
+}  // namespace
+
+row_matrix bare_matrix(const moment_mesh& mesh, const moment_equations& equations) {
+  return with_sums(mesh, equations, {});
+}
+
+row_matrix bordered_matrix(const moment_mesh& mesh, const moment_equations& equations) {
+  return with_sums(mesh, equations, equations.conserved);
 }
 
 }  // namespace apsis

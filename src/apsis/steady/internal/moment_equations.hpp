@@ -1,6 +1,7 @@
 #pragma once
 
 #include <apsis/steady/cell_links.hpp>
+#include <apsis/steady/internal/block_matrix.hpp>
 
 #include <array>
 #include <vector>
@@ -23,6 +24,8 @@ struct moment_mesh {
   int directions = 1,  ///< of the mesh
       moments = 1,     ///< of a cell
       cells = 0;       ///< of the gas
+  /// Numbers of cells that are eliminated together, one after the other; all of them where it is empty.
+  std::vector<int> parts = {};
   std::array<std::vector<line_of_cells>, 3> lines = {};
   double extent = 1.0,  ///< the longest side of the domain
       spacing = 1.0;    ///< the shortest side of a cell
@@ -31,20 +34,27 @@ struct moment_mesh {
   int unknowns() const { return moments * cells; }
 };
 
-/// The linearised moment equations J δω = r of a whole mesh, term by term. Row and column of moment i of a
-/// cell are number · moments + i.
-struct moment_equations {
-  using terms = std::vector<Eigen::Triplet<double>>;
+/// A sparse matrix that is stored by rows.
+using row_matrix = Eigen::SparseMatrix<double, Eigen::RowMajor>;
 
-  std::array<terms, 3> along = {};  ///< ∂ω-derivatives of the fluxes along every direction
-  terms inside = {};                ///< those of forces and sources, and the pseudo-time term
-  std::vector<int> conserved = {};  ///< moments whose sum is prescribed by an equation of its own
+/// The linearised moment equations J δω = r of a whole mesh, as sums of matrices with a block of
+/// moments × moments for each pair of cells.
+struct moment_equations {
+  /// Without any term.
+  explicit moment_equations(const moment_mesh& mesh);
+
+  std::array<block_matrix, 3> along = {};  ///< ∂ω-derivatives of the fluxes along every direction
+  block_matrix inside = {};                ///< those of forces and sources, and the pseudo-time term
+  std::vector<int> conserved = {};         ///< moments whose sum is prescribed by an equation of its own
   /// Scales of J for wave numbers k of a cell, [number][moments²]: |k| flights + k² spreads.
   std::vector<double> flights = {}, spreads = {};
 };
 
+/// Returns J without the equations of sums.
+row_matrix bare_matrix(const moment_mesh& mesh, const moment_equations& equations);
+
 /// Returns J with a row and a column for each moment that is conserved: its sum divided by the number of
 /// cells, and a source of it that is the same in all cells.
-Eigen::SparseMatrix<double> bordered_matrix(const moment_mesh& mesh, const moment_equations& equations);
+row_matrix bordered_matrix(const moment_mesh& mesh, const moment_equations& equations);
 
 }  // namespace apsis

@@ -1,13 +1,14 @@
 #pragma once
 
 #include <apsis/steady/internal/alternating_directions.hpp>
+#include <apsis/steady/internal/frontal_factors.hpp>
 #include <apsis/steady/internal/moment_equations.hpp>
 #include <apsis/steady/internal/neutral_mode.hpp>
-#include <apsis/steady/internal/sparse_factors.hpp>
 
 #include <functional>
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include <Eigen/SparseCore>
 
@@ -37,13 +38,14 @@ class moment_solver {
  private:
   using preconditioner = std::function<Eigen::VectorXd(const Eigen::VectorXd&)>;
   void factorize_again();
+  std::vector<int> ends_of_parts() const;
   std::optional<Eigen::VectorXd> iterate(const Eigen::VectorXd& r, const preconditioner& approximate,
                                          double tolerance, int iterations);
 
   const moment_mesh& mesh_;
   bool factorizes_;
-  Eigen::SparseMatrix<double, Eigen::RowMajor> matrix_;
-  std::unique_ptr<sparse_factors> factors_;
+  row_matrix matrix_;
+  std::unique_ptr<frontal_factors> factors_;
   bool are_those_of_matrix_ = false;  ///< the factors
   int iterations_ = 0;                ///< with this matrix
   std::unique_ptr<alternating_directions> directions_;

@@ -29,13 +29,15 @@ columns start(Eigen::Index rows) {
 
 }  // namespace
 
-std::optional<neutral_mode> find_neutral_mode(sparse_factors& factors) {
+std::optional<neutral_mode> find_neutral_mode(const frontal_factors& factors) {
   if (factors.rows() < 2) return std::nullopt;
-  columns right = start(factors.rows()), left;
+  columns right = start(factors.rows()), left(factors.rows(), 2);
   double smallest = 0.0, next = 0.0;
   for (int k = 0; k < iterations; ++k) {
-    left = orthonormal(Eigen::HouseholderQR<columns>(columns(factors.transpose().solve(right))));
-    const Eigen::HouseholderQR<columns> decomposed(columns(factors.solve(left)));
+    for (int i = 0; i < 2; ++i) left.col(i) = factors.solve_transposed(right.col(i));
+    left = orthonormal(Eigen::HouseholderQR<columns>(left));
+    for (int i = 0; i < 2; ++i) right.col(i) = factors.solve(left.col(i));
+    const Eigen::HouseholderQR<columns> decomposed(right);
     smallest = 1.0 / std::abs(decomposed.matrixQR()(0, 0));
     next = 1.0 / std::abs(decomposed.matrixQR()(1, 1));
     right = orthonormal(decomposed);

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <apsis/steady/internal/sparse_factors.hpp>
+#include <apsis/steady/internal/frontal_factors.hpp>
 
 #include <optional>
 
@@ -21,6 +21,6 @@ struct neutral_mode {
 
 /// Returns the neutral mode of J, from a block inverse iteration: the smallest singular value must be below a
 /// thousandth of the next. Returns nothing if J has none, or has several.
-std::optional<neutral_mode> find_neutral_mode(sparse_factors& factors);
+std::optional<neutral_mode> find_neutral_mode(const frontal_factors& factors);
 
 }  // namespace apsis

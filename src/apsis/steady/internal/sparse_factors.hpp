@@ -8,7 +8,6 @@ namespace apsis {
 /// Factors of a matrix in the order of its unknowns.
 template <class Number>
 using sparse_factors_of = Eigen::SparseLU<Eigen::SparseMatrix<Number>, Eigen::NaturalOrdering<int>>;
-using sparse_factors = sparse_factors_of<double>;
 
 /// Factorizes a matrix whose unknowns have an order of little fill. Throws numerical_error if it is singular.
 template <class Number>

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <apsis/steady/dense_product.hpp>
+
+#include <span>
+
+namespace apsis {
+
+/// LU factors of dense matrices by halves (Toledo, SIAM J. Matrix Anal. Appl. 18, 1997), so that nearly all
+/// operations are products.
+namespace dense_factors {
+
+using dense_product::block;
+
+/// a ← its factors L, with 1 on the diagonal, and U; rows ≥ columns. Row k was exchanged with row
+/// exchanged[k], in this order. Returns whether no pivot is 0 or not a number; otherwise the factors are of
+/// no use.
+bool factorize(const block& a, std::span<int> exchanged);
+/// Exchanges rows of b as factorize() did.
+void exchange_rows(std::span<const int> exchanged, const block& b);
+/// b ← L⁻¹ b.
+void solve_lower(const block& factors, const block& b);
+/// b ← b U⁻¹.
+void solve_upper_from_right(const block& factors, const block& b);
+
+}  // namespace dense_factors
+}  // namespace apsis

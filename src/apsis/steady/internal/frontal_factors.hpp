@@ -1,0 +1,81 @@
+#pragma once
+
+#include <apsis/exec/aligned.hpp>
+#include <apsis/exec/memory_space.hpp>
+#include <apsis/steady/dense_product.hpp>
+#include <apsis/steady/internal/moment_equations.hpp>
+
+#include <cstddef>
+#include <vector>
+
+#include <Eigen/Core>
+#include <Eigen/SparseCore>
+
+namespace apsis {
+
+/// LU factors of a sparse matrix by the multifrontal method (Duff & Reid, ACM Trans. Math. Softw. 9, 1983).
+/// The unknowns are eliminated part by part, each part with dense matrices. Rows are exchanged within a part
+/// alone, so that the order of the parts bounds the fill. The result does not depend on the number of
+/// threads.
+class frontal_factors {
+ public:
+  /// `ends`: one past the last unknown of each part, increasing; the last one is the number of rows.
+  explicit frontal_factors(const std::vector<int>& ends);
+
+  /// Factorizes a compressed matrix; another one of the same pattern takes the same memory. Throws
+  /// numerical_error if the matrix is singular, or its block of a part and of all parts before.
+  void factorize(const row_matrix& matrix);
+  /// Returns A⁻¹ r.
+  Eigen::VectorXd solve(const Eigen::VectorXd& r) const;
+  /// Returns A⁻ᵀ r.
+  Eigen::VectorXd solve_transposed(const Eigen::VectorXd& r) const;
+
+  /// Returns the number of rows.
+  Eigen::Index rows() const { return parts_.back().end; }
+  /// Returns the number of entries of the factors.
+  std::size_t entries() const { return numbers_.size(); }
+
+ private:
+  using column_matrix = Eigen::SparseMatrix<double>;
+  using block = dense_product::block;
+  using matrix_view = Eigen::Map<const Eigen::MatrixXd, 0, Eigen::OuterStride<>>;
+
+  /// A part, with the later unknowns that it is connected with.
+  struct front {
+    int begin = 0, end = 0;                 ///< unknowns of the part
+    std::vector<int> border = {};           ///< later unknowns, increasing
+    std::vector<std::size_t> before = {};   ///< parts whose first later unknown is in this one
+    std::vector<int> exchanged = {};        ///< rows of the part
+    std::size_t first = 0;                  ///< of its numbers
+    aligned_vector<double> left_over = {};  ///< of its border, which a later part takes
+
+    int size() const { return end - begin; }
+    int border_size() const { return static_cast<int>(border.size()); }
+  };
+
+  bool has_pattern_of(const row_matrix& matrix) const;
+  void find_borders(const column_matrix& columns, const row_matrix& rows);
+  void find_levels();
+  void place_fronts();
+  void eliminate(const column_matrix& columns, const row_matrix& rows, front& part);
+  void add_entries(const column_matrix& columns, const row_matrix& rows, const front& part);
+  void add_left_over(front& from, front& to);
+
+  /// The factors of the block of a part.
+  block inside(const front& part);
+  /// The rows of its border, times U⁻¹.
+  block below(const front& part);
+  /// L⁻¹ of the columns of its border.
+  block right(const front& part);
+  matrix_view inside(const front& part) const;
+  matrix_view below(const front& part) const;
+  matrix_view right(const front& part) const;
+
+  std::vector<front> parts_;
+  /// Lists of parts. Those of a level do not need each other.
+  std::vector<std::vector<std::vector<std::size_t>>> levels_;
+  std::vector<int> starts_, column_numbers_;  ///< of the rows of the last matrix
+  stored_numbers numbers_;                    ///< of the factors
+};
+
+}  // namespace apsis

@@ -167,7 +167,8 @@ TEST(frontal_factors, take_matrices_of_other_patterns_and_do_not_depend_on_threa
 
 TEST(frontal_factors, report_a_singular_matrix_and_take_the_next_one) {
   row_matrix matrix = banded(50, 2, 1);
-  for (row_matrix::InnerIterator entry(matrix, 20); entry; ++entry) entry.valueRef() = 0.0;
+  std::fill(matrix.valuePtr() + matrix.outerIndexPtr()[20], matrix.valuePtr() + matrix.outerIndexPtr()[21],
+            0.0);
   frontal_factors factors(random_ends(50, 6, 2));
   try {
     factors.factorize(matrix);

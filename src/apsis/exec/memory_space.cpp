@@ -63,7 +63,7 @@ stored_numbers& stored_numbers::operator=(stored_numbers&& other) noexcept {
   std::swap(space_, other.space_);
   std::swap(data_, other.data_);
   std::swap(count_, other.count_);
-  stored_numbers(std::move(other));  // releases what this object owned
+  const stored_numbers released = std::move(other);  // what this object owned
   return *this;
 }
 

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <ranges>
 #include <utility>
 
 namespace apsis {
@@ -197,37 +198,33 @@ frontal_factors::matrix_view frontal_factors::right(const front& part) const {
 }
 
 Eigen::VectorXd frontal_factors::solve(const Eigen::VectorXd& r) const {
-  Eigen::VectorXd x = r, of_border;
+  Eigen::VectorXd x = r;
   for (const front& part : parts_) {
     auto here = x.segment(part.begin, part.size());
     for (int k = 0; k < part.size(); ++k) std::swap(here[k], here[part.exchanged[at(k)]]);
     inside(part).triangularView<Eigen::UnitLower>().solveInPlace(here);
-    of_border.noalias() = below(part) * here;
-    x(part.border) -= of_border;
+    x(part.border) -= below(part) * here;
   }
-  for (auto part = parts_.rbegin(); part != parts_.rend(); ++part) {
-    auto here = x.segment(part->begin, part->size());
-    of_border = x(part->border);
-    here.noalias() -= right(*part) * of_border;
-    inside(*part).triangularView<Eigen::Upper>().solveInPlace(here);
+  for (const front& part : std::views::reverse(parts_)) {
+    auto here = x.segment(part.begin, part.size());
+    here -= right(part) * x(part.border);
+    inside(part).triangularView<Eigen::Upper>().solveInPlace(here);
   }
   return x;
 }
 
 Eigen::VectorXd frontal_factors::solve_transposed(const Eigen::VectorXd& r) const {
-  Eigen::VectorXd x = r, of_border;
+  Eigen::VectorXd x = r;
   for (const front& part : parts_) {
     auto here = x.segment(part.begin, part.size());
     inside(part).transpose().triangularView<Eigen::Lower>().solveInPlace(here);
-    of_border.noalias() = right(part).transpose() * here;
-    x(part.border) -= of_border;
+    x(part.border) -= right(part).transpose() * here;
   }
-  for (auto part = parts_.rbegin(); part != parts_.rend(); ++part) {
-    auto here = x.segment(part->begin, part->size());
-    of_border = x(part->border);
-    here.noalias() -= below(*part).transpose() * of_border;
-    inside(*part).transpose().triangularView<Eigen::UnitUpper>().solveInPlace(here);
-    for (int k = part->size(); k-- > 0;) std::swap(here[k], here[part->exchanged[at(k)]]);
+  for (const front& part : std::views::reverse(parts_)) {
+    auto here = x.segment(part.begin, part.size());
+    here -= below(part).transpose() * x(part.border);
+    inside(part).transpose().triangularView<Eigen::UnitUpper>().solveInPlace(here);
+    for (int k = part.size(); k-- > 0;) std::swap(here[k], here[part.exchanged[at(k)]]);
   }
   return x;
 }

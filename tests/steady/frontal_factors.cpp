@@ -3,7 +3,7 @@
 
 #include <apsis/core/errors.hpp>
 #include <apsis/exec/parallel.hpp>
-#include <apsis/steady/dense_factors.hpp>
+#include <apsis/steady/internal/dense_factors.hpp>
 
 #include <algorithm>
 #include <array>

@@ -2,7 +2,7 @@
 
 #include <apsis/exec/aligned.hpp>
 #include <apsis/exec/memory_space.hpp>
-#include <apsis/steady/dense_product.hpp>
+#include <apsis/steady/internal/dense_product.hpp>
 #include <apsis/steady/internal/moment_equations.hpp>
 
 #include <cstddef>

@@ -1,8 +1,8 @@
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "apsis/steady/dense_product.cpp"
+#define HWY_TARGET_INCLUDE "apsis/steady/internal/dense_product.cpp"
 #include <hwy/foreach_target.h>
 
-#include <apsis/steady/dense_product.hpp>
+#include <apsis/steady/internal/dense_product.hpp>
 
 #include <apsis/exec/simd-inl.hpp>
 

@@ -1,4 +1,4 @@
-#include <apsis/steady/dense_factors.hpp>
+#include <apsis/steady/internal/dense_factors.hpp>
 
 #include <apsis/core/index.hpp>
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <apsis/steady/dense_product.hpp>
+#include <apsis/steady/internal/dense_product.hpp>
 
 #include <span>
 

@@ -15,7 +15,7 @@ std::string graded_plates::slope_formula() const {
 
 std::vector<std::string> between_plates(const std::map<std::string, std::string>& parameters) {
   return {"parameters.delta=" + parameters.at("delta"), "model.name=" + parameters.at("model"),
-          fmt::format("model.epsilon=1/(sqrt(2)*delta*{})", plate_cells.slope_formula()), "space.cells=160",
+          fmt::format("model.epsilon=1/(sqrt(2)*delta*{})", plate_cells.slope_formula()), "space.cells=640",
           steady_state};
 }
 

@@ -33,7 +33,7 @@ class graded_plates {
 /// plate.
 inline const graded_plates plate_cells(0.05);
 
-/// Returns the keys that the steady flows between plates share: rarefaction, model, 160 of these cells, and a
+/// Returns the keys that the steady flows between plates share: rarefaction, model, 640 of these cells, and a
 /// steady state without error of time. `parameters`: delta and model.
 std::vector<std::string> between_plates(const std::map<std::string, std::string>& parameters);
 

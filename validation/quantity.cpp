@@ -101,6 +101,13 @@ double compute_quantity(const quantity_entry& quantity, const std::vector<std::s
   });
 }
 
+reference_value printed(origin from, quantity_values at, const std::string& digits, double accuracy) {
+  const std::size_t point = digits.find('.');
+  const auto decimals = point == std::string::npos ? 0 : digits.size() - point - 1;
+  const double value = std::stod(digits), half_unit = 0.5 * std::pow(10.0, -static_cast<double>(decimals));
+  return {std::move(at), value, half_unit / std::abs(value) + accuracy, from};
+}
+
 double positive_number(const quantity_values& parameters, const std::string& name) {
   const double value = number_of(parameters.at(name));
   if (!(value > 0.0) || std::isinf(value))

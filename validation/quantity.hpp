@@ -41,6 +41,9 @@ struct reference_value {
 inline reference_value published(quantity_values at, double value, double tolerance = 1e-3) {
   return {std::move(at), value, tolerance, origin::published};
 }
+/// Returns a value with the digits that are printed, such as "0.6007". The tolerance is half a unit of the
+/// last one, and `accuracy` of the run, relative to the value.
+reference_value printed(origin from, quantity_values at, const std::string& digits, double accuracy = 1e-5);
 /// Returns a value from a formula or an exact solution.
 inline reference_value theory(quantity_values at, double value, double tolerance = 1e-3) {
   return {std::move(at), value, tolerance, origin::theory};

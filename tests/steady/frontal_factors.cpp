@@ -103,7 +103,7 @@ TEST(dense_factors, multiply_to_the_matrix_with_its_rows_exchanged) {
     const MatrixXd upper = factors.topRows(columns).triangularView<Eigen::Upper>();
     // Growth of Gaussian elimination with exchanged rows is small for random matrices.
     EXPECT_LE((lower * upper - exchanged_rows).cwiseAbs().maxCoeff(), 1e-14 * rows);
-    // The largest entry of what is left of a column becomes the pivot.
+    // The largest entry that remains in a column becomes the pivot.
     EXPECT_LE(lower.cwiseAbs().maxCoeff(), 1.0);
   }
 }

@@ -11,7 +11,8 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 linear_plates::linear_plates(double delta, int cells, int speeds)
-    : x_(cells + 1),
+    : delta_(delta),
+      x_(cells + 1),
       speed_(speeds),
       weight_(speeds),
       of_source_(6, MatrixXd::Zero(cells + 1, cells + 1)),
@@ -56,6 +57,19 @@ VectorXd linear_plates::velocity() const {
   return (MatrixXd::Identity(n, n) - of_source_[0] + of_source_[0].colwise().reverse())
       .partialPivLu()
       .solve(of_plate_[0] - of_plate_[0].reverse());
+}
+
+double linear_plates::flow_rate() const {
+  // φ = 2 c_y ψ with c ψ_x = δ (u − ψ) + 1/2. Far from plates, for s = x − 1/2,
+  //     ψ = −δ s²/2 + c s − (c² − 1/2)/δ + δ/8,   u = −δ s²/2 + δ/8.
+  // The plates emit ψ = 0, and so −ψ of this solution in the rest, which is a layer.
+  const auto n = x_.size();
+  const MatrixXd both = of_source_[0] + of_source_[0].colwise().reverse();
+  const VectorXd emitted = 0.5 * of_plate_[1] + (of_plate_[2] - 0.5 * of_plate_[0]) / delta_;
+  const VectorXd u = (MatrixXd::Identity(n, n) - both).partialPivLu().solve(emitted + emitted.reverse());
+  double layer = 0.0;
+  for (Eigen::Index i = 1; i < n; ++i) layer += (x_[i] - x_[i - 1]) * (u[i] + u[i - 1]);
+  return delta_ / 6.0 + layer;
 }
 
 double linear_plates::shear_stress() const {

@@ -8,11 +8,11 @@ namespace validation_test {
 
 /// The steady linearized BGK equation between diffuse plates at x = 0 and 1,
 ///     c_x φ_x = δ (ρ + 2 c·u + (c² − 3/2) τ − φ),   c = v/v₀, δ = pL/(μ v₀),
-/// for data antisymmetric about the middle, without mesh or velocities of the library: the equation is solved
-/// exactly along characteristics for sources that are linear between nodes, so that the moments of φ are a
-/// matrix times those of the source plus what the plates emit; the moments then solve a dense linear system.
-/// Nodes are graded towards the plates, speeds are c = 6 s³ with s at midpoints. The error is of second order
-/// in 1/cells.
+/// for data antisymmetric or symmetric about the middle, without mesh or velocities of the library: the
+/// equation is solved exactly along characteristics for sources that are linear between nodes, so that the
+/// moments of φ are a matrix times those of the source plus what the plates emit; the moments then solve a
+/// dense linear system. Nodes are graded towards the plates, speeds are c = 6 s³ with s at midpoints. The
+/// error is of second order in 1/cells.
 class linear_plates {
  public:
   linear_plates(double delta, int cells, int speeds = 100);
@@ -24,11 +24,14 @@ class linear_plates {
   /// Returns the velocity at the nodes where the plate at x = 0 moves with 1, that at x = 1 with −1.
   Eigen::VectorXd velocity() const;
   const Eigen::VectorXd& nodes() const { return x_; }
+  /// Returns the flow rate 2 ∫ u dx along the plates for a pressure gradient of 1 there.
+  double flow_rate() const;
 
  private:
   /// Returns the moment of weights c^k over c > 0.
   double half_range(int k) const;
 
+  double delta_;
   Eigen::VectorXd x_, speed_, weight_;
   /// Moments Σ w c^k φ over c_x > 0: of_source_[k] applied to the source, of_plate_[k] times φ at the plate.
   std::vector<Eigen::MatrixXd> of_source_;

@@ -46,7 +46,7 @@ struct kramers_problem {
     return distance + slip - (1.0 - u) * (0.5 * delta + slip);
   }
 
-  static constexpr double delta = 20.0;  // the layers change each other by exp(−3 (δ/2)^(2/3)) = 1e-6
+  static constexpr double delta = 28.0;  // the layers change each other by 1e-6 of the slip
   linear_plates flow;
   Eigen::VectorXd velocity;
   double slip = 0.0;
@@ -89,13 +89,25 @@ TEST(linear_plates, is_the_source_of_the_values_of_heat) {
     EXPECT_NEAR(heat_flux(std::stod(reference.at.at("delta"))), reference.value, 1e-6);  // printed with six
 }
 
+TEST(linear_plates, has_the_published_flow_rates) {
+  for (const auto& reference : find_quantity("poiseuille").references) {
+    const double delta = std::stod(reference.at.at("delta"));
+    const double value =
+        extrapolated(400, [=](int cells) { return linear_plates(delta, cells).flow_rate(); });
+    // A unit of the last digit, that for δ = 10 included.
+    EXPECT_NEAR(value, reference.value, 1e-6 * reference.value) << delta;
+  }
+  // The limit of thick gases is that of Stokes' flow.
+  EXPECT_NEAR(linear_plates(1e4, 100).flow_rate(), 1e4 / 6.0, 2.0);
+}
+
 TEST(linear_plates, has_the_slip_and_the_layer_of_kramers) {
   for (const auto& reference : find_quantity("kramers").references) {
     const auto at = reference.at.find("distance");
     const double value = at == reference.at.end()
                              ? extrapolated(200, [](int cells) { return kramers_problem(cells).slip; })
                              : layer(std::stod(at->second));
-    // A unit of the fifth decimal: 0.07175 is printed for 0.071744.
+    // A unit of the fifth decimal, which is the last one that is printed.
     EXPECT_NEAR(value, reference.value, 1e-5) << (at == reference.at.end() ? "slip" : at->second);
   }
 }

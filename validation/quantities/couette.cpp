@@ -33,10 +33,14 @@ const quantity_entry quantity_couette = {
     .source = "Willis, Phys. Fluids 5 (1962), and Loyalka; BGK",
     .parameters = {{"delta", "1", "rarefaction p L/(mu v0), v0 = sqrt(2 R T)"},
                    {"model", "bgk", "bgk, shakhov or es-bgk"}},
-    .references = {published({{"delta", "0.01"}}, 0.9914), published({{"delta", "0.1"}}, 0.9258),
-                   published({{"delta", "1"}}, 0.6007), published({{"delta", "2"}}, 0.4436),
-                   published({{"delta", "5"}}, 0.2522), published({{"delta", "10"}}, 0.1473),
-                   published({{"delta", "20"}}, 0.08045), published({{"delta", "100"}}, 0.01737)},
+    .references = {printed(origin::published, {{"delta", "0.01"}}, "0.9914"),
+                   printed(origin::published, {{"delta", "0.1"}}, "0.9258"),
+                   printed(origin::published, {{"delta", "1"}}, "0.6007"),
+                   printed(origin::published, {{"delta", "2"}}, "0.4436"),
+                   printed(origin::published, {{"delta", "5"}}, "0.2522"),
+                   printed(origin::published, {{"delta", "10"}}, "0.1473"),
+                   printed(origin::published, {{"delta", "20"}}, "0.08045"),
+                   printed(origin::published, {{"delta", "100"}}, "0.01737")},
     .compute = couette_quantity::compute};
 
 }  // namespace apsis::validation

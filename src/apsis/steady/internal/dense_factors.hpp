@@ -13,8 +13,8 @@ namespace dense_factors {
 using dense_product::block;
 
 /// a ← its factors L, with 1 on the diagonal, and U; rows ≥ columns. Row k was exchanged with row
-/// exchanged[k], in this order. Returns whether no pivot is 0 or not a number; otherwise the factors are of
-/// no use.
+/// exchanged[k], in this order. Returns false where a pivot is 0 or not a number; the factors are then
+/// undefined.
 bool factorize(const block& a, std::span<int> exchanged);
 /// Exchanges rows of b as factorize() did.
 void exchange_rows(std::span<const int> exchanged, const block& b);

@@ -4,6 +4,8 @@
 
 #include "gas_problem.hpp"
 
+#include <apsis/core/index.hpp>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -44,12 +46,12 @@ moment_equations flows(const moment_mesh& mesh, double nu, int closed, unsigned 
   std::uniform_real_distribution<double> share(0.5, 1.5);
   moment_equations all(mesh);
   const int m = mesh.moments;
-  const auto squares = static_cast<std::size_t>(mesh.cells * m * m);
+  const std::size_t squares = apsis::at(mesh.cells) * apsis::at(m * m);
   all.flights.assign(squares, 0.0);
   all.spreads.assign(squares, 0.0);
   for (int cell = 0; cell < mesh.cells; ++cell)
     for (int i = 0; i < m; ++i) {
-      const auto diagonal = static_cast<std::size_t>((cell * m + i) * m + i);
+      const std::size_t diagonal = apsis::at(cell * m + i) * apsis::at(m) + apsis::at(i);
       all.flights[diagonal] = 1.0;
       all.spreads[diagonal] = nu;
     }

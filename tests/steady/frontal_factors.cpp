@@ -45,7 +45,7 @@ row_matrix banded(int rows, int reach, unsigned seed) {
   for (int i = 0; i < rows; ++i)
     for (int j = 0; j < rows; ++j)
       if (std::abs(i - j) <= reach || i == rows - 1 || j == rows - 1) {
-        // Rows of a part are regular, but its diagonal does not dominate.
+        // The block of a part is regular, but its diagonal does not dominate.
         const double diagonal = i == j ? 2.0 * std::sqrt(2.0 * reach + 1.0) : 0.0;
         terms.emplace_back(i, j, diagonal + number(generator));
       }
@@ -95,13 +95,13 @@ TEST(dense_factors, multiply_to_the_matrix_with_its_rows_exchanged) {
                                       std::array{40, 40}, std::array{130, 130}, std::array{150, 37}}) {
     const MatrixXd matrix = noise(rows, columns, 5);
     MatrixXd factors = matrix, exchanged_rows = matrix;
-    std::vector<int> exchanged(static_cast<std::size_t>(columns));
-    ASSERT_TRUE(apsis::dense_factors::factorize(block_of(factors), exchanged));
-    apsis::dense_factors::exchange_rows(exchanged, block_of(exchanged_rows));
+    std::vector<int> pivots(static_cast<std::size_t>(columns));
+    ASSERT_TRUE(apsis::dense_factors::factorize(block_of(factors), pivots));
+    apsis::dense_factors::exchange_pivot_rows(pivots, block_of(exchanged_rows));
     MatrixXd lower = MatrixXd::Identity(rows, columns);
     lower.triangularView<Eigen::StrictlyLower>() = factors;
     const MatrixXd upper = factors.topRows(columns).triangularView<Eigen::Upper>();
-    // Growth of Gaussian elimination with exchanged rows is small for random matrices.
+    // Growth of Gaussian elimination with pivots is small for random matrices.
     EXPECT_LE((lower * upper - exchanged_rows).cwiseAbs().maxCoeff(), 1e-14 * rows);
     // The largest entry that remains in a column becomes the pivot.
     EXPECT_LE(lower.cwiseAbs().maxCoeff(), 1.0);
@@ -125,13 +125,13 @@ TEST(dense_factors, solve_triangular_equations) {
 }
 
 TEST(dense_factors, find_a_pivot_that_is_0_or_not_a_number) {
-  std::vector<int> exchanged(20);
+  std::vector<int> pivots(20);
   MatrixXd singular = noise(20, 20, 1);
   singular.col(15).setZero();
-  EXPECT_FALSE(apsis::dense_factors::factorize(block_of(singular), exchanged));
+  EXPECT_FALSE(apsis::dense_factors::factorize(block_of(singular), pivots));
   MatrixXd unknown = noise(20, 20, 1);
   unknown(4, 4) = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_FALSE(apsis::dense_factors::factorize(block_of(unknown), exchanged));
+  EXPECT_FALSE(apsis::dense_factors::factorize(block_of(unknown), pivots));
 }
 
 TEST(frontal_factors, solve_equations_and_transposed_ones_in_any_parts) {

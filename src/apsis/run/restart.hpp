@@ -11,7 +11,7 @@
 
 namespace apsis {
 
-/// Returns the first line of each text that differs from that of the other; equal ones if there is none.
+/// Returns the first line of each text that differs from that of the other. Both are empty for equal texts.
 std::pair<std::string, std::string> first_difference(const std::string& a, const std::string& b);
 
 /// Returns the case with the method of the checkpoint, if there is one and the program chose the method: a

@@ -12,12 +12,12 @@ namespace {
 /// Blocks of at most so many columns are not halved.
 constexpr int smallest = 8;
 
-bool factorize_columns(const block& a, std::span<int> exchanged) {
+bool factorize_columns(const block& a, std::span<int> pivots) {
   for (int k = 0; k < a.columns; ++k) {
     int largest = k;
     for (int i = k + 1; i < a.rows; ++i)
       if (std::abs(a(i, k)) > std::abs(a(largest, k))) largest = i;
-    exchanged[at(k)] = largest;
+    pivots[at(k)] = largest;
     if (largest != k)
       for (int j = 0; j < a.columns; ++j) std::swap(a(k, j), a(largest, j));
     if (!(std::abs(a(k, k)) > 0.0)) return false;
@@ -31,25 +31,25 @@ bool factorize_columns(const block& a, std::span<int> exchanged) {
 
 }  // namespace
 
-bool factorize(const block& a, std::span<int> exchanged) {
-  if (a.columns <= smallest) return factorize_columns(a, exchanged);
+bool factorize(const block& a, std::span<int> pivots) {
+  if (a.columns <= smallest) return factorize_columns(a, pivots);
   const int left = a.columns / 2, right = a.columns - left, below = a.rows - left;
   const block of_left = a.at(0, 0, a.rows, left), upper = a.at(0, left, left, right),
               rest = a.at(left, left, below, right);
-  const std::span<int> first = exchanged.first(at(left)), second = exchanged.subspan(at(left));
+  const std::span<int> first = pivots.first(at(left)), second = pivots.subspan(at(left));
   if (!factorize(of_left, first)) return false;
-  exchange_rows(first, a.at(0, left, a.rows, right));
+  exchange_pivot_rows(first, a.at(0, left, a.rows, right));
   solve_lower(of_left.at(0, 0, left, left), upper);
   dense_product::subtract(a.at(left, 0, below, left), upper, rest);
   if (!factorize(rest, second)) return false;
-  exchange_rows(second, a.at(left, 0, below, left));
+  exchange_pivot_rows(second, a.at(left, 0, below, left));
   for (int& row : second) row += left;
   return true;
 }
 
-void exchange_rows(std::span<const int> exchanged, const block& b) {
+void exchange_pivot_rows(std::span<const int> pivots, const block& b) {
   for (int j = 0; j < b.columns; ++j)
-    for (int k = 0; k < static_cast<int>(exchanged.size()); ++k) std::swap(b(k, j), b(exchanged[at(k)], j));
+    for (int k = 0; k < static_cast<int>(pivots.size()); ++k) std::swap(b(k, j), b(pivots[at(k)], j));
 }
 
 void solve_lower(const block& factors, const block& b) {

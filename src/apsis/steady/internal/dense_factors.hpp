@@ -12,12 +12,12 @@ namespace dense_factors {
 
 using dense_product::block;
 
-/// a ← its factors L, with 1 on the diagonal, and U; rows ≥ columns. Row k was exchanged with row
-/// exchanged[k], in this order. Returns false where a pivot is 0 or not a number; the factors are then
+/// a ← its factors L, with 1 on the diagonal, and U; rows ≥ columns. pivots[k] is the row that row k was
+/// exchanged with, in this order. Returns false where a pivot is 0 or not a number; the factors are then
 /// undefined.
-bool factorize(const block& a, std::span<int> exchanged);
+bool factorize(const block& a, std::span<int> pivots);
 /// Exchanges rows of b as factorize() did.
-void exchange_rows(std::span<const int> exchanged, const block& b);
+void exchange_pivot_rows(std::span<const int> pivots, const block& b);
 /// b ← L⁻¹ b.
 void solve_lower(const block& factors, const block& b);
 /// b ← b U⁻¹.

@@ -13,7 +13,7 @@
 namespace apsis {
 namespace {
 
-/// Parts with fewer unknowns than this share, and all parts before them, are eliminated by one thread.
+/// One thread eliminates a subtree of at most this share of the unknowns, 1/groups.
 constexpr int groups = 16;
 
 /// Returns the place of an unknown in an increasing list that holds it.
@@ -54,7 +54,7 @@ void frontal_factors::find_borders(const column_matrix& columns, const row_matri
   for (std::size_t p = 0; p < parts; ++p) {
     std::fill(part_of.begin() + parts_[p].begin, part_of.begin() + parts_[p].end, p);
     parts_[p].border.clear();
-    parts_[p].before.clear();
+    parts_[p].children.clear();
   }
   std::vector<std::size_t> last_visit(unknowns, parts);
   for (std::size_t p = 0; p < parts; ++p) {
@@ -69,10 +69,10 @@ void frontal_factors::find_borders(const column_matrix& columns, const row_matri
         connect(static_cast<int>(entry.row()));
       for (row_matrix::InnerIterator entry(rows, k); entry; ++entry) connect(static_cast<int>(entry.col()));
     }
-    for (const std::size_t child : part.before)
+    for (const std::size_t child : part.children)
       for (const int unknown : parts_[child].border) connect(unknown);
     std::sort(part.border.begin(), part.border.end());
-    if (!part.border.empty()) parts_[part_of[at(part.border.front())]].before.push_back(p);
+    if (!part.border.empty()) parts_[part_of[at(part.border.front())]].children.push_back(p);
   }
 }
 
@@ -83,7 +83,7 @@ void frontal_factors::find_levels() {
   std::vector<int> unknowns(count);
   for (std::size_t p = 0; p < count; ++p) {
     unknowns[p] += parts_[p].size();
-    for (const std::size_t child : parts_[p].before) {
+    for (const std::size_t child : parts_[p].children) {
       parent[child] = p;
       unknowns[p] += unknowns[child];
     }
@@ -104,7 +104,7 @@ void frontal_factors::find_levels() {
       continue;
     }
     height[p] = 1;
-    for (const std::size_t child : parts_[p].before) height[p] = std::max(height[p], height[child] + 1);
+    for (const std::size_t child : parts_[p].children) height[p] = std::max(height[p], height[child] + 1);
     if (levels_.size() <= height[p]) levels_.resize(height[p] + 1);
     levels_[height[p]].push_back({p});
   }
@@ -115,7 +115,7 @@ void frontal_factors::place_fronts() {
   for (front& part : parts_) {
     part.first = next;
     next += at(part.size()) * (at(part.size()) + 2 * part.border.size());
-    part.exchanged.resize(at(part.size()));
+    part.pivots.resize(at(part.size()));
   }
   if (numbers_.size() != next) numbers_ = stored_numbers(next, host_memory());
 }
@@ -137,16 +137,16 @@ frontal_factors::block frontal_factors::right(const front& part) {
 void frontal_factors::eliminate(const column_matrix& columns, const row_matrix& rows, front& part) {
   std::fill_n(numbers_.data() + part.first, at(part.size()) * (at(part.size()) + 2 * part.border.size()),
               0.0);
-  part.left_over.assign(part.border.size() * part.border.size(), 0.0);
+  part.schur_complement.assign(part.border.size() * part.border.size(), 0.0);
   add_entries(columns, rows, part);
-  for (const std::size_t child : part.before) add_left_over(parts_[child], part);
-  if (!dense_factors::factorize(inside(part), part.exchanged))
+  for (const std::size_t child : part.children) add_schur_complement(parts_[child], part);
+  if (!dense_factors::factorize(inside(part), part.pivots))
     throw numerical_error("the moment equations of the steady state are singular", {});
-  dense_factors::exchange_rows(part.exchanged, right(part));
+  dense_factors::exchange_pivot_rows(part.pivots, right(part));
   dense_factors::solve_lower(inside(part), right(part));
   dense_factors::solve_upper_from_right(inside(part), below(part));
   const int border = part.border_size();
-  dense_product::subtract(below(part), right(part), {part.left_over.data(), border, border, border});
+  dense_product::subtract(below(part), right(part), {part.schur_complement.data(), border, border, border});
 }
 
 void frontal_factors::add_entries(const column_matrix& columns, const row_matrix& rows, const front& part) {
@@ -165,21 +165,21 @@ void frontal_factors::add_entries(const column_matrix& columns, const row_matrix
   }
 }
 
-void frontal_factors::add_left_over(front& from, front& to) {
+void frontal_factors::add_schur_complement(front& from, front& to) {
   const int count = from.border_size(), of_border = to.border_size(),
             within = place_in(from.border, to.end);  // so many are unknowns of the part
   std::vector<int> places;
   for (const int unknown : from.border)
     places.push_back(unknown < to.end ? unknown - to.begin : place_in(to.border, unknown));
-  const block later{to.left_over.data(), of_border, of_border, of_border};
+  const block later{to.schur_complement.data(), of_border, of_border, of_border};
   for (int column = 0; column < count; ++column) {
     const block above = column < within ? inside(to) : right(to), under = column < within ? below(to) : later;
-    const double* left = from.left_over.data() + at(column) * at(count);
+    const double* left = from.schur_complement.data() + at(column) * at(count);
     const int j = places[at(column)];
     for (int k = 0; k < within; ++k) above(places[at(k)], j) += left[k];
     for (int k = within; k < count; ++k) under(places[at(k)], j) += left[k];
   }
-  from.left_over = aligned_vector<double>();  // {} would keep its memory
+  from.schur_complement = aligned_vector<double>();  // {} would keep its memory
 }
 
 frontal_factors::matrix_view frontal_factors::inside(const front& part) const {
@@ -201,7 +201,7 @@ Eigen::VectorXd frontal_factors::solve(const Eigen::VectorXd& r) const {
   Eigen::VectorXd x = r;
   for (const front& part : parts_) {
     auto here = x.segment(part.begin, part.size());
-    for (int k = 0; k < part.size(); ++k) std::swap(here[k], here[part.exchanged[at(k)]]);
+    for (int k = 0; k < part.size(); ++k) std::swap(here[k], here[part.pivots[at(k)]]);
     inside(part).triangularView<Eigen::UnitLower>().solveInPlace(here);
     x(part.border) -= below(part) * here;
   }
@@ -224,7 +224,7 @@ Eigen::VectorXd frontal_factors::solve_transposed(const Eigen::VectorXd& r) cons
     auto here = x.segment(part.begin, part.size());
     here -= below(part).transpose() * x(part.border);
     inside(part).transpose().triangularView<Eigen::UnitUpper>().solveInPlace(here);
-    for (int k = part.size(); k-- > 0;) std::swap(here[k], here[part.exchanged[at(k)]]);
+    for (int k = part.size(); k-- > 0;) std::swap(here[k], here[part.pivots[at(k)]]);
   }
   return x;
 }

@@ -14,7 +14,7 @@
 namespace apsis {
 
 /// LU factors of a sparse matrix by the multifrontal method (Duff & Reid, ACM Trans. Math. Softw. 9, 1983).
-/// The unknowns are eliminated part by part, each part with dense matrices. Rows are exchanged within a part
+/// The unknowns are eliminated part by part, each part with dense matrices. Pivots are sought within a part
 /// alone, so that the order of the parts bounds the fill. The result does not depend on the number of
 /// threads.
 class frontal_factors {
@@ -22,8 +22,8 @@ class frontal_factors {
   /// `ends`: one past the last unknown of each part, increasing; the last one is the number of rows.
   explicit frontal_factors(const std::vector<int>& ends);
 
-  /// Factorizes a compressed matrix; another one of the same pattern takes the same memory. Throws
-  /// numerical_error if the matrix is singular, or its block of a part and of all parts before.
+  /// Factorizes a compressed matrix. One with the pattern of the last matrix takes the same memory. Throws
+  /// numerical_error if the matrix is singular, or its block of a part and of all parts before it.
   void factorize(const row_matrix& matrix);
   /// Returns A⁻¹ r.
   Eigen::VectorXd solve(const Eigen::VectorXd& r) const;
@@ -32,8 +32,6 @@ class frontal_factors {
 
   /// Returns the number of rows.
   Eigen::Index rows() const { return parts_.back().end; }
-  /// Returns the number of entries of the factors.
-  std::size_t entries() const { return numbers_.size(); }
 
  private:
   using column_matrix = Eigen::SparseMatrix<double>;
@@ -42,12 +40,12 @@ class frontal_factors {
 
   /// A part, with the later unknowns that it is connected with.
   struct front {
-    int begin = 0, end = 0;                 ///< unknowns of the part
-    std::vector<int> border = {};           ///< later unknowns, increasing
-    std::vector<std::size_t> before = {};   ///< parts whose first later unknown is in this one
-    std::vector<int> exchanged = {};        ///< rows of the part
-    std::size_t first = 0;                  ///< of its numbers
-    aligned_vector<double> left_over = {};  ///< of its border, which a later part takes
+    int begin = 0, end = 0;                        ///< unknowns of the part
+    std::vector<int> border = {};                  ///< later unknowns, increasing
+    std::vector<std::size_t> children = {};        ///< in the elimination tree
+    std::vector<int> pivots = {};                  ///< rows that its rows were exchanged with
+    std::size_t first = 0;                         ///< of its factors in numbers_
+    aligned_vector<double> schur_complement = {};  ///< of its border, which the parent adds
 
     int size() const { return end - begin; }
     int border_size() const { return static_cast<int>(border.size()); }
@@ -59,7 +57,7 @@ class frontal_factors {
   void place_fronts();
   void eliminate(const column_matrix& columns, const row_matrix& rows, front& part);
   void add_entries(const column_matrix& columns, const row_matrix& rows, const front& part);
-  void add_left_over(front& from, front& to);
+  void add_schur_complement(front& from, front& to);
 
   /// The factors of the block of a part.
   block inside(const front& part);
@@ -72,7 +70,7 @@ class frontal_factors {
   matrix_view right(const front& part) const;
 
   std::vector<front> parts_;
-  /// Lists of parts. Those of a level do not need each other.
+  /// Lists of parts, level by level. The lists of a level do not depend on each other.
   std::vector<std::vector<std::vector<std::size_t>>> levels_;
   std::vector<int> starts_, column_numbers_;  ///< of the rows of the last matrix
   stored_numbers numbers_;                    ///< of the factors

@@ -15,7 +15,7 @@ constexpr double tolerance_with_directions = 1e-4, tolerance_with_earlier_factor
 constexpr int iterations_with_earlier_factors = 6;
 constexpr int iterations_with_directions = 240;
 constexpr int iterations_until_restart = 60;
-/// Most unknowns of a J that is factorized. Such factors take about 3 s and 2 GB.
+/// Most unknowns of a J that is factorized. Such factors take about 2 GB.
 constexpr int largest_plane = 250000, largest_space = 25000;
 
 /// Calls a function, as a preconditioner of Eigen.

@@ -17,6 +17,7 @@
 #include <apsis/semidiscrete/formulas/face.hpp>
 #include <apsis/semidiscrete/formulas/lattice.hpp>
 #include <apsis/semidiscrete/formulas/upwind.hpp>
+#include <apsis/steady/formulas/mixture.hpp>
 #include <apsis/steady/formulas/sweep.hpp>
 
 namespace scalar = apsis::scalar;
@@ -97,6 +98,14 @@ extern "C" void equilibria(const double* u, double* to) {
   to[3] = moments.energy;
   to[4] = contents.lowest + contents.not_finite;
   to[5] = squares.difference + squares.size;
+}
+
+extern "C" void mixtures(const double* u, double* to) {
+  scalar::image_mixture<double> mixture(u[0], u[1], u[2]);
+  mixture.recall(u[3], u[4]);
+  mixture.take_off(u[5], u[6]);
+  to[0] = mixture.difference();
+  to[1] = mixture.mixed;
 }
 
 extern "C" void sweeps(const double* u, double* to) {

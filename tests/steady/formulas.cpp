@@ -1,6 +1,8 @@
 // Kernels against their formulas on single numbers, point by point: the same bits in every instruction set.
 #include <apsis/core/random_source.hpp>
+#include <apsis/steady/formulas/mixture.hpp>
 #include <apsis/steady/formulas/sweep.hpp>
+#include <apsis/steady/mixture_rows.hpp>
 #include <apsis/steady/sweep_rows.hpp>
 
 #include <algorithm>
@@ -56,6 +58,46 @@ TEST(formulas, implicit_upwind_equations_are_those_of_single_numbers) {
                  N(two[d][k]));
         const bool between = k == static_cast<std::size_t>(first);
         RC_ASSERT(same_bits(solved[k], between ? row[k] : value_of(of.solution())));
+      }
+    });
+  });
+}
+
+TEST(formulas, mixtures_of_images_are_those_of_single_numbers) {
+  check_property("mixture", [] {
+    random_source random(*rc::gen::arbitrary<std::uint32_t>());
+    const auto n = static_cast<std::size_t>(*rc::gen::inRange(1, 40));
+    const auto images = static_cast<std::size_t>(*rc::gen::inRange(0, 4));
+    const double last_factor = random.uniform(0.5, 2.0), factor = random.uniform(0.5, 2.0);
+    const auto x = drawn(n, random, any_sign), delta = drawn(n, random, any_sign),
+               before = drawn(n, random, any_sign);
+    std::vector<std::vector<double>> rows;
+    apsis::mixture_rows::weighted_differences last, now;
+    for (std::size_t j = 0; j < images; ++j) {
+      rows.push_back(drawn(n, random, any_sign));
+      last.theta.push_back(random.uniform(-1.0, 1.0));
+      now.theta.push_back(random.uniform(-1.0, 1.0));
+    }
+    for_each_number([&](auto number, int) {
+      using N = decltype(number);
+      // The newest difference takes the memory of the oldest one, which is read for the last time.
+      auto newest = before, mixed = x;
+      last.rows = now.rows = {};
+      for (std::size_t j = 0; j < images; ++j) {
+        last.rows.push_back(j == 0 ? newest.data() : rows[j].data());
+        now.rows.push_back(j + 1 == images ? newest.data() : rows[j + 1].data());
+      }
+      apsis::mixture_rows::move(0, n, last, last_factor, newest.data(), now, factor, delta.data(),
+                                mixed.data());
+      for (std::size_t k = 0; k < n; ++k) {
+        scalar::image_mixture<N> of(N(x[k]), N(delta[k]), N(1.0 / last_factor));
+        for (std::size_t j = 0; j < images; ++j)
+          of.recall(N(last.theta[j]), N(j == 0 ? before[k] : rows[j][k]));
+        const N difference = of.difference();
+        for (std::size_t j = 0; j < images; ++j)
+          of.take_off(N(now.theta[j]), j + 1 == images ? difference : N(rows[j + 1][k]));
+        RC_ASSERT(same_bits(newest[k], value_of(difference)));
+        RC_ASSERT(same_bits(mixed[k], value_of(N(factor) * of.mixed)));
       }
     });
   });

@@ -21,7 +21,7 @@ constexpr int fewest_points = 4;  ///< of velocity.points
 /// Fields of steady_iterations: the state, the first one, the residual, the images of the mixture, and a
 /// temporary one.
 int buffers_of_iterations(const case_config& config) {
-  return 4 + (config.steady_state.images > 0 ? config.steady_state.images + 1 : 0);
+  return 4 + config.steady_state.images;
 }
 
 int buffers_of(const run_setup& setup) {

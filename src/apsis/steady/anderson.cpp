@@ -14,18 +14,12 @@
 namespace apsis {
 namespace {
 
-/// Numbers that stay in the first-level cache while several operations pass over them.
-constexpr std::size_t numbers_of_a_piece = 512;
-
 /// Calls body(first, length) for pieces of the numbers of a field.
 template <class Body>
 void for_pieces(const field& x, const Body& body) {
   const std::size_t stride = at(x.stride());
-  parallel_blocks(x.cells(), cells_of_a_block, [&](int begin, int end) {
-    const std::size_t last = at(end) * stride;
-    for (std::size_t k = at(begin) * stride; k < last; k += numbers_of_a_piece)
-      body(k, std::min(numbers_of_a_piece, last - k));
-  });
+  parallel_blocks(x.cells(), cells_of_a_block,
+                  [&](int begin, int end) { body(at(begin) * stride, at(end - begin) * stride); });
 }
 
 std::vector<double> difference_of(const std::vector<double>& a, const std::vector<double>& b) {
@@ -44,6 +38,7 @@ void move(const field& delta, double share, double factor, field& x) {
 
 void anderson::clear() {
   known_ = false;
+  last_theta_.clear();
   for (difference& one : differences_) spare_.push_back(std::move(one.of_image));
   differences_.clear();
 }
@@ -77,30 +72,34 @@ anderson::weights anderson::weigh(communicator& processes, std::vector<double> r
   return found;
 }
 
+/// Returns the differences of the last mixture with their θ. The memory of the newest one may still hold the
+/// oldest of them.
+mixture_rows::weighted_differences anderson::of_last_mixture() const {
+  mixture_rows::weighted_differences found{last_theta_, {}};
+  if (last_theta_.size() == differences_.size() && !last_theta_.empty())
+    found.rows.push_back(differences_.back().of_image.row(0));
+  for (std::size_t j = 0; found.rows.size() < last_theta_.size(); ++j)
+    found.rows.push_back(differences_[j].of_image.row(0));
+  return found;
+}
+
 void anderson::move(const weights& of, const field& delta, double factor, field& x) {
   if (depth_ == 0) return apsis::move(delta, 1.0, factor, x);
-  if (last_image_.cells() != x.cells()) last_image_ = field(x.cells(), x.components());
   double* newest = nullptr;
   if (known_) {
     field& memory = differences_.back().of_image;
     if (memory.cells() != x.cells()) memory = field(x.cells(), x.components());
     newest = memory.row(0);
   }
-  known_ = true;
-  for_pieces(x, [&, to = x.row(0), from = delta.row(0), last = last_image_.row(0)](std::size_t first,
-                                                                                   std::size_t length) {
-    const std::size_t end = first + length;
-    for (std::size_t k = first; k < end; ++k) to[k] += from[k];
-    if (newest != nullptr)
-      for (std::size_t k = first; k < end; ++k) newest[k] = to[k] - last[k];
-    std::copy(to + first, to + end, last + first);
-    for (std::size_t j = 0; j < of.theta.size(); ++j) {
-      const double theta = of.theta[j];
-      const double* other = differences_[j].of_image.row(0);
-      for (std::size_t k = first; k < end; ++k) to[k] -= theta * other[k];
-    }
-    for (std::size_t k = first; k < end; ++k) to[k] *= factor;
+  const mixture_rows::weighted_differences last = of_last_mixture();
+  mixture_rows::weighted_differences now{of.theta, {}};
+  for (std::size_t j = 0; j < of.theta.size(); ++j) now.rows.push_back(differences_[j].of_image.row(0));
+  for_pieces(x, [&, to = x.row(0), from = delta.row(0)](std::size_t first, std::size_t length) {
+    mixture_rows::move(first, length, last, last_factor_, newest, now, factor, from, to);
   });
+  known_ = true;
+  last_theta_ = of.theta;
+  last_factor_ = factor;
 }
 
 /// Returns the θ that minimize ‖r − Σ_j θ_j Δr_j‖₂.

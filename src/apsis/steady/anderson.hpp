@@ -2,6 +2,7 @@
 
 #include <apsis/exec/communicator.hpp>
 #include <apsis/mesh/field.hpp>
+#include <apsis/steady/mixture_rows.hpp>
 
 #include <deque>
 #include <vector>
@@ -10,7 +11,8 @@ namespace apsis {
 
 /// Anderson's mixture g − Σ_j θ_j Δg_j of the images g = x + δ of a fixed-point iteration, with the θ that
 /// minimize ‖r − Σ_j θ_j Δr_j‖₂ over the last differences. Source: Walker & Ni, SIAM J. Numer. Anal. 49,
-/// 2011, with β = 1. An iteration calls weigh(), then move().
+/// 2011, with β = 1. An iteration calls weigh(), then move(). Nothing else may change x between two of them
+/// but after clear(): the last image is not stored, it follows from x.
 class anderson {
  public:
   /// The weights of the next mixture.
@@ -38,11 +40,13 @@ class anderson {
     std::vector<double> of_functions = {};
   };
 
+  mixture_rows::weighted_differences of_last_mixture() const;
   std::vector<double> shares(const std::vector<double>& r) const;
 
   int depth_;
-  bool known_ = false;
-  field last_image_;
+  bool known_ = false;  ///< the last image g = x / factor + Σ_j θ_j Δg_j
+  std::vector<double> last_theta_;
+  double last_factor_ = 1.0;
   std::vector<double> last_r_, last_functions_;
   std::deque<difference> differences_;
   std::vector<field> spare_;  ///< memory of forgotten ones

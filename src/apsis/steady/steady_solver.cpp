@@ -178,9 +178,9 @@ struct steady_solver::impl {
       share *= 0.5;
       weights.of_mixture = sum_of(omega, share, change);
     }
-    if (share < 1.0) {
+    if (share < 1.0 || !mix) {
       mixture.clear();
-    } else if (mix) {
+    } else {
       for (std::size_t k = 0; k < change.size(); ++k) change[k] /= scales[k % at(count)];
       anderson::weights mixed =
           mixture.weigh(processes, gather_cells(builder, std::move(change), count), weights.of_mixture);
@@ -241,6 +241,7 @@ struct steady_solver::impl {
     removed.count = global_count(processes, removed.count);
     removed.lowest = global_lowest(processes, removed.lowest);
     if (removed.count == 0) return;
+    mixture.clear();
     compute_residual(f);
     if (reference > 0.0) now.residual = cells.norm(r) / reference;
     now.converged = now.residual <= options.tolerance || now.rounding;

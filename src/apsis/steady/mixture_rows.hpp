@@ -1,0 +1,24 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace apsis {
+
+/// One pass of Anderson's mixture over consecutive numbers, for the instruction set of this processor.
+namespace mixture_rows {
+
+/// Differences Δg_j of images, with their weights θ_j.
+struct weighted_differences {
+  std::vector<double> theta;
+  std::vector<const double*> rows;  ///< each at number 0
+};
+
+/// x ← factor (x + δ − Σ_j θ_j Δg_j) for the numbers first … first + count − 1. `newest`, if not null, gets
+/// x + δ − x / last_factor − Σ_j θ_j Δg_j of `last` before `now` reads it, and may be a row of both.
+void move(std::size_t first, std::size_t count, const weighted_differences& last, double last_factor,
+          double* newest, const weighted_differences& now, double factor, const double* delta, double* x);
+
+}  // namespace mixture_rows
+}  // namespace apsis

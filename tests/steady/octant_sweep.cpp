@@ -17,10 +17,10 @@ namespace {
 
 using apsis::field;
 
-/// The value at the downstream edge of a cell: δ + 0.35 (δ − upstream), δ alone next to where the gas begins.
+/// The value at the downstream edge of a cell: δ + 0.5 (δ − upstream), δ alone next to where the gas begins.
 double edge(const apsis::cell_links& links, const field& d, int direction, bool up, int cell, int k) {
   const int before = links.next(direction, !up, cell);
-  return before < 0 ? d.row(cell)[k] : d.row(cell)[k] + 0.35 * (d.row(cell)[k] - d.row(before)[k]);
+  return before < 0 ? d.row(cell)[k] : d.row(cell)[k] + 0.5 * (d.row(cell)[k] - d.row(before)[k]);
 }
 
 /// (L + σ) δ with nothing entering.

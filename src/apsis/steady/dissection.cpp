@@ -7,13 +7,12 @@
 namespace apsis {
 namespace {
 
-constexpr int reach = 2;
 /// Boxes of at most so many cells are not divided.
 constexpr int smallest = 8;
 
 class dissection {
  public:
-  explicit dissection(const grid& mesh) : mesh_(mesh) {}
+  dissection(const grid& mesh, int reach) : mesh_(mesh), reach_(reach) {}
 
   void divide(std::array<int, 3> begin, std::array<int, 3> end) {
     int longest = 0, cells = 1;
@@ -22,11 +21,11 @@ class dissection {
       if (end[at(d)] - begin[at(d)] > end[at(longest)] - begin[at(longest)]) longest = d;
     }
     const std::size_t k = at(longest);
-    if (cells <= smallest || end[k] - begin[k] <= 2 * reach) return append(begin, end);
-    const int middle = (begin[k] + end[k] - reach) / 2;
+    if (cells <= smallest || end[k] - begin[k] <= 2 * reach_) return append(begin, end);
+    const int middle = (begin[k] + end[k] - reach_) / 2;
     std::array<int, 3> first = end, second = begin, from = begin, to = end;
     first[k] = from[k] = middle;
-    second[k] = to[k] = middle + reach;
+    second[k] = to[k] = middle + reach_;
     divide(begin, first);
     divide(second, end);
     append(from, to);
@@ -47,16 +46,17 @@ class dissection {
 
  private:
   const grid& mesh_;
+  int reach_;
   dissected_mesh found_;
 };
 
 }  // namespace
 
-dissected_mesh dissect(const grid& mesh, const std::array<bool, 3>& periodic) {
+dissected_mesh dissect(const grid& mesh, const std::array<bool, 3>& periodic, int reach) {
   const std::array<int, 3> begin{};
   std::array<int, 3> end{};
   for (int d = 0; d < 3; ++d) end[at(d)] = mesh.cells(d);
-  dissection parts(mesh);
+  dissection parts(mesh, reach);
   // A slab at the lower end cuts a ring open; slabs of other directions end at it.
   std::array<int, 3> inside = begin;
   for (int d = 0; d < 3; ++d)

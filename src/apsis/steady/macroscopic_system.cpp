@@ -27,9 +27,8 @@ profile::section timed(kernel which, std::size_t numbers) {
 class macroscopic_system::whole_system {
  public:
   whole_system(const relaxation_model& equation, const problem_builder& builder, const inside_domain& acts,
-               const jacobian_layout& layout)
-      : assembly_(equation, builder.whole_space(), acts, layout, builder.first_order()),
-        solver_(assembly_.mesh()) {}
+               const jacobian_layout& layout, bool first_order)
+      : assembly_(equation, builder.whole_space(), acts, layout, first_order), solver_(assembly_.mesh()) {}
 
   /// `blocks`: of all cells, [cell][layout.numbers()].
   void build(std::span<const double> blocks, double pseudo_rate, bool holds_neutral) {
@@ -74,14 +73,15 @@ double macroscopic_system::bytes_of_cell(int directions, int moments, double cel
 }
 
 macroscopic_system::macroscopic_system(const relaxation_model& equation, const problem_builder& space,
-                                       const cell_links& links)
+                                       const cell_links& links, bool first_order)
     : space_(space),
       acts_{space.force(), space.source()},
       jacobian_(equation, space.space(), links, acts_),
       count_(equation.moment_count()),
       conserved_(at(count_), false) {
   if (space.processes().is_root())
-    whole_ = std::make_unique<whole_system>(equation, space, acts_, jacobian_.layout());
+    whole_ = std::make_unique<whole_system>(equation, space, acts_, jacobian_.layout(),
+                                            first_order || space.first_order());
 }
 
 macroscopic_system::~macroscopic_system() = default;

@@ -14,6 +14,8 @@ namespace apsis {
 /// kinetic equation. Fluxes are those of ∂E/∂ω by sums over half the velocities with third-order upwind
 /// weights, those of the deviation (C/ε)⁻¹ v·∇E by central differences, and those at the ends of the gas
 /// what the boundary conditions make of them: slip, temperature jumps and impermeable walls are part of J.
+/// J of first order has upwind weights of first order, an equation of half the reach, and some of its factors
+/// a quarter of the size.
 /// No moment of the transport part of the deviation is taken off ("c = 1"): smooth modes change by O(Kn)
 /// alone, and the correction stays bounded where the gas is rare.
 ///
@@ -24,8 +26,10 @@ class macroscopic_system {
   /// Right-hand sides and changes: [cells of this process][moment_count].
   using moments = std::vector<double>;
 
-  /// All arguments must outlive the object; `links`: of the cells of this process.
-  macroscopic_system(const relaxation_model& equation, const problem_builder& space, const cell_links& links);
+  /// All references must outlive the object; `links`: of the cells of this process. J is of first order if
+  /// `first_order`, or if the fluxes of T are.
+  macroscopic_system(const relaxation_model& equation, const problem_builder& space, const cell_links& links,
+                     bool first_order = false);
   ~macroscopic_system();
   macroscopic_system(const macroscopic_system&) = delete;
   macroscopic_system& operator=(const macroscopic_system&) = delete;

@@ -13,8 +13,10 @@
 namespace apsis {
 namespace {
 
-/// Share of the slope in the value at an edge: between first order and the scheme of second order, ½.
-constexpr double slope = 0.35;
+/// Share of the slope in the value at an edge, that of the upwind scheme of second order. Where f varies
+/// along a ray slowly and across it fast, iterations to T(f) = 0 settle the faster, the less the sweep
+/// diffuses.
+constexpr double slope = 0.5;
 
 /// Returns n · number / parts.
 int share_of(int n, int number, int parts) {

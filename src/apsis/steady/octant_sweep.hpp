@@ -14,7 +14,7 @@ namespace apsis {
 
 /// An implicit step of upwind transport and relaxation, solved exactly by one pass in the direction of flight
 /// of every component: (L + σ) δ = r with L δ = Σ_k v_k ∂_k δ, whose value at the downstream edge of cell i
-/// is δ_i + 0.35 (δ_i − δ_{i−1}), δ_i itself next to where the gas begins. Components whose velocities have
+/// is δ_i + ½ (δ_i − δ_{i−1}), δ_i itself next to where the gas begins. Components whose velocities have
 /// equal signs form an octant; one octant follows another, and what leaves at an end of the gas in one of
 /// them enters, by the boundary condition, in those that follow. Across periodic faces nothing enters.
 class octant_sweep {

@@ -39,6 +39,9 @@ constexpr double share_to_mix = 0.05;
 /// Rarefaction parameter √π/2 · L/λ below which a gas is rare, so that mixing pays from the first iteration
 /// on.
 constexpr double rare = 5.0;
+/// J is of first order where every cell is at most so many mean free paths wide: the viscosity of its fluxes
+/// is then a part of that of the gas.
+constexpr double widest_for_first_order = 1.5;
 /// One iteration leaves at least this share of the temperature of every cell,
 constexpr double lowest_cooling = 0.1;
 /// if a correction of this share of its size can.
@@ -85,7 +88,7 @@ struct steady_solver::impl {
         links(builder.space()),
         count(equation.moment_count()),
         cells(equation, builder, links),
-        system(equation, builder, links),
+        system(equation, builder, links, has_thin_cells(start)),
         sweep(equation, builder.space(), links),
         mixture(given.depth),
         r(start.cells(), start.components()),
@@ -107,8 +110,21 @@ struct steady_solver::impl {
     const std::array<target<field, double>, 1> added = {{{&r, 0.0, 1.0, false}}};
     problem.add_collision(0.0, f, added);
     problem.throw_late_errors();
+    find_rates(omega, rates);
+  }
+
+  /// Whether J may be of first order at the state of the start.
+  bool has_thin_cells(const field& start) const {
+    std::vector<double> moments(at(start.cells() * count)), now(at(start.cells()));
+    cells.moments_of(start, moments);
+    find_rates(moments, now);
+    return cells.largest_optical_width(moments, now) <= widest_for_first_order;
+  }
+
+  /// to ← C/ε of the cells.
+  void find_rates(const std::vector<double>& moments, std::vector<double>& to) const {
     for (const int cell : links.cells())
-      rates[at(cell)] = equation.rate(omega.data() + at(cell * count)) / epsilon[at(cell)];
+      to[at(cell)] = equation.rate(moments.data() + at(cell * count)) / epsilon[at(cell)];
   }
 
   /// Returns the largest relative change of a moment since J was built.
@@ -249,7 +265,10 @@ struct steady_solver::impl {
 
   steady_iteration iterate(field& f) {
     compute_residual(f);
-    const double residual = cells.norm(r), collisions = cells.weighted_norm(f, rates);
+    const double residual = cells.norm(r);
+    constexpr double rounding = 4.0 * std::numeric_limits<double>::epsilon();
+    // ‖σf‖ changes too little to be needed far above rounding.
+    if (number == 0 || residual <= 1e3 * rounding * collisions) collisions = cells.weighted_norm(f, rates);
     if (number == 0) {
       flight_rate = cells.thermal_speed(omega) / cells.extent();
       // √π/2 · L/λ
@@ -269,7 +288,7 @@ struct steady_solver::impl {
       forget_system();
     }
     // Each term of a residual is rounded relative to σf.
-    now.rounding = residual <= 4.0 * std::numeric_limits<double>::epsilon() * collisions;
+    now.rounding = residual <= rounding * collisions;
     correct_moments(now);
     if (damped.note_change(now.change)) {
       forget_system();
@@ -312,6 +331,7 @@ struct steady_solver::impl {
   field r;
   std::vector<double> omega, omega_of_system, of_transport, changes_of_moments, rates, totals, scales;
   double reference = std::numeric_limits<double>::quiet_NaN();
+  double collisions = 0.0;           ///< ‖σf‖₂, of the start until the residual is small
   double lowest = 0.0;               ///< residual since J was built
   double flight_rate = 0.0;          ///< thermal speed over the extent of the domain
   double pseudo_rate = 0.0;          ///< of J

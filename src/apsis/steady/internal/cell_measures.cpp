@@ -159,6 +159,14 @@ double cell_measures::thermal_speed(const std::vector<double>& omega) const {
   return speed;
 }
 
+double cell_measures::largest_optical_width(const std::vector<double>& omega,
+                                            std::span<const double> rates) const {
+  double width = 0.0, rate = 0.0;
+  for (int d = 0; d < space_.mesh().dimensions(); ++d) width = std::max(width, space_.mesh().spacing(d));
+  for (const int cell : links_.cells()) rate = std::max(rate, rates[at(cell)]);
+  return width * global_highest(processes_, rate) / thermal_speed(omega);
+}
+
 double cell_measures::mean(std::span<const double> of_cells) const {
   std::array<exact_sum, 1> sum;
   for (const int cell : links_.cells()) sum[0].add(of_cells[at(cell)]);

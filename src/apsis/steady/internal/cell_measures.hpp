@@ -48,6 +48,8 @@ class cell_measures {
   double extent() const;
   /// Returns the lowest √T of the first cells of processes, of a gas; the largest speed of other models.
   double thermal_speed(const std::vector<double>& omega) const;
+  /// Returns the largest width of a cell relative to its mean free path c/σ, c = thermal_speed(omega).
+  double largest_optical_width(const std::vector<double>& omega, std::span<const double> rates) const;
   /// Returns the mean of one number for each cell.
   double mean(std::span<const double> of_cells) const;
 

@@ -90,10 +90,10 @@ class flux_derivative {
   std::vector<std::vector<double>> blocks_;  ///< kept for the next face
 };
 
-dissected_mesh dissected(const domain& space) {
+dissected_mesh dissected(const domain& space, bool first_order) {
   std::array<bool, 3> periodic{};
   for (int d = 0; d < space.mesh().dimensions(); ++d) periodic[at(d)] = space.periodic(d);
-  return dissect(space.mesh(), periodic);
+  return dissect(space.mesh(), periodic, first_order ? 1 : 2);
 }
 
 }  // namespace
@@ -112,7 +112,7 @@ moment_assembly::moment_assembly(const relaxation_model& equation, const domain&
 
 moment_mesh moment_assembly::number_cells() {
   const grid& mesh = space_.mesh();
-  dissected_mesh order = dissected(space_);
+  dissected_mesh order = dissected(space_, first_order_);
   int number = 0;
   for (const int cell : order.cells) number_[at(cell)] = number++;
   moment_mesh found{.directions = mesh.dimensions(),

@@ -16,7 +16,7 @@ namespace apsis {
 /// Makes the moment equations of a whole mesh from the derivatives of its cells.
 class moment_assembly {
  public:
-  /// All references must outlive the object. `first_order`: whether the fluxes of T are.
+  /// All references must outlive the object. `first_order`: whether the fluxes of J are.
   moment_assembly(const relaxation_model& equation, const domain& space, const inside_domain& acts,
                   const jacobian_layout& layout, bool first_order);
 

@@ -120,7 +120,8 @@ moment_mesh moment_assembly::number_cells() {
                     .cells = static_cast<int>(links_.cells().size()),
                     .parts = std::move(order.parts),
                     .extent = 0.0,
-                    .spacing = mesh.spacing(0)};
+                    .spacing = mesh.spacing(0),
+                    .first_order = first_order_};
   for (int d = 0; d < mesh.dimensions(); ++d) {
     found.lines[at(d)] = lines_along(links_, d, number_);
     found.extent = std::max(found.extent, mesh.spacing(d) * mesh.cells(d));

@@ -27,8 +27,9 @@ struct moment_mesh {
   /// Numbers of cells that are eliminated together, one after the other; all of them where it is empty.
   std::vector<int> parts = {};
   std::array<std::vector<line_of_cells>, 3> lines = {};
-  double extent = 1.0,  ///< the longest side of the domain
-      spacing = 1.0;    ///< the shortest side of a cell
+  double extent = 1.0,       ///< the longest side of the domain
+      spacing = 1.0;         ///< the shortest side of a cell
+  bool first_order = false;  ///< whether fluxes between cells are
 
   /// Returns the number of rows that cells have.
   int unknowns() const { return moments * cells; }

@@ -10,6 +10,7 @@
 #include <limits>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -58,7 +59,7 @@ void steady_iterations::make_solver() {
 
 void steady_iterations::advance() {
   try {
-    const steady_iteration done = march_ ? march() : iterate();
+    const steady_iteration done = rarer_ ? follow_rarer() : march_ ? march() : iterate();
     run_.march.advance(1.0);
     record(done);
     found_ = done.converged;
@@ -72,14 +73,23 @@ steady_iteration steady_iterations::iterate() {
   for (;;) {
     try {
       return solver_->iterate(run_.state);
-    } catch (const steady_stall&) {
+    } catch (const steady_imbalance&) {
       throw;
+    } catch (const steady_stall& stall) {
+      if (!begin_rarer(stall)) throw;
+      return follow_rarer();
     } catch (const numerical_error& failure) {
       if (begin_again(failure)) continue;
-      begin_march(failure);
-      return march();
+      return recover(failure);
     }
   }
+}
+
+/// The next iteration where no pseudo-time term helps.
+steady_iteration steady_iterations::recover(const numerical_error& failure) {
+  if (begin_rarer(failure)) return follow_rarer();
+  begin_march(failure);
+  return march();
 }
 
 /// Begins again from the first state with a stronger pseudo-time term. Returns false if there is none, or
@@ -91,6 +101,32 @@ bool steady_iterations::begin_again(const numerical_error& failure) {
                   run_.march.step(), cause_of(failure)));
   run_.state = first_;
   return true;
+}
+
+/// Begins with rarer gases. Returns false if they were tried, or are of no help.
+bool steady_iterations::begin_rarer(const numerical_error& failure) {
+  std::vector<double> factors = rarer_gases::factors(solver_->optical_length());
+  if (std::exchange(tried_rarer_, true) || factors.empty()) return false;
+  log::info(
+      fmt::format("iteration {}: {}; gases with {:g} times the epsilon give the next start, the rarest one "
+                  "from the first state",
+                  run_.march.step(), cause_of(failure), fmt::join(factors, ", ")));
+  run_.state = first_;
+  rarer_ = std::make_unique<rarer_gases>(*run_.setup.equation->as_relaxation(), run_.setup.builder(),
+                                         std::move(factors), run_.config.steady_state.images);
+  return true;
+}
+
+/// An iteration of a rarer gas, with its residual as one of the gas itself.
+steady_iteration steady_iterations::follow_rarer() {
+  try {
+    rarer_->iterate(run_.state);
+  } catch (const numerical_error& failure) {
+    rarer_.reset();
+    begin_march(failure);
+    return march();
+  }
+  return end_of_detour(rarer_->finished());
 }
 
 /// Begins steps in time, twice as long as those before.
@@ -107,14 +143,19 @@ void steady_iterations::begin_march(const numerical_error& failure) {
 /// A part of the march, with its residual.
 steady_iteration steady_iterations::march() {
   march_->advance(run_.state);
+  return end_of_detour(march_->finished());
+}
+
+/// An iteration that was not one of the solver, which begins anew if it was the last one.
+steady_iteration steady_iterations::end_of_detour(bool finished) {
   steady_iteration done;
   done.residual = solver_->relative_residual(run_.state);
   done.change = std::numeric_limits<double>::quiet_NaN();
-  if (march_->finished()) {
-    const double reference = solver_->reference();
+  if (finished) {
+    damping_ = rarer_ ? rarer_->damping() : 0;
+    rarer_.reset();
     march_.reset();
-    make_solver();
-    solver_->set_reference(reference);
+    solver_->restart(damping_);
   }
   return done;
 }

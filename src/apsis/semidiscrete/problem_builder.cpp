@@ -105,6 +105,10 @@ problem_builder& problem_builder::with_epsilon(scale epsilon) {
   return *this;
 }
 
+problem_builder& problem_builder::with_epsilon_times(double factor) {
+  return with_epsilon([factor, epsilon = epsilon_](const position& x) { return factor * epsilon(x); });
+}
+
 problem_builder& problem_builder::with_smooth_collisions() {
   smooth_collisions_ = true;
   return *this;

@@ -60,6 +60,8 @@ class problem_builder {
   problem_builder& with_collisions_at(const std::string& place);
   /// Sets ε(x).
   problem_builder& with_epsilon(scale epsilon);
+  /// Multiplies the ε(x) that is set by a factor.
+  problem_builder& with_epsilon_times(double factor);
   /// Adds the force −a·∇_v f of an acceleration, on models whose velocities are a lattice.
   problem_builder& with_force(acceleration of);
   /// Adds a source S(t, x) of rows, on models with space.

@@ -7,11 +7,16 @@
 
 namespace apsis {
 
-/// The iteration does not find a steady state although it finds a state in every iteration; another start
-/// will not help.
+/// The iteration does not find a steady state although it finds a state in every iteration.
 class steady_stall : public numerical_error {
  public:
   using numerical_error::numerical_error;
+};
+
+/// A stall that another start will not end: the ends of the gas have different fluxes.
+class steady_imbalance : public steady_stall {
+ public:
+  using steady_stall::steady_stall;
 };
 
 /// The pseudo-time term of the iteration, on the diagonal of J and in the rates of the sweep. It is 0 at the

@@ -13,12 +13,14 @@
 #include <apsis/steady/internal/cell_measures.hpp>
 #include <apsis/steady/macroscopic_system.hpp>
 #include <apsis/steady/octant_sweep.hpp>
+#include <apsis/steady/rarer_gases.hpp>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <numbers>
 #include <utility>
 
 #include <fmt/format.h>
@@ -212,11 +214,15 @@ struct steady_solver::impl {
 
   bool begin_again() {
     if (damped.strength() == damping::strongest()) return false;
-    damped = damping(damped.strength() + 1);
+    restart(damped.strength() + 1);
+    return true;
+  }
+
+  void restart(int strength) {
+    damped = damping(strength);
     lowest = pseudo_rate = 0.0;
     holds_neutral_mode = false;
     forget_system();
-    return true;
   }
 
   /// Begins with another J.
@@ -227,7 +233,7 @@ struct steady_solver::impl {
   }
 
   [[noreturn]] static void throw_imbalance(double residual) {
-    throw steady_stall(fmt::format(
+    throw steady_imbalance(fmt::format(
         "no steady state is found: the residual stays at {:.2g} of that of the start (a front has no "
         "position at which the fluxes of the ends are equal); give the ends states with equal "
         "fluxes, more velocities, or a larger steady.tolerance",
@@ -271,8 +277,8 @@ struct steady_solver::impl {
     if (number == 0 || residual <= 1e3 * rounding * collisions) collisions = cells.weighted_norm(f, rates);
     if (number == 0) {
       flight_rate = cells.thermal_speed(omega) / cells.extent();
-      // √π/2 · L/λ
-      mixes_at_once = cells.mean(rates) / (std::sqrt(2.0) * flight_rate) < rare;
+      optical_length = cells.mean(rates) / flight_rate;
+      mixes_at_once = optical_length / std::numbers::sqrt2 < rare;  // √π/2 · L/λ
     }
     if (std::isnan(reference)) reference = residual;
     steady_iteration now;
@@ -333,6 +339,7 @@ struct steady_solver::impl {
   double reference = std::numeric_limits<double>::quiet_NaN();
   double collisions = 0.0;           ///< ‖σf‖₂, of the start until the residual is small
   double lowest = 0.0;               ///< residual since J was built
+  double optical_length = 0.0;       ///< collisions of a flight through the domain
   double flight_rate = 0.0;          ///< thermal speed over the extent of the domain
   double pseudo_rate = 0.0;          ///< of J
   bool built = false, kept = false,  ///< J, and more than once
@@ -354,6 +361,10 @@ bool steady_solver::begin_again() {
   return impl_->begin_again();
 }
 
+void steady_solver::restart(int strength) {
+  impl_->restart(strength);
+}
+
 double steady_solver::relative_residual(const field& f) {
   impl_->compute_residual(f);
   return impl_->cells.norm(impl_->r) / impl_->reference;
@@ -361,6 +372,10 @@ double steady_solver::relative_residual(const field& f) {
 
 double steady_solver::flight_time() const {
   return 1.0 / impl_->flight_rate;
+}
+
+double steady_solver::optical_length() const {
+  return impl_->optical_length;
 }
 
 double steady_solver::reference() const {
@@ -373,15 +388,31 @@ void steady_solver::set_reference(double residual) {
 
 steady_iteration steady_solver::solve(field& f, const std::function<void(const steady_iteration&)>& watch) {
   const field start = f;
+  bool may_continue = true;
+  // Returns whether f is the solution of a rarer gas now.
+  const auto continues = [&] {
+    rarer_gases rarer(impl_->equation, impl_->builder, rarer_gases::factors(optical_length()),
+                      impl_->options.depth);
+    if (!std::exchange(may_continue, false) || rarer.finished()) return false;
+    f = start;
+    while (!rarer.finished()) rarer.iterate(f);
+    restart(rarer.damping());
+    return true;
+  };
   for (;;) {
     steady_iteration now;
     try {
       now = iterate(f);
-    } catch (const steady_stall&) {
+    } catch (const steady_imbalance&) {
       throw;
+    } catch (const steady_stall&) {
+      if (!continues()) throw;
+      continue;
     } catch (const numerical_error&) {
-      if (!begin_again()) throw;
-      f = start;
+      if (begin_again())
+        f = start;
+      else if (!continues())
+        throw;
       continue;
     }
     if (watch) watch(now);

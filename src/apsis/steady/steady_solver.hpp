@@ -76,9 +76,14 @@ class steady_solver {
   bool begin_again();
   /// Returns ‖T(f) + Q(f)/ε‖₂ relative to reference(), once there is one.
   double relative_residual(const field& f);
+  /// Forgets all iterations but for reference(); the next iteration begins with another f, and with a
+  /// pseudo-time term of a strength (damping::strength()).
+  void restart(int strength);
   /// Returns the time of flight through the shortest extent of the domain at the thermal speed of the first
   /// iteration.
   double flight_time() const;
+  /// Returns the number of collisions of that flight, by the mean rate of the first iteration.
+  double optical_length() const;
 
   /// Returns ‖T(f) + Q(f)/ε‖₂ of the first iteration, the unit of residuals; NaN before it.
   double reference() const;
@@ -86,8 +91,9 @@ class steady_solver {
   void set_reference(double residual);
 
   /// Iterates until convergence, calling `watch` after every iteration. Begins again with f of the start and
-  /// a stronger pseudo-time term where iterate() fails, other than by a stall. Throws numerical_error where
-  /// the strongest one does not help, and after the last of options.iterations.
+  /// a stronger pseudo-time term where iterate() fails, other than by a stall. Where the strongest one does
+  /// not help, rarer gases give the next start, once (rarer_gases; their iterations are not watched). Throws
+  /// numerical_error where that does not help either, and after the last of options.iterations.
   steady_iteration solve(field& f, const std::function<void(const steady_iteration&)>& watch = {});
 
  private:

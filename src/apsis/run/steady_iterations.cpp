@@ -108,8 +108,8 @@ bool steady_iterations::begin_rarer(const numerical_error& failure) {
   std::vector<double> factors = rarer_gases::factors(solver_->optical_length());
   if (std::exchange(tried_rarer_, true) || factors.empty()) return false;
   log::info(
-      fmt::format("iteration {}: {}; gases with {:g} times the epsilon give the next start, the rarest one "
-                  "from the first state",
+      fmt::format("iteration {}: {}; steady states with {:g} times the epsilon, one after the other, give "
+                  "the next start",
                   run_.march.step(), cause_of(failure), fmt::join(factors, ", ")));
   run_.state = first_;
   rarer_ = std::make_unique<rarer_gases>(*run_.setup.equation->as_relaxation(), run_.setup.builder(),

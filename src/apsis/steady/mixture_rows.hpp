@@ -11,7 +11,7 @@ namespace mixture_rows {
 
 /// Differences Δg_j of images, with their weights θ_j.
 struct weighted_differences {
-  std::vector<double> theta;
+  std::vector<double> theta;        ///< θ_j
   std::vector<const double*> rows;  ///< each at number 0
 };
 

@@ -51,8 +51,9 @@ steady_iteration rarer_gases::iterate(field& f) {
   const steady_iteration done = now_->solver.iterate(f);
   damping_ = done.damping;
   if (done.number >= most_iterations)
-    throw numerical_error(fmt::format("a gas with {:g} times the epsilon does not settle in {} iterations",
-                                      factors_[next_], most_iterations));
+    throw numerical_error(
+        fmt::format("the steady state with {:g} times the epsilon is not found in {} iterations",
+                    factors_[next_], most_iterations));
   if (done.converged) {
     now_.reset();
     ++next_;

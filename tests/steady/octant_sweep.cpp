@@ -17,10 +17,13 @@ namespace {
 
 using apsis::field;
 
-/// The value at the downstream edge of a cell: δ + 0.5 (δ − upstream), δ alone next to where the gas begins.
+constexpr double slope = 0.4;
+
+/// The value at the downstream edge of a cell: δ + slope (δ − upstream), δ alone next to where the gas
+/// begins.
 double edge(const apsis::cell_links& links, const field& d, int direction, bool up, int cell, int k) {
   const int before = links.next(direction, !up, cell);
-  return before < 0 ? d.row(cell)[k] : d.row(cell)[k] + 0.5 * (d.row(cell)[k] - d.row(before)[k]);
+  return before < 0 ? d.row(cell)[k] : d.row(cell)[k] + slope * (d.row(cell)[k] - d.row(before)[k]);
 }
 
 /// (L + σ) δ with nothing entering.
@@ -56,7 +59,7 @@ TEST_P(sweeps, solve_the_implicit_step_exactly) {
       gas.space->with_boundary({d, upper}, apsis::make_boundary("vacuum", *equation, {}));
   const apsis::domain& space = gas.space->space();
   const apsis::cell_links links(space);
-  apsis::octant_sweep sweep(*equation, space, links);
+  apsis::octant_sweep sweep(*equation, space, links, slope);
   check_property("rounding", [&] {
     field r(space.mesh().size(), equation->components());
     std::vector<double> rates;
@@ -90,7 +93,7 @@ TEST(octant_sweep, walls_return_in_later_octants_what_left_in_earlier_ones) {
   for (const bool upper : {false, true}) gas.space->with_boundary({0, upper}, diffuse_wall(*equation, 1.0));
   const apsis::domain& space = gas.space->space();
   const apsis::cell_links links(space);
-  apsis::octant_sweep sweep(*equation, space, links);
+  apsis::octant_sweep sweep(*equation, space, links, slope);
   field d(6, equation->components());
   for (int k = 0; k < d.components(); ++k)
     d.row(3)[k] = equation->speeds(0)[static_cast<std::size_t>(k)] < 0.0;

@@ -13,11 +13,6 @@
 namespace apsis {
 namespace {
 
-/// Share of the slope in the value at an edge, that of the upwind scheme of second order. Where f varies
-/// along a ray slowly and across it fast, iterations to T(f) = 0 settle the faster, the less the sweep
-/// diffuses.
-constexpr double slope = 0.5;
-
 /// Returns n · number / parts.
 int share_of(int n, int number, int parts) {
   return static_cast<int>(std::int64_t{n} * number / parts);
@@ -33,10 +28,12 @@ struct octant_sweep::scratch {
   per_thread<rows> of_threads;
 };
 
-octant_sweep::octant_sweep(const relaxation_model& equation, const domain& space, const cell_links& links)
+octant_sweep::octant_sweep(const relaxation_model& equation, const domain& space, const cell_links& links,
+                           double slope)
     : equation_(equation),
       space_(space),
       links_(links),
+      slope_(slope),
       entering_(static_cast<int>(links.ends().size()), equation.components()),
       scratch_(std::make_unique<scratch>()) {
   const int components = equation.components(), directions = links.directions();
@@ -168,11 +165,11 @@ sweep_rows::upstream octant_sweep::terms_of(int cell, int direction, bool up, co
     return from;
   }
   const int two = links_.next(direction, !up, one);
-  from.here = 1.0 + slope;
+  from.here = 1.0 + slope_;
   from.one = r.row(one);
-  from.first = two < 0 ? 1.0 + slope : 1.0 + 2.0 * slope;
+  from.first = two < 0 ? 1.0 + slope_ : 1.0 + 2.0 * slope_;
   from.two = two < 0 ? from.one : r.row(two);
-  from.second = two < 0 ? 0.0 : -slope;
+  from.second = two < 0 ? 0.0 : -slope_;
   return from;
 }
 

@@ -14,13 +14,13 @@ namespace apsis {
 
 /// An implicit step of upwind transport and relaxation, solved exactly by one pass in the direction of flight
 /// of every component: (L + σ) δ = r with L δ = Σ_k v_k ∂_k δ, whose value at the downstream edge of cell i
-/// is δ_i + ½ (δ_i − δ_{i−1}), δ_i itself next to where the gas begins. Components whose velocities have
+/// is δ_i + s (δ_i − δ_{i−1}), δ_i itself next to where the gas begins. Components whose velocities have
 /// equal signs form an octant; one octant follows another, and what leaves at an end of the gas in one of
 /// them enters, by the boundary condition, in those that follow. Across periodic faces nothing enters.
 class octant_sweep {
  public:
-  /// All arguments must outlive the object.
-  octant_sweep(const relaxation_model& equation, const domain& space, const cell_links& links);
+  /// All references must outlive the object. `slope`: s, from 0 of first order to ½ of second order.
+  octant_sweep(const relaxation_model& equation, const domain& space, const cell_links& links, double slope);
   ~octant_sweep();
   octant_sweep(const octant_sweep&) = delete;
   octant_sweep& operator=(const octant_sweep&) = delete;
@@ -48,6 +48,7 @@ class octant_sweep {
   const relaxation_model& equation_;
   const domain& space_;
   const cell_links& links_;
+  double slope_;
   std::vector<octant> octants_;
   std::array<aligned_vector<double>, 3> per_cell_;  ///< |v_k|/Δx_k of every component
   field entering_;                                  ///< [end], δ of the components that enter

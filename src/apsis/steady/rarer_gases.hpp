@@ -29,7 +29,8 @@ class rarer_gases {
   steady_iteration iterate(field& f);
   /// Whether f belongs to the last factor.
   bool finished() const { return next_ == factors_.size(); }
-  /// Returns steady_iteration::damping of the last iteration; every gas begins with that of the one before it.
+  /// Returns steady_iteration::damping of the last iteration; every gas begins with that of the one before
+  /// it.
   int damping() const { return damping_; }
 
  private:

@@ -41,9 +41,12 @@ constexpr double share_to_mix = 0.05;
 /// Rarefaction parameter √π/2 · L/λ below which a gas is rare, so that mixing pays from the first iteration
 /// on.
 constexpr double rare = 5.0;
-/// J is of first order where every cell is at most so many mean free paths wide: the viscosity of its fluxes
-/// is then a part of that of the gas.
-constexpr double widest_for_first_order = 1.5;
+/// Cells are thin where every one is at most so many mean free paths wide. J is of first order then: the
+/// viscosity of its fluxes is a part of that of the gas.
+constexpr double widest_thin_cell = 1.5;
+/// Slopes of the sweep. Where f varies along a ray slowly and across it fast, as in a rare gas, the less the
+/// sweep diffuses the faster it settles. Elsewhere strong flows take more iterations with second order.
+constexpr double slope_in_thin_cells = 0.5, usual_slope = 0.35;
 /// One iteration leaves at least this share of the temperature of every cell,
 constexpr double lowest_cooling = 0.1;
 /// if a correction of this share of its size can.
@@ -90,8 +93,9 @@ struct steady_solver::impl {
         links(builder.space()),
         count(equation.moment_count()),
         cells(equation, builder, links),
-        system(equation, builder, links, has_thin_cells(start)),
-        sweep(equation, builder.space(), links),
+        is_thin(has_thin_cells(start)),
+        system(equation, builder, links, is_thin),
+        sweep(equation, builder.space(), links, is_thin ? slope_in_thin_cells : usual_slope),
         mixture(given.depth),
         r(start.cells(), start.components()),
         omega(at(start.cells() * count)),
@@ -115,12 +119,12 @@ struct steady_solver::impl {
     find_rates(omega, rates);
   }
 
-  /// Whether J may be of first order at the state of the start.
+  /// Whether all cells are thin at the state of the start.
   bool has_thin_cells(const field& start) const {
     std::vector<double> moments(at(start.cells() * count)), now(at(start.cells()));
     cells.moments_of(start, moments);
     find_rates(moments, now);
-    return cells.largest_optical_width(moments, now) <= widest_for_first_order;
+    return cells.largest_optical_width(moments, now) <= widest_thin_cell;
   }
 
   /// to ← C/ε of the cells.
@@ -330,6 +334,7 @@ struct steady_solver::impl {
   cell_links links;
   int count;
   cell_measures cells;
+  bool is_thin;  ///< every cell
   macroscopic_system system;
   octant_sweep sweep;
   anderson mixture;

@@ -37,8 +37,8 @@ const quantity_entry quantity_cavity = {
     .source = "linearized BGK equation, the spectral solver of tests/validation/linear_square.hpp",
     .parameters = {{"delta", "1", "rarefaction p L/(mu v0), v0 = sqrt(2 R T)"},
                    {"model", "bgk", "bgk, shakhov or es-bgk"}},
-    .references = {computed({{"delta", "0.1"}}, 1.20429, 2e-3), computed({{"delta", "1"}}, 1.12509, 2e-3),
-                   computed({{"delta", "2"}}, 1.05601, 3e-3), computed({{"delta", "10"}}, 0.74234, 1e-2)},
+    .references = {computed({{"delta", "0.1"}}, 1.20429, 2e-3), computed({{"delta", "1"}}, 1.12509, 5e-4),
+                   computed({{"delta", "2"}}, 1.05601, 5e-4), computed({{"delta", "10"}}, 0.74234, 1e-3)},
     .compute = cavity_quantity::compute};
 
 }  // namespace apsis::validation

@@ -44,13 +44,13 @@ const quantity_entry quantity_enclosure = {
                    {"wall", "bottom", "bottom, left, or top"},
                    {"hot", "1.001", "temperature of the top, 1.0001 to 4; that of the others is 1"},
                    {"model", "bgk", "bgk, shakhov or es-bgk"}},
-    .references = {theory({{"delta", "0.0001"}}, std::numbers::sqrt2 - 1.0, 2e-3),
-                   theory({{"delta", "0.0001"}, {"wall", "left"}}, 1.0 - 0.5 * std::numbers::sqrt2, 2e-3),
-                   theory({{"delta", "0.0001"}, {"hot", "2"}}, std::numbers::sqrt2 - 1.0, 5e-3),
-                   computed({{"delta", "1"}}, 0.258184, 2e-3),
-                   computed({{"delta", "1"}, {"wall", "left"}}, 0.291405, 2e-3),
-                   computed({{"delta", "10"}}, 0.049300, 1e-2),
-                   computed({{"delta", "10"}, {"wall", "left"}}, 0.188031, 1e-2)},
+    .references = {theory({{"delta", "0.0001"}}, std::numbers::sqrt2 - 1.0, 1e-3),
+                   theory({{"delta", "0.0001"}, {"wall", "left"}}, 1.0 - 0.5 * std::numbers::sqrt2, 1e-3),
+                   theory({{"delta", "0.0001"}, {"hot", "2"}}, std::numbers::sqrt2 - 1.0, 3e-3),
+                   computed({{"delta", "1"}}, 0.258184, 1e-3),
+                   computed({{"delta", "1"}, {"wall", "left"}}, 0.291405, 5e-4),
+                   computed({{"delta", "10"}}, 0.049300, 1e-3),
+                   computed({{"delta", "10"}, {"wall", "left"}}, 0.188031, 1e-3)},
     .compute = enclosure_quantity::compute};
 
 }  // namespace apsis::validation

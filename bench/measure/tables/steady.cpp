@@ -95,13 +95,13 @@ result_table measure(const settings& options) {
   result_table result;
   result.title = "Steady states";
   result.note =
-      "Iterations of `[steady]` to a residual and a change of the moments of 1e-8, and CPU time on one "
-      "thread, the median of a run before the steps in time and others after them. These are those of "
-      "the shipped method at its longest step. They end when the rate of change has fallen to 1e-8 of its "
-      "largest value; \"≈\" marks "
-      "times extrapolated from the decay within 10 s (60 s with 64 × 64 cells). Both use upwind5 without "
-      "limiter, and start from the "
-      "data of the case.";
+      "Iterations of `[steady]` end with a residual and a change of the moments of 1e-8. "
+      "CPU times are those of one thread. "
+      "They are medians of a run before the steps in time and others after it. "
+      "Steps in time are those of the shipped method at its longest step. "
+      "They end when the rate of change has fallen to 1e-8 of its largest value. "
+      "\"≈\" marks times extrapolated from the decay within 10 s (60 s with 64 × 64 cells). "
+      "Both use upwind5 without limiter, and start from the data of the case.";
   result.columns = {"flow", "δ", "iterations", "CPU time (s)", "in time (s)", "ratio"};
   set_threads(1);
   const std::vector<std::string> deltas =

@@ -103,7 +103,7 @@ bool steady_iterations::begin_again(const numerical_error& failure) {
   return true;
 }
 
-/// Begins with rarer gases. Returns false if they were tried, or are of no help.
+/// Begins with rarer gases. Returns false if they were tried before, or if the gas is rare itself.
 bool steady_iterations::begin_rarer(const numerical_error& failure) {
   std::vector<double> factors = rarer_gases::factors(solver_->optical_length());
   if (std::exchange(tried_rarer_, true) || factors.empty()) return false;
@@ -117,7 +117,7 @@ bool steady_iterations::begin_rarer(const numerical_error& failure) {
   return true;
 }
 
-/// An iteration of a rarer gas, with its residual as one of the gas itself.
+/// Takes one iteration of a rarer gas. Its residual is that of the equation of the case.
 steady_iteration steady_iterations::follow_rarer() {
   try {
     rarer_->iterate(run_.state);
@@ -146,7 +146,7 @@ steady_iteration steady_iterations::march() {
   return end_of_detour(march_->finished());
 }
 
-/// An iteration that was not one of the solver, which begins anew if it was the last one.
+/// Returns the record of a step of rarer gases or of a march. After the last one the solver begins anew.
 steady_iteration steady_iterations::end_of_detour(bool finished) {
   steady_iteration done;
   done.residual = solver_->relative_residual(run_.state);

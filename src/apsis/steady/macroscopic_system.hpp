@@ -14,10 +14,10 @@ namespace apsis {
 /// kinetic equation. Fluxes are those of ∂E/∂ω by sums over half the velocities with third-order upwind
 /// weights, those of the deviation (C/ε)⁻¹ v·∇E by central differences, and those at the ends of the gas
 /// what the boundary conditions make of them: slip, temperature jumps and impermeable walls are part of J.
-/// J of first order has upwind weights of first order, an equation of half the reach, and some of its factors
-/// a quarter of the size.
 /// No moment of the transport part of the deviation is taken off ("c = 1"): smooth modes change by O(Kn)
 /// alone, and the correction stays bounded where the gas is rare.
+/// J of first order has upwind weights of first order. Its equations reach half as far, and its factors need
+/// less memory.
 ///
 /// Every process differentiates in its own cells; the root holds and solves J. Members that change or solve J
 /// are collective.

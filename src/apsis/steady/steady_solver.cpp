@@ -44,8 +44,8 @@ constexpr double rare = 5.0;
 /// Cells are thin where every one is at most so many mean free paths wide. J is of first order then: the
 /// viscosity of its fluxes is a part of that of the gas.
 constexpr double widest_thin_cell = 1.5;
-/// Slopes of the sweep. Where f varies along a ray slowly and across it fast, as in a rare gas, the less the
-/// sweep diffuses the faster it settles. Elsewhere strong flows take more iterations with second order.
+/// Slopes of the sweep. In a rare gas f varies fast across rays. A sweep that diffuses less then needs fewer
+/// iterations. In a dense gas strong flows need more iterations with second order.
 constexpr double slope_in_thin_cells = 0.5, usual_slope = 0.35;
 /// One iteration leaves at least this share of the temperature of every cell,
 constexpr double lowest_cooling = 0.1;

@@ -32,9 +32,9 @@ class macroscopic_system::whole_system {
 
   /// `blocks`: of all cells, [cell][layout.numbers()].
   void build(std::span<const double> blocks, double pseudo_rate, bool holds_neutral) {
-    const moment_equations equations = assembly_.assemble(blocks, pseudo_rate);
+    moment_equations equations = assembly_.assemble(blocks, pseudo_rate);
     conserved_ = equations.conserved;
-    solver_.take(equations, holds_neutral);
+    solver_.take(std::move(equations), holds_neutral);
   }
   /// The moments whose sums nothing changes.
   const std::vector<int>& conserved() const { return conserved_; }

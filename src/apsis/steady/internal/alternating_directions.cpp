@@ -50,17 +50,18 @@ Eigen::VectorXd solved_with(const sparse_factors_of<float>& factors, const Eigen
   return solved.cast<double>() * size;
 }
 
-/// Returns rows of Θ x for a block-diagonal Θ. `unknowns`: of whole cells.
+/// Returns rows of Θ x for a block-diagonal Θ. `unknowns`: of whole cells. Blocks are too small for calls of
+/// a library.
 Eigen::VectorXd scaled_rows(const std::vector<double>& scale, int moments, const Eigen::VectorXd& x,
                             const std::vector<int>& unknowns) {
-  using block = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-  const auto count = static_cast<Eigen::Index>(unknowns.size());
-  Eigen::VectorXd y(count);
-  for (Eigen::Index k = 0; k < count; k += moments) {
-    const int first = unknowns[static_cast<std::size_t>(k)];
-    y.segment(k, moments).noalias() =
-        Eigen::Map<const block>(scale.data() + at(first) * at(moments), moments, moments) *
-        x.segment(first, moments);
+  Eigen::VectorXd y(static_cast<Eigen::Index>(unknowns.size()));
+  for (std::size_t k = 0; k < unknowns.size(); ++k) {
+    const int row = unknowns[k];
+    const double* theta = scale.data() + at(row) * at(moments);
+    const double* of_cell = x.data() + row / moments * moments;
+    double sum = 0.0;
+    for (int j = 0; j < moments; ++j) sum += theta[j] * of_cell[j];
+    y[static_cast<Eigen::Index>(k)] = sum;
   }
   return y;
 }

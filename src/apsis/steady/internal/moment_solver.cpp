@@ -16,6 +16,8 @@ constexpr double tolerance_with_directions = 1e-4, tolerance_of_first_order = 1e
 /// More iterations than this with earlier factors, for all right sides of a J, cost as much as new factors.
 constexpr int iterations_with_earlier_factors = 6;
 constexpr int iterations_with_directions = 240;
+/// Directions of an earlier J are renewed where they need this many times the iterations of new ones.
+constexpr double growth_with_earlier_directions = 1.25;
 constexpr int iterations_until_restart = 60;
 /// Most unknowns of a J that is factorized. Such factors take about 2 GB.
 constexpr int largest_plane = 250000, largest_space = 25000;
@@ -73,16 +75,17 @@ double moment_solver::numbers_of_cell(int directions, int moments, double cells)
 moment_solver::moment_solver(const moment_mesh& mesh)
     : mesh_(mesh), factorizes_(factorizes(mesh.directions, mesh.unknowns())) {}
 
-void moment_solver::take(const moment_equations& equations, bool holds_neutral) {
+void moment_solver::take(moment_equations equations, bool holds_neutral) {
   const Eigen::Index rows = matrix_.rows();
   matrix_ = bordered_matrix(mesh_, equations);
   are_those_of_matrix_ = false;
   iterations_ = 0;
   if (rows != matrix_.rows()) factors_.reset();
   neutral_.reset();
-  directions_.reset();
   if (!factorizes_) {
-    directions_ = std::make_unique<alternating_directions>(mesh_, equations);
+    if (rows != matrix_.rows()) directions_.reset();
+    equations_ = std::move(equations);
+    if (!directions_) renew_directions();
     return;
   }
   // On a line factors cost less than iterations.
@@ -122,12 +125,31 @@ std::optional<Eigen::VectorXd> moment_solver::iterate(const Eigen::VectorXd& r,
   return x;
 }
 
+void moment_solver::renew_directions() {
+  directions_ = std::make_unique<alternating_directions>(mesh_, *equations_);
+  iterations_of_new_ = 0;
+}
+
+std::optional<Eigen::VectorXd> moment_solver::solve_with_directions(const Eigen::VectorXd& r) {
+  const preconditioner steps = [this](const Eigen::VectorXd& of) { return directions_->solve(of); };
+  const double tolerance = mesh_.first_order ? tolerance_of_first_order : tolerance_with_directions;
+  const bool are_new = iterations_of_new_ == 0;
+  const int most = are_new ? iterations_with_directions
+                           : static_cast<int>(growth_with_earlier_directions * iterations_of_new_) + 1;
+  iterations_ = 0;
+  if (auto x = iterate(r, steps, tolerance, most)) {
+    if (are_new) iterations_of_new_ = std::max(iterations_, 1);
+    return x;
+  }
+  if (are_new) return std::nullopt;
+  renew_directions();
+  return solve_with_directions(r);
+}
+
 Eigen::VectorXd moment_solver::solve(Eigen::VectorXd r) {
   if (neutral_) neutral_->remove_from_right_side(r);
   if (directions_) {
-    const preconditioner steps = [this](const Eigen::VectorXd& of) { return directions_->solve(of); };
-    const double tolerance = mesh_.first_order ? tolerance_of_first_order : tolerance_with_directions;
-    if (auto x = iterate(r, steps, tolerance, iterations_with_directions)) return *x;
+    if (auto x = solve_with_directions(r)) return *x;
   } else if (!are_those_of_matrix_ && iterations_ < iterations_with_earlier_factors) {
     const preconditioner earlier = [this](const Eigen::VectorXd& of) { return factors_->solve(of); };
     if (auto x = iterate(r, earlier, tolerance_with_earlier_factors, iterations_with_earlier_factors))

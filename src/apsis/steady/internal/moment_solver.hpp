@@ -16,7 +16,7 @@ namespace apsis {
 
 /// Solves moment equations. Small systems are factorized. Factors of an earlier J precondition GMRES for a
 /// later one, as long as few iterations do. Where factors are too large, alternating_directions precondition
-/// it.
+/// it, those of an earlier J too.
 class moment_solver {
  public:
   /// `mesh` must outlive the object.
@@ -24,7 +24,7 @@ class moment_solver {
 
   /// Takes another J. `holds_neutral`: whether solve() leaves a neutral mode as it is; it is only sought
   /// where J is factorized. Throws numerical_error if J is singular.
-  void take(const moment_equations& equations, bool holds_neutral);
+  void take(moment_equations equations, bool holds_neutral);
   /// Whether solve() leaves a neutral mode as it is.
   bool has_neutral_mode() const { return neutral_.has_value(); }
   /// Returns x with J x = r, and prescribed sums. Throws numerical_error if J is singular.
@@ -38,6 +38,8 @@ class moment_solver {
  private:
   using preconditioner = std::function<Eigen::VectorXd(const Eigen::VectorXd&)>;
   void factorize_again();
+  void renew_directions();
+  std::optional<Eigen::VectorXd> solve_with_directions(const Eigen::VectorXd& r);
   std::vector<int> ends_of_parts() const;
   std::optional<Eigen::VectorXd> iterate(const Eigen::VectorXd& r, const preconditioner& approximate,
                                          double tolerance, int iterations);
@@ -46,9 +48,11 @@ class moment_solver {
   bool factorizes_;
   row_matrix matrix_;
   std::unique_ptr<frontal_factors> factors_;
-  bool are_those_of_matrix_ = false;  ///< the factors
-  int iterations_ = 0;                ///< with this matrix
+  bool are_those_of_matrix_ = false;           ///< the factors
+  int iterations_ = 0;                         ///< with this matrix
+  std::optional<moment_equations> equations_;  ///< J, where directions precondition it
   std::unique_ptr<alternating_directions> directions_;
+  int iterations_of_new_ = 0;  ///< with directions of the same J, those of the first right side; 0: unknown
   std::optional<neutral_mode> neutral_;
 };
 

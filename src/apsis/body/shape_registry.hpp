@@ -1,0 +1,43 @@
+#pragma once
+
+#include <apsis/body/shape.hpp>
+#include <apsis/body/shape_value.hpp>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace apsis {
+
+/// A kind of shape: a file of body/shapes/ defines `extern const shape_entry shape_<file>`.
+struct shape_entry {
+  std::string name;                      ///< name in a case file: "sphere"
+  std::string description;               ///< one line
+  std::vector<shape_key> keys;           ///< its keys, without those of all shapes
+  std::vector<int> dimensions = {2, 3};  ///< numbers of dimensions that it serves
+  std::string alternative = "";          ///< the shape for other dimensions
+  /// Returns a new shape. Throws input_error for values that contradict each other, and io_error for a file
+  /// that cannot be read.
+  std::shared_ptr<const shape> (*make)(const shape_arguments& from) = nullptr;
+};
+
+/// Returns all kinds, sorted by file name (generated).
+std::vector<const shape_entry*> shape_entries();
+
+/// Returns the names of all kinds: "box", "circle", …
+std::vector<std::string> shape_names();
+
+/// Returns the kind of a name. Throws input_error with the nearest name for an unknown one.
+const shape_entry& find_shape(const std::string& name);
+
+/// Returns the keys that every shape accepts in d = 2 or 3 dimensions: `shift`, a vector, and `rotate`. The
+/// latter is an angle in degrees about the origin for d = 2; for d = 3 it is an axis through the origin,
+/// followed by the angle.
+std::vector<shape_key> common_shape_keys(int dimensions);
+
+/// Returns the shape of a kind in d = 2 or 3 dimensions, rotated about the origin first, and then shifted.
+/// Throws input_error for an unknown kind, a kind or a number of dimensions that is not served, and as
+/// check_shape_values() and shape_entry::make do; throws io_error for a file that cannot be read.
+std::shared_ptr<const shape> make_shape(const std::string& name, const shape_values& values, int dimensions);
+
+}  // namespace apsis

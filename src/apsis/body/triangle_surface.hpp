@@ -1,0 +1,46 @@
+#pragma once
+
+#include <apsis/velocity/position.hpp>
+
+#include <array>
+#include <memory>
+#include <vector>
+
+namespace apsis {
+
+/// Corners of a triangle in space, counterclockwise seen from the gas.
+using space_triangle = std::array<position, 3>;
+
+/// A closed surface of triangles, which may have several disjoint shells, one inside another for a cavity.
+/// Whether shells intersect themselves or touch each other is not checked; signs are undefined near such
+/// points.
+class triangle_surface {
+ public:
+  /// Merges equal corners, drops triangles with fewer than three distinct ones, and flips the edges of
+  /// triangles with collinear corners. Reverses all triangles if the signed volume is negative. Throws
+  /// input_error for a surface without triangles, open or branching edges, neighbours of contrary
+  /// orientation, a shell without volume, or a shell inside another one that has the same orientation.
+  explicit triangle_surface(const std::vector<space_triangle>& triangles);
+  ~triangle_surface();
+  triangle_surface(triangle_surface&&) noexcept;
+  triangle_surface& operator=(triangle_surface&&) noexcept;
+  triangle_surface(const triangle_surface&) = delete;
+  triangle_surface& operator=(const triangle_surface&) = delete;
+
+  /// Returns the distance of x from the nearest triangle, negative inside. The sign is that of (x − c)·n for
+  /// the nearest point c and its angle-weighted pseudonormal n (Baerentzen, Aanaes, IEEE Trans. Vis. Comput.
+  /// Graph. 11, 2005). Costs the logarithm of the number of triangles. May be called concurrently.
+  double signed_distance(const position& x) const;
+
+  double volume() const;  ///< enclosed volume, positive (dimensionless)
+  double area() const;    ///< area of all triangles (dimensionless)
+  int triangles() const;  ///< number of triangles that remain
+  int vertices() const;   ///< number of distinct corners
+  int shells() const;     ///< number of connected parts
+
+ private:
+  struct parts;
+  std::unique_ptr<const parts> parts_;
+};
+
+}  // namespace apsis

@@ -1,0 +1,164 @@
+// Files of surfaces: both formats, and what is refused.
+#include <apsis/body/read_stl.hpp>
+
+#include "body/triangles.hpp"
+
+#include <apsis/core/errors.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace read_stl_test {
+
+namespace {
+
+using namespace body_triangles;
+using apsis::read_stl;
+using body_examples::numbers;
+using body_examples::random_points;
+using testing::AllOf;
+using testing::HasSubstr;
+
+/// The message with which a file is refused, which must begin with its path.
+std::string refusal_of(const std::string& name, const std::string& bytes) {
+  const std::string path = written(name, bytes);
+  try {
+    read_stl(path);
+  } catch (const apsis::input_error& failure) {
+    const std::string message = failure.what();
+    return message.starts_with(path + ":") ? message.substr(path.size() + 1) : "without path: " + message;
+  }
+  return "accepted";
+}
+
+std::string with(std::string text, const std::string& old, const std::string& replacement) {
+  return text.replace(text.find(old), old.size(), replacement);
+}
+
+}  // namespace
+
+TEST(read_stl, both_formats_have_the_same_triangles_in_single_precision) {
+  const triangle_list sphere = icosphere(0.7, 2);
+  const auto ascii = read_stl(written("sphere_ascii.stl", ascii_stl(sphere)));
+  const auto binary = read_stl(written("sphere_binary.stl", binary_stl(sphere)));
+  EXPECT_EQ(ascii, binary);
+  ASSERT_EQ(ascii.size(), sphere.size());
+  for (std::size_t t = 0; t < sphere.size(); ++t)
+    for (std::size_t n = 0; n < 3; ++n)
+      for (std::size_t k = 0; k < 3; ++k)
+        ASSERT_EQ(ascii[t][n][k], static_cast<double>(static_cast<float>(sphere[t][n][k])));
+}
+
+TEST(read_stl, a_binary_file_may_begin_with_solid_or_not) {
+  EXPECT_EQ(read_stl(written("named.stl", binary_stl(unit_cube(), "solid cube\n facet normal"))),
+            unit_cube());
+  EXPECT_EQ(read_stl(written("plain.stl", binary_stl(unit_cube(), ""))), unit_cube());
+}
+
+TEST(read_stl, accepts_capitals_signs_other_line_ends_and_several_solids) {
+  std::string text = ascii_stl(unit_cube());
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c; });
+  EXPECT_EQ(read_stl(written("capitals.stl", text)), unit_cube());
+  EXPECT_EQ(
+      read_stl(written("signs.stl", with(ascii_stl(unit_cube()), "vertex 0 1 1", "vertex -0 +1.0e0\t1"))),
+      unit_cube());
+  std::string windows;
+  for (const char c : ascii_stl(unit_cube())) windows += c == '\n' ? std::string("\r\n") : std::string(1, c);
+  EXPECT_EQ(read_stl(written("windows.stl", windows)), unit_cube());
+  const triangle_list apart = cuboid({2, 2, 2}, {3, 3, 3});
+  EXPECT_EQ(read_stl(written("two.stl", ascii_stl(unit_cube()) + "\n" + ascii_stl(apart))),
+            joined(unit_cube(), apart));
+}
+
+TEST(read_stl, ignores_normals_even_if_they_are_not_finite) {
+  EXPECT_EQ(
+      read_stl(written("normals.stl", with(ascii_stl(unit_cube()), "normal 0 0 0", "normal nan -inf 0"))),
+      unit_cube());
+}
+
+TEST(read_stl, refuses_truncated_files) {
+  const std::string ascii = ascii_stl(unit_cube()), binary = binary_stl(unit_cube());
+  EXPECT_THAT(refusal_of("cut.stl", ascii.substr(0, ascii.find("endsolid"))),
+              AllOf(HasSubstr("86: the file ends before 'endsolid'"), HasSubstr("truncated")));
+  EXPECT_THAT(refusal_of("cut.stl", ascii.substr(0, ascii.find("endloop"))),
+              HasSubstr("7: the file ends before 'endloop'"));
+  EXPECT_THAT(refusal_of("cut.stl", binary.substr(0, binary.size() - 1)),
+              HasSubstr("the file has 683 bytes (12 triangles at byte 80 need 684)"));
+  EXPECT_THAT(refusal_of("long.stl", binary + " "), HasSubstr("the file has 685 bytes"));
+  EXPECT_THAT(refusal_of("cut.stl", std::string("\1\2\3", 3)), HasSubstr("the file has 3 bytes"));
+}
+
+TEST(read_stl, refuses_empty_files) {
+  EXPECT_THAT(refusal_of("empty.stl", ""), HasSubstr("the file has 0 bytes"));
+  EXPECT_THAT(refusal_of("empty.stl", "solid\nendsolid\n"), HasSubstr("no triangles"));
+  EXPECT_THAT(refusal_of("empty.stl", binary_stl({})), HasSubstr("no triangles"));
+}
+
+TEST(read_stl, refuses_coordinates_that_are_not_finite_numbers) {
+  const std::string ascii = ascii_stl(unit_cube());
+  const auto changed = [&](const std::string& word) {
+    return refusal_of("nan.stl", with(ascii, "vertex 0 0 0", "vertex 0 " + word + " 0"));
+  };
+  EXPECT_THAT(changed("nan"), HasSubstr("4: the coordinate nan is not finite"));
+  EXPECT_THAT(changed("1e39"), HasSubstr("4: the coordinate 1e39 is not finite (in single precision)"));
+  EXPECT_THAT(changed("1e999"), HasSubstr("4: the coordinate 1e999 is not finite"));
+  EXPECT_THAT(changed("one"), HasSubstr("4: 'one' is not a number"));
+  EXPECT_THAT(changed("1.0mm"), HasSubstr("4: '1.0mm' is not a number"));
+  triangle_list triangles = unit_cube();
+  triangles[1][2][0] = std::nan("");
+  // 84 bytes of the header, 50 of the first triangle, 12 of the normal and 24 of two corners.
+  EXPECT_THAT(refusal_of("nan.stl", binary_stl(triangles)),
+              AllOf(HasSubstr("at byte 170"), HasSubstr("in triangle 2")));
+}
+
+TEST(read_stl, refuses_other_texts) {
+  const std::string ascii = ascii_stl(unit_cube());
+  EXPECT_THAT(refusal_of("other.stl", with(ascii, "outer", "inner")),
+              HasSubstr("3: 'inner' instead of 'outer'"));
+  EXPECT_THAT(refusal_of("other.stl", with(ascii, "endloop", "vertex")),
+              HasSubstr("7: 'vertex' instead of 'endloop'"));
+  EXPECT_THAT(refusal_of("other.stl", ascii + "more"), HasSubstr("87: 'more' instead of 'solid'"));
+  EXPECT_THAT(refusal_of("other.stl", "v 0 0 0\nv 1 0 0\n"), HasSubstr("neither 'solid' nor"));
+}
+
+TEST(read_stl, reports_files_that_cannot_be_read) {
+  EXPECT_THROW(read_stl(testing::TempDir() + "apsis_body_absent.stl"), apsis::io_error);
+  EXPECT_THROW(read_stl(testing::TempDir()), apsis::io_error);
+}
+
+TEST(shape_stl, is_scaled_rotated_and_then_shifted) {
+  const std::string path = written("box.stl", binary_stl(cuboid({0, 0, 0}, {1, 2, 3})));
+  const auto stl = body_examples::made(
+      "stl",
+      {{"file", path}, {"scale", 0.5}, {"rotate", numbers{0, 0, 1, 90}}, {"shift", numbers{0.25, -0.5, 0.0}}},
+      3);
+  // (x, y) becomes (−y, x), so the box reaches from −1 to 0 along x before it is shifted.
+  const auto box =
+      body_examples::made("box", {{"from", numbers{-0.75, -0.5, 0.0}}, {"to", numbers{0.25, 0.0, 1.5}}}, 3);
+  random_points points(3);
+  for (int n = 0; n < 1'000; ++n) {
+    const position x = points.next();
+    // The same distances, rounded in another order.
+    ASSERT_NEAR(stl->outside(x), box->outside(x), 2e-15);
+  }
+}
+
+TEST(shape_stl, names_the_file_of_an_open_surface) {
+  triangle_list triangles = unit_cube();
+  triangles.pop_back();
+  const std::string path = written("open.stl", ascii_stl(triangles));
+  try {
+    body_examples::made("stl", {{"file", path}}, 3);
+    FAIL() << "accepted";
+  } catch (const apsis::input_error& failure) {
+    EXPECT_THAT(failure.what(), testing::StartsWith(path + ": the surface is open (3 edges"));
+  }
+  EXPECT_THROW(body_examples::made("stl", {{"file", path + ".absent"}}, 3), apsis::io_error);
+}
+
+}  // namespace read_stl_test

@@ -21,7 +21,6 @@ namespace {
 using namespace body_triangles;
 using apsis::triangle_surface;
 using body_examples::numbers;
-using body_examples::points;
 using body_examples::random_points;
 using testing::HasSubstr;
 
@@ -58,7 +57,7 @@ double determinant(const position& a, const position& b, const position& c) {
 }
 
 /// Prism over a star with acute corners, between z = 0 and 1; and the polygon.
-triangle_list star_prism(points& corners) {
+triangle_list star_prism(body_examples::points& corners) {
   constexpr int count = 10;
   for (int k = 0; k < count; ++k) {
     const double angle = 2.0 * std::numbers::pi * k / count, r = k % 2 == 0 ? 1.0 : 0.3;
@@ -94,7 +93,7 @@ TEST(triangle_surface, of_a_reversed_cube_is_turned_outwards) {
 }
 
 TEST(triangle_surface, of_a_star_equals_an_extruded_polygon) {
-  points corners;
+  body_examples::points corners;
   const triangle_surface star(star_prism(corners));
   const auto polygon = body_examples::made("polygon", {{"points", corners}}, 2);
   const auto prism =

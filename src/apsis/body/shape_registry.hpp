@@ -36,8 +36,8 @@ const shape_entry& find_shape(const std::string& name);
 std::vector<shape_key> common_shape_keys(int dimensions);
 
 /// Returns the shape of a kind in d = 2 or 3 dimensions, rotated about the origin first, and then shifted.
-/// Throws input_error for an unknown kind, a kind or a number of dimensions that is not served, and as
-/// check_shape_values() and shape_entry::make do; throws io_error for a file that cannot be read.
+/// Throws input_error for an unknown kind, or for a number of dimensions that the kind does not serve. Throws
+/// also what check_shape_values() and shape_entry::make throw.
 std::shared_ptr<const shape> make_shape(const std::string& name, const shape_values& values, int dimensions);
 
 }  // namespace apsis

@@ -62,9 +62,10 @@ class shape_arguments {
   double number(const std::string& key) const;                       ///< returns a number
   const std::vector<double>& numbers(const std::string& key) const;  ///< returns all numbers of a vector
   position vector(const std::string& key) const;                     ///< returns a vector, filled with 0
-  position direction(const std::string& key) const;            ///< returns a vector divided by its length
-  std::vector<position> points(const std::string& key) const;  ///< returns points, filled with 0
-  const std::string& text(const std::string& key) const;       ///< returns a text
+  /// Returns a vector divided by its length. Throws input_error for 0.
+  position direction(const std::string& key) const;
+  std::vector<position> points(const std::string& key) const;       ///< returns points, filled with 0
+  const std::string& text(const std::string& key) const;            ///< returns a text
   const level_set_function& formula(const std::string& key) const;  ///< returns a function
   const shape_list& shapes(const std::string& key) const;           ///< returns the shapes of a list
   /// Throws input_error "'`key`' of shape '…' `problem`; `suggestion`".
@@ -77,9 +78,10 @@ class shape_arguments {
   int dimensions_;
 };
 
-/// Returns the values of all keys, given or by default. Throws input_error for an unknown key (with the
-/// nearest one), a missing one, or a value of another kind or size, that is not finite, or not positive where
-/// it must be. Magnitudes are at most 1e100, and at least 1e-100 where they must be positive.
+/// Returns the values of all keys, given or by default. Throws input_error with the nearest name for an
+/// unknown key, and for a missing one. Throws input_error for a value of another kind or size, and for a
+/// number that is not finite. Magnitudes are at most 1e100; numbers that must be positive are at least
+/// 1e-100.
 shape_arguments check_shape_values(const std::string& name, const std::vector<shape_key>& keys,
                                    const shape_values& given, int dimensions);
 

@@ -16,20 +16,21 @@ using space_triangle = std::array<position, 3>;
 /// points.
 class triangle_surface {
  public:
-  /// Merges equal corners, drops triangles with fewer than three distinct ones, and flips the edges of
+  /// Merges equal corners and drops triangles with fewer than three distinct ones. Flips the edges of
   /// triangles with collinear corners. Reverses all triangles if the signed volume is negative. Throws
-  /// input_error for a surface without triangles, open or branching edges, neighbours of contrary
-  /// orientation, a shell without volume, or a shell inside another one that has the same orientation.
+  /// input_error for a surface without triangles, with open or branching edges, or with neighbours of
+  /// contrary orientation. Throws input_error for a shell that has no volume, or whose orientation does not
+  /// fit the shells around it.
   explicit triangle_surface(const std::vector<space_triangle>& triangles);
   ~triangle_surface();
-  triangle_surface(triangle_surface&&) noexcept;
-  triangle_surface& operator=(triangle_surface&&) noexcept;
+  triangle_surface(triangle_surface&&) noexcept;             ///< the source can then only be destroyed
+  triangle_surface& operator=(triangle_surface&&) noexcept;  ///< the source can then only be destroyed
   triangle_surface(const triangle_surface&) = delete;
   triangle_surface& operator=(const triangle_surface&) = delete;
 
   /// Returns the distance of x from the nearest triangle, negative inside. The sign is that of (x − c)·n for
   /// the nearest point c and its angle-weighted pseudonormal n (Baerentzen, Aanaes, IEEE Trans. Vis. Comput.
-  /// Graph. 11, 2005). Costs the logarithm of the number of triangles. May be called concurrently.
+  /// Graph. 11, 2005). Fastest near the surface. May be called concurrently.
   double signed_distance(const position& x) const;
 
   double volume() const;  ///< enclosed volume, positive (dimensionless)

@@ -1,0 +1,185 @@
+#include <apsis/core/index.hpp>
+#include <apsis/mesh/internal/mesh_cutter.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace apsis {
+namespace {
+
+/// Open faces whose areas differ by less are equal, so that mirrored meshes have mirrored groups.
+constexpr double equal_areas = 1e-9;
+
+}  // namespace
+
+int mesh_cutter::root(int cell) {
+  while (parents_[at(cell)] >= 0) cell = parents_[at(cell)];
+  return cell;
+}
+
+/// The lowest cell of a group is its root.
+void mesh_cutter::unite(int a, int b) {
+  a = root(a), b = root(b);
+  if (a != b) parents_[at(std::max(a, b))] = std::min(a, b);
+}
+
+std::map<int, std::vector<int>> mesh_cutter::members() {
+  std::map<int, std::vector<int>> found;
+  for (const auto& [cell, gas] : gas_) found[root(cell)].push_back(cell);
+  return found;
+}
+
+/// Returns κ max Δx Σ_out area / volume.
+double mesh_cutter::outflow(const std::vector<int>& cells) {
+  std::array<double, 6> out{};
+  double volume = 0.0;
+  for (const int cell : cells) {
+    const gas_of_cell& gas = gas_.at(cell);
+    volume += gas.volume;
+    for (const way_out& one : ways_out(cell))
+      if (one.neighbour < 0 || root(one.neighbour) != root(cell))
+        out[face{one.direction, one.upper}.index()] += one.area;
+    for (const piece& wall : gas.walls)
+      for (int k = 0; k < mesh_.dimensions(); ++k)
+        out[face{k, wall.vector[at(k)] < 0.0}.index()] += std::abs(wall.vector[at(k)]);
+  }
+  double most = 0.0;
+  for (int k = 0; k < mesh_.dimensions(); ++k)
+    for (const bool upper : {false, true})
+      most = std::max(most, out[face{k, upper}.index()] * mesh_.spacing(k));
+  return cfl_number_ * most / volume;
+}
+
+/// Returns the neighbours of a group behind its largest open faces, one cell of each.
+std::vector<int> mesh_cutter::best_neighbours(const std::vector<int>& cells) {
+  std::map<int, double> areas;  // by root
+  for (const int cell : cells)
+    for (const way_out& one : ways_out(cell))
+      if (one.neighbour >= 0 && root(one.neighbour) != root(cell)) areas[root(one.neighbour)] += one.area;
+  double largest = 0.0;
+  for (const auto& [neighbour, area] : areas) largest = std::max(largest, area);
+  std::vector<int> best;
+  for (const auto& [neighbour, area] : areas)
+    if (area >= (1.0 - equal_areas) * largest) best.push_back(neighbour);
+  return best;
+}
+
+/// Joins small cells to others, all of a round in the same state, so that no order of cells matters.
+void mesh_cutter::join() {
+  for (bool changed = true; changed;) {
+    changed = false;
+    std::vector<std::pair<int, int>> pairs;
+    std::vector<int> closed;
+    for (const auto& [first, cells] : members()) {
+      if (outflow(cells) <= 1.0) continue;
+      const std::vector<int> best = best_neighbours(cells);
+      for (const int other : best) pairs.emplace_back(first, other);
+      if (best.empty()) closed.insert(closed.end(), cells.begin(), cells.end());
+    }
+    for (const auto& [a, b] : pairs) {
+      for (const int cell : {a, b})
+        if (kinds_[at(cell)] == kind::whole) {
+          kinds_[at(cell)] = kind::cut;
+          gas_of_cell whole{.volume = mesh_.cell_volume(), .centre = mesh_.centre(cell)};
+          add_walls(cell, whole);
+          gas_.emplace(cell, std::move(whole));
+        }
+      unite(a, b);
+      changed = true;
+    }
+    // A pocket of a few small cells has no way out, and no neighbour sees it.
+    for (const int cell : closed) {
+      kinds_[at(cell)] = kind::body;
+      result_.body_of_[at(cell)] = body_at(mesh_.centre(cell));
+      gas_.erase(cell);
+      changed = true;
+    }
+  }
+}
+
+void mesh_cutter::number_groups() {
+  result_.group_of_.assign(at(mesh_.size()), -1);
+  for (auto& [first, cells] : members()) {
+    const int number = static_cast<int>(result_.groups_.size());
+    for (const int cell : cells) {
+      result_.group_of_[at(cell)] = number;
+      result_.volumes_[cell] = gas_.at(cell).volume;
+    }
+    result_.outflows_.push_back(outflow(cells));
+    result_.groups_.emplace_back().cells = std::move(cells);
+  }
+  for (int group = 0; group < static_cast<int>(result_.groups_.size()); ++group) find_centre(group);
+  for (int group = 0; group < static_cast<int>(result_.groups_.size()); ++group) add_faces(group);
+}
+
+/// Cells across periodic faces get the coordinates next to the first cell of their group.
+void mesh_cutter::find_centre(int number) {
+  cut_group& group = result_.groups_[at(number)];
+  std::vector<int> reached = {group.cells.front()};
+  shifts_[reached.front()] = {};
+  for (std::size_t k = 0; k < reached.size(); ++k)
+    for (const way_out& one : ways_out(reached[k])) {
+      if (one.neighbour < 0 || result_.group_of(one.neighbour) != number || shifts_.count(one.neighbour) > 0)
+        continue;
+      const auto d = at(one.direction);
+      position shift = shifts_.at(reached[k]);
+      const double beside = mesh_.centre(reached[k])[d] + (one.upper ? 1 : -1) * mesh_.spacing(one.direction);
+      const double length = mesh_.spacing(one.direction) * mesh_.cells(one.direction);
+      shift[d] += length * std::round((beside - mesh_.centre(one.neighbour)[d]) / length);
+      shifts_[one.neighbour] = shift;
+      reached.push_back(one.neighbour);
+    }
+  position moment{};
+  for (const int cell : group.cells) {
+    const gas_of_cell& gas = gas_.at(cell);
+    group.volume += gas.volume;
+    for (std::size_t d = 0; d < 3; ++d) moment[d] += gas.volume * (gas.centre[d] + shifts_.at(cell)[d]);
+  }
+  for (std::size_t d = 0; d < 3; ++d) group.centre[d] = moment[d] / group.volume;
+}
+
+/// Adds the faces and walls of a group; a face between two groups with the one below it.
+void mesh_cutter::add_faces(int number) {
+  cut_group& group = result_.groups_[at(number)];
+  const auto from_centre = [&](int cell, const position& x) {
+    const int of = result_.group_of(cell);
+    const position centre = of < 0 ? mesh_.centre(cell) : result_.groups_[at(of)].centre;
+    const position shift = of < 0 ? position{} : shifts_.at(cell);
+    position found{};
+    for (std::size_t d = 0; d < 3; ++d) found[d] = x[d] + shift[d] - centre[d];
+    return found;
+  };
+  for (const int cell : group.cells) {
+    for (const way_out& one : ways_out(cell)) {
+      const int other = one.neighbour < 0 ? -1 : result_.group_of(one.neighbour);
+      if (one.neighbour >= 0 && (other == number || (other >= 0 && !one.upper))) continue;
+      position beyond = one.middle;  // in the coordinates of the neighbour
+      if (one.neighbour >= 0)
+        beyond[at(one.direction)] = mesh_.centre(one.neighbour)[at(one.direction)] -
+                                    (one.upper ? 0.5 : -0.5) * mesh_.spacing(one.direction);
+      open_face made{.below = one.upper ? cell : one.neighbour,
+                     .above = one.upper ? one.neighbour : cell,
+                     .direction = one.direction,
+                     .area = one.area,
+                     .middle = one.middle};
+      if (made.below >= 0) made.from_below = from_centre(made.below, one.upper ? one.middle : beyond);
+      if (made.above >= 0) made.from_above = from_centre(made.above, one.upper ? beyond : one.middle);
+      const int index = static_cast<int>(result_.faces_.size());
+      group.faces.push_back(index);
+      if (other >= 0) result_.groups_[at(other)].faces.push_back(index);
+      result_.faces_.push_back(made);
+    }
+    for (const piece& wall : gas_.at(cell).walls) {
+      wall_segment made{.cell = cell, .solid = wall.solid, .middle = wall.middle};
+      for (const double x : wall.vector) made.area += x * x;
+      made.area = std::sqrt(made.area);
+      for (std::size_t k = 0; k < 3; ++k) made.normal[k] = wall.vector[k] / made.area;
+      made.from_centre = from_centre(cell, wall.middle);
+      group.walls.push_back(static_cast<int>(result_.walls_.size()));
+      result_.walls_.push_back(made);
+    }
+  }
+}
+
+}  // namespace apsis

@@ -1,0 +1,262 @@
+#include <apsis/mesh/internal/mesh_cutter.hpp>
+
+#include <apsis/core/errors.hpp>
+#include <apsis/core/index.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace apsis {
+namespace {
+
+/// Gas in a cell below this share of its volume is none.
+constexpr double no_gas = 1e-15;
+/// A cell with more than this share of its volume is whole.
+constexpr double all_gas = 1.0 - 1e-9;
+/// Bodies with a larger share of cells in which they are too thin are refused: the others have tips.
+constexpr double most_thin_cells = 0.2;
+
+}  // namespace
+
+mesh_cutter::mesh_cutter(const grid& mesh, const std::vector<outside_function>& bodies,
+                         const std::array<bool, 3>& periodic, double cfl_number, cut_cells& result)
+    : mesh_(mesh),
+      bodies_(bodies),
+      periodic_(periodic),
+      cfl_number_(cfl_number),
+      result_(result),
+      phi_([this](const position& x) { return outside(x); }),
+      parts_(mesh, phi_),
+      kinds_(at(mesh.size()), kind::whole),
+      parents_(at(mesh.size()), -1) {}
+
+void mesh_cutter::cut() {
+  sort_cells();
+  join();
+  number_groups();
+}
+
+double mesh_cutter::outside(const position& x) const {
+  double least = std::numeric_limits<double>::infinity();
+  for (const outside_function& one : bodies_) {
+    const double here = one(x);
+    if (!(here >= least)) least = here;  // NaN too
+  }
+  return least;
+}
+
+int mesh_cutter::body_at(const position& x) const {
+  std::size_t nearest = 0;
+  for (std::size_t k = 1; k < bodies_.size(); ++k)
+    if (bodies_[k](x) < bodies_[nearest](x)) nearest = k;
+  return static_cast<int>(nearest);
+}
+
+open_parts::corner mesh_cutter::lowest_corner(int cell) const {
+  open_parts::corner c{};
+  for (int k = 0; k < 3; ++k) c[at(k)] = cell / mesh_.stride(k) % mesh_.cells(k);
+  return c;
+}
+
+int mesh_cutter::neighbour(int cell, int direction, bool upper) const {
+  const int n = mesh_.cells(direction), here = cell / mesh_.stride(direction) % n;
+  int there = here + (upper ? 1 : -1);
+  if ((there < 0 || there >= n) && !periodic_[at(direction)]) return -1;
+  there = (there + n) % n;
+  return cell + (there - here) * mesh_.stride(direction);
+}
+
+open_parts::part mesh_cutter::open_face_of(int cell, int direction, bool upper) {
+  open_parts::corner corner = lowest_corner(cell);
+  corner[at(direction)] += upper ? 1 : 0;
+  return parts_.face(direction, corner);
+}
+
+/// Finds out what each cell is.
+void mesh_cutter::sort_cells() {
+  std::vector<int> cut, thin;
+  result_.body_of_.assign(at(mesh_.size()), -1);
+  for (int cell = 0; cell < mesh_.size(); ++cell) {
+    const open_parts::corner corner = lowest_corner(cell);
+    if (mesh_.solid(cell) >= 0) {
+      kinds_[at(cell)] = kind::box;
+      continue;
+    }
+    const auto state = parts_.of_cell(corner);
+    if (state == open_parts::state::cut) cut.push_back(cell);
+    if (state == open_parts::state::closed) kinds_[at(cell)] = kind::body;
+    if (!parts_.may_be_thin(corner)) continue;
+    const auto found = parts_.thin_in(corner);
+    if (found == open_parts::thin_part::gap) parts_.refuse_as_thin("a gap between bodies", corner);
+    if (found == open_parts::thin_part::body) thin.push_back(cell);
+  }
+  check_thin_cells(thin, cut.size());
+  for (const int cell : cut) measure(cell);
+  for (const int cell : cut)
+    if (kinds_[at(cell)] == kind::whole) check_plates(cell);
+  bool any = false;
+  for (int cell = 0; cell < mesh_.size(); ++cell) {
+    any = any || is_gas(cell);
+    if (kinds_[at(cell)] == kind::body) result_.body_of_[at(cell)] = body_at(mesh_.centre(cell));
+  }
+  check_bodies();
+  if (!any) throw input_error("no cell is left (all lie in bodies); give smaller bodies");
+}
+
+/// Throws input_error if no cell lies in a body or has a wall of it.
+void mesh_cutter::check_bodies() const {
+  std::vector<bool> seen(bodies_.size(), false);
+  const auto boxes = mesh_.solids().size();
+  for (const int body : result_.body_of_)
+    if (body >= 0) seen[at(body)] = true;
+  for (const auto& [cell, gas] : gas_)
+    for (const piece& wall : gas.walls)
+      if (at(wall.solid) >= boxes) seen[at(wall.solid) - boxes] = true;
+  for (std::size_t k = 0; k < seen.size(); ++k)
+    if (!seen[k])
+      throw input_error(fmt::format(
+          "body {} has no wall in the domain (it lies outside, in another body, or between the corners of "
+          "cells); move it, or increase space.cells",
+          k + 1));
+}
+
+void mesh_cutter::check_thin_cells(const std::vector<int>& thin, std::size_t of_bodies) const {
+  result_.thin_cells_ = static_cast<int>(thin.size());
+  if (static_cast<double>(thin.size()) <= most_thin_cells * static_cast<double>(of_bodies)) return;
+  // The cell in the middle, by thickness: tips have cells in which nothing is left.
+  std::vector<std::pair<double, int>> by_thickness;
+  for (const int cell : thin) by_thickness.emplace_back(parts_.thickness(lowest_corner(cell)), cell);
+  std::sort(by_thickness.begin(), by_thickness.end());
+  parts_.refuse_as_thin("a body", lowest_corner(by_thickness[by_thickness.size() / 2].second));
+}
+
+/// Whether no face of a cell is open in part.
+bool mesh_cutter::is_whole(int cell) {
+  for (int k = 0; k < mesh_.dimensions(); ++k)
+    for (const bool upper : {false, true}) {
+      const double share = share_of(cell, k, upper);
+      if (share > 0.0 && share < 1.0) return false;
+    }
+  return true;
+}
+
+/// Whether a cell differs from others in nothing: its closed faces are those of solid cells.
+bool mesh_cutter::is_like_whole(int cell) {
+  if (!is_whole(cell)) return false;
+  for (int k = 0; k < mesh_.dimensions(); ++k)
+    for (const bool upper : {false, true})
+      if (neighbour(cell, k, upper) < 0 && !(share_of(cell, k, upper) > 0.0)) return false;
+  return true;
+}
+
+/// Throws input_error if a closed face separates two cells of gas.
+void mesh_cutter::check_plates(int cell) {
+  for (int k = 0; k < mesh_.dimensions(); ++k)
+    for (const bool upper : {false, true}) {
+      const int beside = neighbour(cell, k, upper);
+      if (beside >= 0 && kinds_[at(beside)] == kind::whole && !(share_of(cell, k, upper) > 0.0))
+        parts_.refuse_as_thin("a body", lowest_corner(cell));
+    }
+}
+
+/// Measures the gas of a cell by the cones from the middle of the zeros of φ to the open faces: the cone to
+/// the wall has no volume where the wall is flat.
+void mesh_cutter::measure(int cell) {
+  const open_parts::corner corner = lowest_corner(cell);
+  const position apex = parts_.middle_of_zeros(corner);
+  const int dimensions = mesh_.dimensions();
+  gas_of_cell made;
+  position moment{};
+  for (int k = 0; k < dimensions; ++k)
+    for (const bool upper : {false, true}) {
+      const auto [share, middle] = open_face_of(cell, k, upper);
+      const double height = std::abs(middle[at(k)] - apex[at(k)]);
+      const double volume = share * mesh_.face_area({k, upper}) * height / dimensions;
+      made.volume += volume;
+      for (std::size_t d = 0; d < 3; ++d)
+        moment[d] += volume * (dimensions * middle[d] + apex[d]) / (dimensions + 1);
+    }
+  const double share = made.volume / mesh_.cell_volume();
+  if (share < no_gas) {
+    kinds_[at(cell)] = kind::body;
+    return;
+  }
+  if (share > all_gas && is_like_whole(cell)) return;
+  for (std::size_t d = 0; d < 3; ++d) made.centre[d] = moment[d] / made.volume;
+  kinds_[at(cell)] = kind::cut;
+  add_walls(cell, made);
+  gas_.emplace(cell, std::move(made));
+}
+
+/// Moves a point along a normal to the zero of φ within a cell.
+position mesh_cutter::on_surface(position from, const std::array<double, 3>& normal) const {
+  double reach = 0.0;
+  for (int k = 0; k < mesh_.dimensions(); ++k) reach = std::max(reach, 0.5 * mesh_.spacing(k));
+  const auto moved = [&](double by) {
+    position x = from;
+    for (std::size_t k = 0; k < 3; ++k) x[k] += by * normal[k];
+    return x;
+  };
+  double open = reach, closed = -reach;
+  if (!(phi_(moved(open)) > 0.0) || phi_(moved(closed)) > 0.0) return from;
+  for (int k = 0; k < 60; ++k) {
+    const double middle = 0.5 * (open + closed);
+    (phi_(moved(middle)) > 0.0 ? open : closed) = middle;
+  }
+  return moved(0.5 * (open + closed));
+}
+
+/// Adds the pieces of wall of a cell: what its open faces lack, and the faces of solid boxes.
+void mesh_cutter::add_walls(int cell, gas_of_cell& to) {
+  const open_parts::corner corner = lowest_corner(cell);
+  const bool whole = is_whole(cell);
+  std::array<double, 3> vector{};
+  double size = 0.0;
+  for (int k = 0; k < mesh_.dimensions(); ++k)
+    for (const bool upper : {false, true}) {
+      const auto [share, middle] = open_face_of(cell, k, upper);
+      const double area = mesh_.face_area({k, upper}), inwards = upper ? -1.0 : 1.0;
+      const int beside = neighbour(cell, k, upper);
+      std::array<double, 3> of_closed{};
+      if (beside >= 0 && kinds_[at(beside)] == kind::box && share > 0.0) {
+        of_closed[at(k)] = inwards * share * area;
+        to.walls.push_back({mesh_.solid(beside), of_closed, middle});
+      }
+      vector[at(k)] -= inwards * share * area;
+      if (!whole || share > 0.0) continue;
+      position x = mesh_.centre(cell);
+      x[at(k)] -= 0.5 * inwards * mesh_.spacing(k);
+      of_closed[at(k)] = inwards * area;
+      const int solids = static_cast<int>(mesh_.solids().size());
+      to.walls.push_back(
+          {beside >= 0 && kinds_[at(beside)] == kind::box ? mesh_.solid(beside) : solids + body_at(x),
+           of_closed, x});
+    }
+  if (whole) return;
+  for (const double x : vector) size += x * x;
+  size = std::sqrt(size);
+  if (!(size > 0.0)) return;
+  std::array<double, 3> normal{};
+  for (std::size_t k = 0; k < 3; ++k) normal[k] = vector[k] / size;
+  const position x = on_surface(parts_.middle_of_zeros(corner), normal);
+  to.walls.push_back({static_cast<int>(mesh_.solids().size()) + body_at(x), vector, x});
+}
+
+/// Returns the open parts of the faces of a cell that is not solid.
+std::vector<mesh_cutter::way_out> mesh_cutter::ways_out(int cell) {
+  std::vector<way_out> found;
+  for (int k = 0; k < mesh_.dimensions(); ++k)
+    for (const bool upper : {false, true}) {
+      const int beside = neighbour(cell, k, upper);
+      if (beside >= 0 && !is_gas(beside)) continue;
+      const auto [share, middle] = open_face_of(cell, k, upper);
+      if (share > 0.0) found.push_back({k, upper, beside, share * mesh_.face_area({k, upper}), middle});
+    }
+  return found;
+}
+
+}  // namespace apsis

@@ -1,0 +1,308 @@
+#include <apsis/mesh/internal/open_parts.hpp>
+
+#include <apsis/core/errors.hpp>
+#include <apsis/core/index.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace apsis {
+namespace {
+
+/// Shares of an edge below it count as 0, and those above 1 − it as 1: the surface goes through the corner.
+constexpr double at_corner = 1e-9;
+/// Halvings of an edge. The rest is below the rounding of coordinates.
+constexpr int halvings = 52;
+/// Parts of a line in which φ is sampled for the thickness of a body, and on the sides of a cell.
+constexpr int samples_of_line = 64, samples_of_edge = 16;
+
+open_parts::corner shifted(open_parts::corner from, int direction, int by = 1) {
+  from[at(direction)] += by;
+  return from;
+}
+
+}  // namespace
+
+open_parts::open_parts(const grid& mesh, const outside_function& phi) : mesh_(mesh), phi_(phi) {
+  if (mesh.dimensions() < 2)
+    throw input_error("a body on a line (it needs two or three dimensions); use solid boxes");
+  for (int k = 0; k < mesh.dimensions(); ++k) corners_[at(k)] = mesh.cells(k) + 1;
+  values_.reserve(at(corners_[0]) * at(corners_[1]) * at(corners_[2]));
+  for (int i = 0; i < corners_[0]; ++i)
+    for (int j = 0; j < corners_[1]; ++j)
+      for (int k = 0; k < corners_[2]; ++k) {
+        const position x = point({i, j, k});
+        const double value = phi_(x);
+        if (!std::isfinite(value))
+          throw input_error(fmt::format("a body is {} at ({:.6g}) (not a number); change its shape", value,
+                                        fmt::join(x.begin(), x.begin() + mesh.dimensions(), ", ")));
+        values_.push_back(value);
+      }
+}
+
+long open_parts::number(const corner& at_) const {
+  return (static_cast<long>(at_[0]) * corners_[1] + at_[1]) * corners_[2] + at_[2];
+}
+
+position open_parts::point(const corner& of) const {
+  return point(of, {});
+}
+
+position open_parts::point(const corner& of, const std::array<double, 3>& shift) const {
+  position x{};
+  for (int k = 0; k < mesh_.dimensions(); ++k)
+    x[at(k)] = mesh_.edge(k, of[at(k)]) + shift[at(k)] * mesh_.spacing(k);
+  return x;
+}
+
+open_parts::state open_parts::of_cell(const corner& lowest) const {
+  int open = 0, all = 0;
+  const int depth = mesh_.dimensions() == 3 ? 2 : 1;
+  for (int i = 0; i < 2; ++i)
+    for (int j = 0; j < 2; ++j)
+      for (int k = 0; k < depth; ++k, ++all)
+        open += is_open({lowest[0] + i, lowest[1] + j, lowest[2] + k}) ? 1 : 0;
+  return open == all ? state::open : open == 0 ? state::closed : state::cut;
+}
+
+/// Returns the zero of φ on an edge, as a share of the edge from its lower end.
+double open_parts::zero_on_edge(int direction, const corner& lower) {
+  const auto [found, is_new] = zeros_[at(direction)].try_emplace(number(lower), 0.0);
+  if (is_new) found->second = find_zero(direction, lower);
+  return found->second;
+}
+
+/// Bisection from the open end, so that mirrored edges have mirrored zeros.
+double open_parts::find_zero(int direction, const corner& lower) const {
+  const bool from_lower = is_open(lower);
+  double open = 0.0, closed = 1.0;
+  for (int k = 0; k < halvings; ++k) {
+    const double middle = 0.5 * (open + closed);
+    std::array<double, 3> shift{};
+    shift[at(direction)] = from_lower ? middle : 1.0 - middle;
+    (phi_(point(lower, shift)) > 0.0 ? open : closed) = middle;
+  }
+  double share = closed;
+  if (share < at_corner) share = 0.0;
+  if (share > 1.0 - at_corner) share = 1.0;
+  return from_lower ? share : 1.0 - share;
+}
+
+open_parts::part open_parts::open_edge(int direction, const corner& lower) {
+  const bool first = is_open(lower), last = is_open(shifted(lower, direction));
+  double begin = 0.0, end = 1.0;
+  if (!first && !last) end = 0.0;
+  if (first && !last) end = zero_on_edge(direction, lower);
+  if (!first && last) begin = zero_on_edge(direction, lower);
+  std::array<double, 3> shift{};
+  shift[at(direction)] = 0.5 * (begin + end);
+  return {end - begin, point(lower, shift)};
+}
+
+/// The polygon of the open corners of a square, and of the zeros on its sides.
+open_parts::part open_parts::open_polygon(const plane& of, const corner& lowest) {
+  constexpr std::array<std::array<int, 2>, 4> around = {{{0, 0}, {1, 0}, {1, 1}, {0, 1}}};
+  std::array<std::array<double, 2>, 8> vertices{};
+  std::size_t count = 0;
+  for (std::size_t k = 0; k < 4; ++k) {
+    const auto& [a, b] = around[k];
+    const auto& [c, d] = around[(k + 1) % 4];
+    const corner here = shifted(shifted(lowest, of.first, a), of.second, b),
+                 next = shifted(shifted(lowest, of.first, c), of.second, d);
+    if (is_open(here)) vertices[count++] = {1.0 * a, 1.0 * b};
+    if (is_open(here) == is_open(next)) continue;
+    const int along = a != c ? of.first : of.second;
+    const double zero = zero_on_edge(along, std::min(here, next));
+    vertices[count++] = a != c ? std::array{zero, 1.0 * b} : std::array{1.0 * a, zero};
+  }
+  double area = 0.0, first = 0.0, second = 0.0;
+  for (std::size_t k = 0; k < count; ++k) {
+    const auto &p = vertices[k], &q = vertices[(k + 1) % count];
+    const double twice = p[0] * q[1] - q[0] * p[1];
+    area += 0.5 * twice;
+    first += twice * (p[0] + q[0]) / 6.0;
+    second += twice * (p[1] + q[1]) / 6.0;
+  }
+  std::array<double, 3> shift{};
+  constexpr double nothing = 1e-15;
+  if (area > nothing) shift[at(of.first)] = first / area, shift[at(of.second)] = second / area;
+  return {area > nothing ? area : 0.0, point(lowest, shift)};
+}
+
+open_parts::part open_parts::face(int direction, const corner& lowest) {
+  if (mesh_.dimensions() == 2) return open_edge(1 - direction, lowest);
+  return open_polygon({(direction + 1) % 3, (direction + 2) % 3}, lowest);
+}
+
+position open_parts::middle_of_zeros(const corner& lowest) {
+  position sum{};
+  int count = 0;
+  for (int direction = 0; direction < mesh_.dimensions(); ++direction) {
+    const int other = (direction + 1) % mesh_.dimensions(), third = 3 - direction - other;
+    for (int a = 0; a < 2; ++a)
+      for (int b = 0; b < (mesh_.dimensions() == 3 ? 2 : 1); ++b) {
+        const corner lower = shifted(shifted(lowest, other, a), third, b);
+        if (is_open(lower) == is_open(shifted(lower, direction))) continue;
+        std::array<double, 3> shift{};
+        shift[at(direction)] = zero_on_edge(direction, lower);
+        const position x = point(lower, shift);
+        for (std::size_t k = 0; k < 3; ++k) sum[k] += x[k];
+        ++count;
+      }
+  }
+  for (double& x : sum) x /= std::max(count, 1);
+  return sum;
+}
+
+/// Whether the open corners of a cell are connected by edges, and the closed ones too.
+bool open_parts::corners_are_connected(const corner& lowest) const {
+  const int count = 1 << mesh_.dimensions();
+  const auto of = [&](int bits) {
+    return is_open({lowest[0] + (bits & 1), lowest[1] + (bits >> 1 & 1), lowest[2] + (bits >> 2)});
+  };
+  for (const bool open : {true, false}) {
+    unsigned members = 0, reached = 0;
+    for (int c = 0; c < count; ++c)
+      if (of(c) == open) members |= 1U << c;
+    reached = members & (~members + 1U);  // one of them
+    for (int round = 0; round < count; ++round)
+      for (int c = 0; c < count; ++c)
+        for (int k = 0; k < mesh_.dimensions(); ++k)
+          if ((reached >> c & 1U) != 0) reached |= (1U << (c ^ (1 << k))) & members;
+    if (reached != members) return false;
+  }
+  return true;
+}
+
+double open_parts::thickness(const corner& lowest) const {
+  double least = 1.0;
+  const auto along = [&](const std::array<double, 3>& from, const std::array<double, 3>& to) {
+    int last_change = -1;
+    bool before = false;
+    for (int k = 0; k <= samples_of_line; ++k) {
+      std::array<double, 3> shift{};
+      for (std::size_t d = 0; d < 3; ++d) shift[d] = from[d] + (to[d] - from[d]) * k / samples_of_line;
+      const bool open = phi_(point(lowest, shift)) > 0.0;
+      if (k > 0 && open != before) {
+        if (last_change >= 0)
+          least = std::min(least, std::max(k - last_change, 1) / static_cast<double>(samples_of_line));
+        last_change = k;
+      }
+      before = open;
+    }
+  };
+  const int depth = mesh_.dimensions() == 3 ? 3 : 1;
+  for (int a = 0; a < 3; ++a)
+    for (int b = 0; b < depth; ++b)
+      for (int k = 0; k < mesh_.dimensions(); ++k) {
+        std::array<double, 3> from{}, to{};
+        const int other = (k + 1) % mesh_.dimensions(), third = 3 - k - other;
+        from[at(other)] = to[at(other)] = 0.5 * a;
+        from[at(third)] = to[at(third)] = 0.5 * b;
+        to[at(k)] = 1.0;
+        along(from, to);
+      }
+  return least;
+}
+
+/// Counts the stretches of a side of a square that reach neither of its ends. A strip through the square
+/// crosses two sides in such stretches, a tip that ends in it crosses one.
+void open_parts::count_stretches(const corner& lowest, const std::array<double, 3>& from, int direction,
+                                 stretches& found) const {
+  std::array<double, 3> shift = from;
+  bool before = false, has_changed = false;
+  for (int k = 0; k <= samples_of_edge; ++k) {
+    shift[at(direction)] = static_cast<double>(k) / samples_of_edge;
+    const bool open = phi_(point(lowest, shift)) > 0.0;
+    if (k > 0 && open != before) {
+      if (has_changed) ++(before ? found.gaps : found.bodies);
+      has_changed = true;
+    }
+    before = open;
+  }
+}
+
+open_parts::thin_part open_parts::thin_in_square(const corner& lowest, const plane& of,
+                                                 const std::array<double, 3>& from) const {
+  stretches sides;
+  for (const auto& [along, across] : {std::pair{of.first, of.second}, {of.second, of.first}})
+    for (const double side : {0.0, 1.0}) {
+      std::array<double, 3> begin = from;
+      begin[at(across)] += side;
+      count_stretches(lowest, begin, along, sides);
+    }
+  if (sides.gaps > 1) return thin_part::gap;
+  if (sides.bodies > 1) return thin_part::body;
+  return thin_part::none;
+}
+
+/// Whether the middle of a cell differs from all its corners, and no side shows why.
+open_parts::thin_part open_parts::island_in(const corner& lowest) const {
+  const state corners = of_cell(lowest);
+  if (corners == state::cut) return thin_part::none;
+  const bool deep = mesh_.dimensions() == 3;
+  const auto open_at = [&](double i, double j, double k) {
+    return phi_(point(lowest, {i, j, deep ? k : 0.0})) > 0.0;
+  };
+  const bool inside = open_at(0.5, 0.5, 0.5);
+  if (inside == (corners == state::open)) return thin_part::none;
+  // The tip of a body reaches the middle through a face.
+  for (const double side : {0.0, 1.0})
+    if (open_at(side, 0.5, 0.5) == inside || open_at(0.5, side, 0.5) == inside ||
+        (deep && open_at(0.5, 0.5, side) == inside))
+      return thin_part::none;
+  return inside ? thin_part::gap : thin_part::body;
+}
+
+open_parts::thin_part open_parts::thin_in(const corner& lowest) const {
+  const bool deep = mesh_.dimensions() == 3;
+  thin_part found = island_in(lowest);
+  const auto take = [&](thin_part one) {
+    if (found != thin_part::gap && one != thin_part::none) found = one;
+  };
+  if (!corners_are_connected(lowest))
+    take(phi_(point(lowest, {0.5, 0.5, deep ? 0.5 : 0.0})) > 0.0 ? thin_part::gap : thin_part::body);
+  if (!deep) {
+    take(thin_in_square(lowest, {0, 1}, {}));
+    return found;
+  }
+  for (int normal = 0; normal < 3; ++normal)
+    for (const double side : {0.0, 1.0}) {
+      std::array<double, 3> from{};
+      from[at(normal)] = side;
+      take(thin_in_square(lowest, {(normal + 1) % 3, (normal + 2) % 3}, from));
+    }
+  return found;
+}
+
+bool open_parts::may_be_thin(const corner& lowest) const {
+  if (of_cell(lowest) == state::cut) return true;
+  const bool deep = mesh_.dimensions() == 3;
+  const double middle = phi_(point(lowest, {0.5, 0.5, deep ? 0.5 : 0.0}));
+  double change = 0.0;
+  for (int i = 0; i < 2; ++i)
+    for (int j = 0; j < 2; ++j)
+      for (int k = 0; k < (deep ? 2 : 1); ++k)
+        change = std::max(change, std::abs(value({lowest[0] + i, lowest[1] + j, lowest[2] + k}) - middle));
+  // The surface is far from the cell.
+  return !(std::abs(middle) > 3.0 * change);
+}
+
+void open_parts::refuse_as_thin(const std::string& something, const corner& lowest) const {
+  // Half of the stretch: a cell must have a corner in it wherever it lies.
+  const double needed = 2.0 / std::min(thickness(lowest), 1.0);
+  std::array<long, 3> cells{};
+  for (int k = 0; k < mesh_.dimensions(); ++k)
+    cells[at(k)] = static_cast<long>(std::ceil(needed * mesh_.cells(k)));
+  const position x = point(lowest, {0.5, 0.5, mesh_.dimensions() == 3 ? 0.5 : 0.0});
+  throw input_error(fmt::format(
+      "{} is thinner than a cell near ({:.6g}) (the surface passes between the corners of cells); give about "
+      "space.cells = [{}]",
+      something, fmt::join(x.begin(), x.begin() + mesh_.dimensions(), ", "),
+      fmt::join(cells.begin(), cells.begin() + mesh_.dimensions(), ", ")));
+}
+
+}  // namespace apsis

@@ -1,0 +1,76 @@
+#pragma once
+
+#include <apsis/mesh/cut_cells.hpp>
+#include <apsis/mesh/grid.hpp>
+
+#include <array>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+namespace apsis {
+
+/// The parts of faces and cells of a mesh where a function φ is positive. The zero of φ on an edge of a cell
+/// is found once, so that cells agree on the face between them. Serves two and three dimensions.
+class open_parts {
+ public:
+  using corner = std::array<int, 3>;  ///< corner number 0 … n of each direction
+
+  open_parts(const grid& mesh, const outside_function& phi);
+
+  /// The open part of a face, or of a cell.
+  struct part {
+    double share = 0.0;    ///< of its size
+    position middle = {};  ///< its centroid
+  };
+  enum class state { open, closed, cut };
+
+  /// Returns the state of a cell by the signs of φ at its corners.
+  state of_cell(const corner& lowest) const;
+  /// Returns the open part of the face that is normal to a direction and has this lowest corner.
+  part face(int direction, const corner& lowest);
+  /// Returns the mean of the zeros of φ on the edges of a cell that is cut.
+  position middle_of_zeros(const corner& lowest);
+  /// Something that passes between the corners of a cell.
+  enum class thin_part { none, body, gap };
+  /// Returns whether a body, or a gap between bodies, passes between the corners of a cell. The tip of a body
+  /// that ends in the cell does not.
+  thin_part thin_in(const corner& lowest) const;
+  /// Whether a surface may pass between the corners of a cell, by the values of φ around it.
+  bool may_be_thin(const corner& lowest) const;
+  /// Throws input_error: `something` near a cell is too thin for the mesh.
+  [[noreturn]] void refuse_as_thin(const std::string& something, const corner& lowest) const;
+  /// Returns the shortest stretch between two zeros of φ on lines through a cell, as a share of the cell.
+  double thickness(const corner& lowest) const;
+
+ private:
+  struct plane {
+    int first, second;  ///< directions along it
+  };
+  long number(const corner& at) const;
+  double value(const corner& at) const { return values_[static_cast<std::size_t>(number(at))]; }
+  bool is_open(const corner& at) const { return value(at) > 0.0; }
+  position point(const corner& at) const;
+  position point(const corner& at, const std::array<double, 3>& shift) const;
+  double zero_on_edge(int direction, const corner& lower);
+  double find_zero(int direction, const corner& lower) const;
+  part open_edge(int direction, const corner& lower);
+  part open_polygon(const plane& of, const corner& lowest);
+  /// Numbers of open and closed stretches of lines that reach neither of their ends.
+  struct stretches {
+    int gaps = 0, bodies = 0;
+  };
+  void count_stretches(const corner& lowest, const std::array<double, 3>& from, int direction,
+                       stretches& found) const;
+  thin_part thin_in_square(const corner& lowest, const plane& of, const std::array<double, 3>& from) const;
+  thin_part island_in(const corner& lowest) const;
+  bool corners_are_connected(const corner& lowest) const;
+
+  const grid& mesh_;
+  const outside_function& phi_;
+  corner corners_ = {1, 1, 1};
+  std::vector<double> values_;                             ///< φ at each corner
+  std::array<std::unordered_map<long, double>, 3> zeros_;  ///< on edges of a direction, by their lower corner
+};
+
+}  // namespace apsis

@@ -1,0 +1,382 @@
+// Cells that bodies cut: volumes and areas against exact ones, closed surfaces, small cells, thin bodies.
+#include <apsis/mesh/cut_cells.hpp>
+
+#include <apsis/core/errors.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <random>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace cut_cells_test {
+namespace {
+
+using apsis::cut_cells;
+using apsis::grid;
+using apsis::outside_function;
+using apsis::position;
+
+constexpr double kappa = 0.5;
+constexpr std::array<bool, 3> closed = {false, false, false};
+
+outside_function disc(double x, double y, double r) {
+  return [=](const position& at) { return std::hypot(at[0] - x, at[1] - y) - r; };
+}
+
+outside_function ball(double x, double y, double z, double r) {
+  return [=](const position& at) { return std::hypot(at[0] - x, at[1] - y, at[2] - z) - r; };
+}
+
+/// The body lies where n·x < c.
+outside_function half_space(std::array<double, 3> n, double c) {
+  return [=](const position& at) { return n[0] * at[0] + n[1] * at[1] + n[2] * at[2] - c; };
+}
+
+/// A square of side 2a about (x, y), turned by an angle.
+outside_function turned_square(double x, double y, double a, double angle) {
+  return [=](const position& at) {
+    const double c = std::cos(angle), s = std::sin(angle), dx = at[0] - x, dy = at[1] - y;
+    return std::max(std::abs(c * dx + s * dy), std::abs(c * dy - s * dx)) - a;
+  };
+}
+
+grid plane(int n, double a = -2.0, double b = 2.0) {
+  return grid(2, {n, n, 1}, {a, a, 0}, {b, b, 1});
+}
+
+grid space(int n) {
+  return grid(3, {n, n, n}, {-2, -2, -2}, {2, 2, 2});
+}
+
+double gas_volume(const grid& mesh, const cut_cells& cut) {
+  double volume = 0.0;
+  for (int cell = 0; cell < mesh.size(); ++cell)
+    if (cut.group_of(cell) < 0 && cut.body_of(cell) < 0 && mesh.solid(cell) < 0) volume += mesh.cell_volume();
+  for (const auto& group : cut.groups()) volume += group.volume;
+  return volume;
+}
+
+double wall_area(const cut_cells& cut) {
+  double area = 0.0;
+  for (const auto& wall : cut.walls()) area += wall.area;
+  return area;
+}
+
+/// Returns the largest defect of Σ area × normal over the faces and walls of a group.
+double defect_of_closure(const cut_cells& cut) {
+  double most = 0.0;
+  for (std::size_t g = 0; g < cut.groups().size(); ++g) {
+    const auto& group = cut.groups()[g];
+    std::array<double, 3> sum{};
+    for (const int f : group.faces) {
+      const auto& face = cut.faces()[apsis::at(f)];
+      const bool is_below = face.below >= 0 && cut.group_of(face.below) == static_cast<int>(g);
+      sum[apsis::at(face.direction)] += is_below ? face.area : -face.area;
+    }
+    for (const int w : group.walls)
+      for (std::size_t k = 0; k < 3; ++k)
+        sum[k] -= cut.walls()[apsis::at(w)].area * cut.walls()[apsis::at(w)].normal[k];
+    for (const double x : sum) most = std::max(most, std::abs(x));
+  }
+  return most;
+}
+
+/// Whether every group is large enough, its volumes are those of its cells, and it is closed.
+void expect_sound(const grid& mesh, const cut_cells& cut) {
+  const double area = std::pow(mesh.spacing(0), mesh.dimensions() - 1);
+  EXPECT_LT(defect_of_closure(cut), 1e-13 * area);  // sums of some ten areas of this size
+  for (std::size_t g = 0; g < cut.groups().size(); ++g) {
+    const auto& group = cut.groups()[g];
+    EXPECT_LE(cut.outflow(static_cast<int>(g)), 1.0);
+    double volume = 0.0;
+    for (const int cell : group.cells) {
+      EXPECT_EQ(cut.group_of(cell), static_cast<int>(g));
+      volume += cut.volume_of(cell);
+    }
+    EXPECT_NEAR(volume, group.volume, 1e-14 * mesh.cell_volume());
+  }
+  for (const auto& face : cut.faces()) EXPECT_GT(face.area, 0.0);
+}
+
+/// Returns how often a quantity is smaller when the mesh has twice as many cells.
+double order_of(double coarse, double fine) {
+  return std::log2(std::abs(coarse) / std::abs(fine));
+}
+
+}  // namespace
+
+TEST(cut_cells, of_a_half_space_have_exact_volumes_and_centroids) {
+  // A plane is cut without error, wherever it lies.
+  for (const double angle : {0.0, 0.3, std::numbers::pi / 4, 2.0, 4.4}) {
+    const grid mesh = plane(9);
+    const std::array<double, 3> n = {std::cos(angle), std::sin(angle), 0.0};
+    const cut_cells cut(mesh, {half_space(n, 0.123)}, closed, kappa);
+    expect_sound(mesh, cut);
+    // The gas of the square, by the fine sum of a clipped line.
+    double volume = 0.0, moment = 0.0;
+    constexpr int fine = 20000;
+    for (int k = 0; k < fine; ++k) {
+      // Lines along x or y, whichever the plane crosses.
+      const bool along_x = std::abs(n[0]) > std::abs(n[1]);
+      const double other = -2.0 + 4.0 * (k + 0.5) / fine, a = along_x ? n[0] : n[1],
+                   b = along_x ? n[1] : n[0];
+      const double zero = std::clamp((0.123 - b * other) / a, -2.0, 2.0);
+      const double from = a > 0 ? zero : -2.0, to = a > 0 ? 2.0 : zero;
+      volume += (to - from) * 4.0 / fine;
+      moment += (along_x ? 0.5 * (to * to - from * from) : (to - from) * other) * 4.0 / fine;
+    }
+    EXPECT_NEAR(gas_volume(mesh, cut), volume, 1e-6) << angle;  // of the fine sum
+    double found = 0.0;
+    for (int cell = 0; cell < mesh.size(); ++cell)
+      if (cut.group_of(cell) < 0 && cut.body_of(cell) < 0) found += mesh.cell_volume() * mesh.centre(cell)[0];
+    for (const auto& group : cut.groups()) found += group.volume * group.centre[0];
+    EXPECT_NEAR(found, moment, 1e-6) << angle;
+    for (const auto& wall : cut.walls())
+      for (std::size_t k = 0; k < 2; ++k) EXPECT_NEAR(wall.normal[k], n[k], 1e-12) << angle;
+  }
+}
+
+TEST(cut_cells, of_a_half_space_in_space_have_exact_volumes) {
+  // The plane goes through the middle of the cube, and leaves half of it.
+  const grid mesh = space(7);
+  for (const std::array<double, 3>& n :
+       {std::array{1.0, 0.0, 0.0}, {0.6, 0.8, 0.0}, {1.0 / 3, 2.0 / 3, 2.0 / 3}, {0.48, -0.6, 0.64}}) {
+    const cut_cells cut(mesh, {half_space(n, 0.0)}, closed, kappa);
+    expect_sound(mesh, cut);
+    EXPECT_NEAR(gas_volume(mesh, cut), 32.0, 1e-10);
+    for (const auto& wall : cut.walls())
+      for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(wall.normal[k], n[k], 1e-9);
+  }
+}
+
+TEST(cut_cells, of_discs_have_volumes_and_lengths_of_second_order) {
+  double volume = 0.0, length = 0.0;
+  for (const int n : {20, 40, 80}) {
+    const grid mesh = plane(n);
+    const cut_cells cut(mesh, {disc(0.117, -0.043, 1.0)}, closed, kappa);
+    expect_sound(mesh, cut);
+    const double of_volume = gas_volume(mesh, cut) - (16.0 - std::numbers::pi),
+                 of_length = wall_area(cut) - 2.0 * std::numbers::pi;
+    if (n > 20) {
+      EXPECT_NEAR(order_of(volume, of_volume), 2.0, 0.2);
+      EXPECT_NEAR(order_of(length, of_length), 2.0, 0.2);
+    }
+    volume = of_volume;
+    length = of_length;
+  }
+  // Chords of h are short by (h/R)²/24 of their length; those of cells are between 0 and √2 h long.
+  const double h = 4.0 / 80;
+  EXPECT_LT(std::abs(length), 2.0 * std::numbers::pi * h * h / 24 * 2.0);
+}
+
+TEST(cut_cells, of_balls_have_volumes_and_areas_of_second_order) {
+  double volume = 0.0, area = 0.0;
+  for (const int n : {12, 24, 48}) {
+    const grid mesh = space(n);
+    const cut_cells cut(mesh, {ball(0.117, -0.043, 0.071, 1.0)}, closed, kappa);
+    expect_sound(mesh, cut);
+    const double of_volume = gas_volume(mesh, cut) - (64.0 - 4.0 / 3.0 * std::numbers::pi),
+                 of_area = wall_area(cut) - 4.0 * std::numbers::pi;
+    if (n > 12) {
+      EXPECT_GT(order_of(volume, of_volume), 1.7);
+      EXPECT_GT(order_of(area, of_area), 1.7);
+    }
+    volume = of_volume;
+    area = of_area;
+  }
+  // The chords of a cell of size h lie within h²/(8R)·2 of the ball.
+  EXPECT_LT(std::abs(volume), 4.0 * std::numbers::pi / (24.0 * 24.0 / 4.0 * 4.0));
+}
+
+TEST(cut_cells, close_the_surface_of_every_body) {
+  const grid mesh = plane(40);
+  const cut_cells cut(mesh, {disc(-0.9, 0.1, 0.5), turned_square(0.8, -0.3, 0.6, 0.4)}, closed, kappa);
+  expect_sound(mesh, cut);
+  for (int body = 0; body < 2; ++body) {
+    std::array<double, 2> sum{};
+    int walls = 0;
+    for (const auto& wall : cut.walls())
+      if (wall.solid == body) {
+        ++walls;
+        for (std::size_t k = 0; k < 2; ++k) sum[k] += wall.area * wall.normal[k];
+      }
+    EXPECT_GT(walls, 30);
+    for (const double x : sum) EXPECT_NEAR(x, 0.0, 1e-14);
+  }
+  // Sharp corners are cut by a chord: an error of the size of a cell at each of them.
+  const double exact = 16.0 - 0.25 * std::numbers::pi - 1.44;
+  EXPECT_NEAR(gas_volume(mesh, cut), exact, 4.0 * mesh.cell_volume());
+}
+
+TEST(cut_cells, have_points_of_walls_on_the_surface) {
+  const grid mesh = plane(30);
+  const auto phi = disc(0.05, 0.02, 1.3);
+  const cut_cells cut(mesh, {phi}, closed, kappa);
+  for (const auto& wall : cut.walls()) {
+    EXPECT_NEAR(phi(wall.middle), 0.0, 1e-12);
+    // The normal is that of a chord: parallel to the radius up to the angle of half a chord.
+    const double dot = (wall.middle[0] - 0.05) * wall.normal[0] + (wall.middle[1] - 0.02) * wall.normal[1];
+    EXPECT_GT(dot / 1.3, 1.0 - 0.01);
+  }
+}
+
+TEST(cut_cells, leave_boxes_on_edges_of_cells_whole) {
+  const grid mesh = plane(16);
+  const cut_cells cut(mesh, {turned_square(0.0, 0.0, 1.0, 0.0)}, closed, kappa);
+  EXPECT_TRUE(cut.groups().empty());
+  int solid = 0;
+  for (int cell = 0; cell < mesh.size(); ++cell) solid += cut.body_of(cell) == 0 ? 1 : 0;
+  EXPECT_EQ(solid, 64);
+}
+
+TEST(cut_cells, see_the_same_body_across_periodic_faces) {
+  const grid mesh = plane(24);
+  const std::array<bool, 3> periodic = {true, true, false};
+  // The disc lies across a corner of the domain: four parts of it, at the four corners.
+  outside_function images = [](const position& x) {
+    double least = 10.0;
+    for (const double a : {-2.0, 2.0})
+      for (const double b : {-2.0, 2.0}) least = std::min(least, disc(a + 0.013, b - 0.021, 0.7)(x));
+    return least;
+  };
+  const cut_cells across(mesh, {images}, periodic, kappa),
+      inside(mesh, {disc(0.013, -0.021, 0.7)}, periodic, kappa);
+  expect_sound(mesh, across);
+  ASSERT_EQ(across.groups().size(), inside.groups().size());
+  EXPECT_NEAR(gas_volume(mesh, across), gas_volume(mesh, inside), 1e-12);
+  const auto distances = [](const cut_cells& cut) {
+    std::vector<double> all;
+    for (const auto& face : cut.faces())
+      all.push_back(std::hypot(face.from_below[0], face.from_below[1]) +
+                    std::hypot(face.from_above[0], face.from_above[1]));
+    std::sort(all.begin(), all.end());
+    return all;
+  };
+  EXPECT_THAT(distances(across), testing::Pointwise(testing::DoubleNear(1e-11), distances(inside)));
+}
+
+TEST(cut_cells, are_mirrored_with_the_body) {
+  const grid mesh = plane(22);
+  std::vector<std::vector<double>> volumes;
+  for (const auto& [x, y] : {std::pair{0.31, 0.11}, {-0.31, 0.11}, {0.11, 0.31}, {-0.11, -0.31}}) {
+    const cut_cells cut(mesh, {disc(x, y, 0.93)}, closed, kappa);
+    volumes.emplace_back();
+    for (const auto& group : cut.groups()) volumes.back().push_back(group.volume);
+    std::sort(volumes.back().begin(), volumes.back().end());
+    EXPECT_THAT(volumes.back(), testing::Pointwise(testing::DoubleNear(1e-13), volumes.front()));
+  }
+}
+
+TEST(cut_cells, of_random_overlapping_bodies_are_sound) {
+  std::mt19937 generator(3);
+  std::uniform_real_distribution<double> place(-1.2, 1.2), size(0.3, 0.7);
+  int made = 0, refused = 0;
+  for (int k = 0; k < 300; ++k) {
+    std::vector<outside_function> bodies;
+    for (int b = 0; b < 3; ++b) bodies.push_back(disc(place(generator), place(generator), size(generator)));
+    const grid mesh = plane(18 + k % 5);
+    try {
+      const cut_cells cut(mesh, bodies, closed, kappa);
+      expect_sound(mesh, cut);
+      ++made;
+    } catch (const apsis::input_error& error) {
+      EXPECT_THAT(error.what(),
+                  testing::AnyOf(testing::HasSubstr("a gap between bodies is thinner than a cell"),
+                                 testing::HasSubstr("(it lies outside, in another body")));
+      ++refused;
+    }
+  }
+  EXPECT_GT(made, 200);
+  EXPECT_GT(refused, 10);
+}
+
+TEST(cut_cells, of_random_bodies_in_space_are_sound) {
+  std::mt19937 generator(5);
+  std::uniform_real_distribution<double> place(-0.9, 0.9), size(0.5, 0.9);
+  for (int k = 0; k < 10; ++k) {
+    const grid mesh = space(11);
+    const cut_cells cut(mesh, {ball(place(generator), place(generator), place(generator), size(generator))},
+                        closed, kappa);
+    expect_sound(mesh, cut);
+    EXPECT_GT(cut.groups().size(), 20U);
+  }
+}
+
+TEST(cut_cells, refuse_thin_plates_and_gaps_with_the_cells_that_they_need) {
+  const auto plate = [](double thickness) {
+    return outside_function([=](const position& x) {
+      return std::max(std::abs(0.6 * x[0] + 0.8 * x[1]) - 0.5 * thickness,
+                      std::abs(0.8 * x[0] - 0.6 * x[1]) - 1.0);
+    });
+  };
+  const auto error_of = [](int n, const std::vector<outside_function>& bodies) -> std::string {
+    try {
+      const cut_cells cut(plane(n), bodies, closed, kappa);
+    } catch (const apsis::input_error& error) {
+      return error.what();
+    }
+    return "";
+  };
+  const std::string of_plate = error_of(16, {plate(0.1)});
+  EXPECT_THAT(of_plate, testing::HasSubstr("a body is thinner than a cell near ("));
+  const auto advice = of_plate.find("space.cells = [");
+  ASSERT_NE(advice, std::string::npos);
+  const int needed = std::stoi(of_plate.substr(advice + 15));
+  EXPECT_GE(needed, 40);
+  EXPECT_LE(needed, 400);
+  EXPECT_EQ(error_of(needed, {plate(0.1)}), "");
+  // Two discs that nearly touch, and gas enclosed between the corners of a cell.
+  EXPECT_THAT(error_of(20, {disc(-0.77, 0.03, 0.7), disc(0.67, 0.03, 0.7)}),
+              testing::HasSubstr("a gap between bodies is thinner than a cell"));
+  EXPECT_EQ(error_of(400, {disc(-0.77, 0.03, 0.7), disc(0.67, 0.03, 0.7)}), "");
+  // A disc within a cell.
+  EXPECT_THAT(error_of(4, {disc(0.5, 0.5, 0.2)}), testing::HasSubstr("a body is thinner than a cell"));
+  EXPECT_THAT(error_of(4, {disc(0.7, 0.5, 0.01)}), testing::HasSubstr("body 1 has no wall in the domain"));
+}
+
+TEST(cut_cells, accept_the_tip_of_a_wedge) {
+  // A wedge of 20 degrees: its tip vanishes between the corners of two or three cells.
+  const outside_function wedge = [](const position& x) {
+    const double s = std::sin(std::numbers::pi / 18), c = std::cos(std::numbers::pi / 18);
+    return std::max(
+        {c * (x[1] - 0.05) + s * (x[0] - 1.27), -c * (x[1] - 0.05) + s * (x[0] - 1.27), -1.1 - x[0]});
+  };
+  const grid mesh = plane(40);
+  const cut_cells cut(mesh, {wedge}, closed, kappa);
+  expect_sound(mesh, cut);
+  EXPECT_GT(cut.thin_cells(), 0);
+}
+
+TEST(cut_cells, refuse_functions_that_are_no_bodies) {
+  const auto with = [](const outside_function& phi) {
+    return [phi] { const cut_cells cut(plane(8), {phi}, closed, kappa); };
+  };
+  EXPECT_THAT(with([](const position& x) { return std::log(x[0]); }),
+              testing::ThrowsMessage<apsis::input_error>(testing::HasSubstr("not a number")));
+  EXPECT_THAT(with([](const position&) { return -1.0; }),
+              testing::ThrowsMessage<apsis::input_error>(testing::HasSubstr("no cell is left")));
+  EXPECT_THAT(
+      with([](const position& x) { return std::abs(x[0]); }),
+      testing::ThrowsMessage<apsis::input_error>(testing::HasSubstr("a body is thinner than a cell")));
+  EXPECT_THAT([] { const cut_cells cut(grid::line(8, 0.0, 1.0), {disc(0, 0, 1)}, closed, kappa); },
+              testing::ThrowsMessage<apsis::input_error>(testing::HasSubstr("a body on a line")));
+}
+
+TEST(cut_cells, have_walls_of_solid_boxes_next_to_them) {
+  // A box on edges of cells beside a disc that overlaps it.
+  const grid mesh = plane(16).with_solids({{{4, 4, 0}, {4, 4, 1}}});
+  const cut_cells cut(mesh, {disc(0.2, -0.4, 0.9)}, closed, kappa);
+  expect_sound(mesh, cut);
+  EXPECT_TRUE(
+      std::any_of(cut.walls().begin(), cut.walls().end(), [](const auto& w) { return w.solid == 0; }));
+  EXPECT_TRUE(
+      std::any_of(cut.walls().begin(), cut.walls().end(), [](const auto& w) { return w.solid == 1; }));
+}
+
+}  // namespace cut_cells_test

@@ -22,7 +22,6 @@ using apsis::grid;
 using apsis::outside_function;
 using apsis::position;
 
-constexpr double kappa = 0.5;
 constexpr std::array<bool, 3> closed = {false, false, false};
 
 outside_function disc(double x, double y, double r) {
@@ -116,7 +115,7 @@ TEST(cut_cells, of_a_half_space_have_exact_volumes_and_centroids) {
   for (const double angle : {0.0, 0.3, std::numbers::pi / 4, 2.0, 4.4}) {
     const grid mesh = plane(9);
     const std::array<double, 3> n = {std::cos(angle), std::sin(angle), 0.0};
-    const cut_cells cut(mesh, {half_space(n, 0.123)}, closed, kappa);
+    const cut_cells cut(mesh, {half_space(n, 0.123)}, closed);
     expect_sound(mesh, cut);
     // The gas of the square, by the fine sum of a clipped line.
     double volume = 0.0, moment = 0.0;
@@ -147,7 +146,7 @@ TEST(cut_cells, of_a_half_space_in_space_have_exact_volumes) {
   const grid mesh = space(7);
   for (const std::array<double, 3>& n :
        {std::array{1.0, 0.0, 0.0}, {0.6, 0.8, 0.0}, {1.0 / 3, 2.0 / 3, 2.0 / 3}, {0.48, -0.6, 0.64}}) {
-    const cut_cells cut(mesh, {half_space(n, 0.0)}, closed, kappa);
+    const cut_cells cut(mesh, {half_space(n, 0.0)}, closed);
     expect_sound(mesh, cut);
     EXPECT_NEAR(gas_volume(mesh, cut), 32.0, 1e-10);
     for (const auto& wall : cut.walls())
@@ -159,7 +158,7 @@ TEST(cut_cells, of_discs_have_volumes_and_lengths_of_second_order) {
   double volume = 0.0, length = 0.0;
   for (const int n : {20, 40, 80}) {
     const grid mesh = plane(n);
-    const cut_cells cut(mesh, {disc(0.117, -0.043, 1.0)}, closed, kappa);
+    const cut_cells cut(mesh, {disc(0.117, -0.043, 1.0)}, closed);
     expect_sound(mesh, cut);
     const double of_volume = gas_volume(mesh, cut) - (16.0 - std::numbers::pi),
                  of_length = wall_area(cut) - 2.0 * std::numbers::pi;
@@ -179,7 +178,7 @@ TEST(cut_cells, of_balls_have_volumes_and_areas_of_second_order) {
   double volume = 0.0, area = 0.0;
   for (const int n : {12, 24, 48}) {
     const grid mesh = space(n);
-    const cut_cells cut(mesh, {ball(0.117, -0.043, 0.071, 1.0)}, closed, kappa);
+    const cut_cells cut(mesh, {ball(0.117, -0.043, 0.071, 1.0)}, closed);
     expect_sound(mesh, cut);
     const double of_volume = gas_volume(mesh, cut) - (64.0 - 4.0 / 3.0 * std::numbers::pi),
                  of_area = wall_area(cut) - 4.0 * std::numbers::pi;
@@ -196,7 +195,7 @@ TEST(cut_cells, of_balls_have_volumes_and_areas_of_second_order) {
 
 TEST(cut_cells, close_the_surface_of_every_body) {
   const grid mesh = plane(40);
-  const cut_cells cut(mesh, {disc(-0.9, 0.1, 0.5), turned_square(0.8, -0.3, 0.6, 0.4)}, closed, kappa);
+  const cut_cells cut(mesh, {disc(-0.9, 0.1, 0.5), turned_square(0.8, -0.3, 0.6, 0.4)}, closed);
   expect_sound(mesh, cut);
   for (int body = 0; body < 2; ++body) {
     std::array<double, 2> sum{};
@@ -217,7 +216,7 @@ TEST(cut_cells, close_the_surface_of_every_body) {
 TEST(cut_cells, have_points_of_walls_on_the_surface) {
   const grid mesh = plane(30);
   const auto phi = disc(0.05, 0.02, 1.3);
-  const cut_cells cut(mesh, {phi}, closed, kappa);
+  const cut_cells cut(mesh, {phi}, closed);
   for (const auto& wall : cut.walls()) {
     EXPECT_NEAR(phi(wall.middle), 0.0, 1e-12);
     // The normal is that of a chord: parallel to the radius up to the angle of half a chord.
@@ -228,7 +227,7 @@ TEST(cut_cells, have_points_of_walls_on_the_surface) {
 
 TEST(cut_cells, leave_boxes_on_edges_of_cells_whole) {
   const grid mesh = plane(16);
-  const cut_cells cut(mesh, {turned_square(0.0, 0.0, 1.0, 0.0)}, closed, kappa);
+  const cut_cells cut(mesh, {turned_square(0.0, 0.0, 1.0, 0.0)}, closed);
   EXPECT_TRUE(cut.groups().empty());
   int solid = 0;
   for (int cell = 0; cell < mesh.size(); ++cell) solid += cut.body_of(cell) == 0 ? 1 : 0;
@@ -245,8 +244,7 @@ TEST(cut_cells, see_the_same_body_across_periodic_faces) {
       for (const double b : {-2.0, 2.0}) least = std::min(least, disc(a + 0.013, b - 0.021, 0.7)(x));
     return least;
   };
-  const cut_cells across(mesh, {images}, periodic, kappa),
-      inside(mesh, {disc(0.013, -0.021, 0.7)}, periodic, kappa);
+  const cut_cells across(mesh, {images}, periodic), inside(mesh, {disc(0.013, -0.021, 0.7)}, periodic);
   expect_sound(mesh, across);
   ASSERT_EQ(across.groups().size(), inside.groups().size());
   EXPECT_NEAR(gas_volume(mesh, across), gas_volume(mesh, inside), 1e-12);
@@ -261,11 +259,17 @@ TEST(cut_cells, see_the_same_body_across_periodic_faces) {
   EXPECT_THAT(distances(across), testing::Pointwise(testing::DoubleNear(1e-11), distances(inside)));
 }
 
+TEST(cut_cells, refuse_bodies_that_end_at_a_periodic_face) {
+  EXPECT_THAT(
+      [] { const cut_cells cut(plane(24), {disc(-2.0, 0.1, 0.7)}, {true, false, false}); },
+      testing::ThrowsMessage<apsis::input_error>(testing::HasSubstr("crosses the periodic face at x = -2")));
+}
+
 TEST(cut_cells, are_mirrored_with_the_body) {
   const grid mesh = plane(22);
   std::vector<std::vector<double>> volumes;
   for (const auto& [x, y] : {std::pair{0.31, 0.11}, {-0.31, 0.11}, {0.11, 0.31}, {-0.11, -0.31}}) {
-    const cut_cells cut(mesh, {disc(x, y, 0.93)}, closed, kappa);
+    const cut_cells cut(mesh, {disc(x, y, 0.93)}, closed);
     volumes.emplace_back();
     for (const auto& group : cut.groups()) volumes.back().push_back(group.volume);
     std::sort(volumes.back().begin(), volumes.back().end());
@@ -282,7 +286,7 @@ TEST(cut_cells, of_random_overlapping_bodies_are_sound) {
     for (int b = 0; b < 3; ++b) bodies.push_back(disc(place(generator), place(generator), size(generator)));
     const grid mesh = plane(18 + k % 5);
     try {
-      const cut_cells cut(mesh, bodies, closed, kappa);
+      const cut_cells cut(mesh, bodies, closed);
       expect_sound(mesh, cut);
       ++made;
     } catch (const apsis::input_error& error) {
@@ -302,7 +306,7 @@ TEST(cut_cells, of_random_bodies_in_space_are_sound) {
   for (int k = 0; k < 10; ++k) {
     const grid mesh = space(11);
     const cut_cells cut(mesh, {ball(place(generator), place(generator), place(generator), size(generator))},
-                        closed, kappa);
+                        closed);
     expect_sound(mesh, cut);
     EXPECT_GT(cut.groups().size(), 20U);
   }
@@ -317,7 +321,7 @@ TEST(cut_cells, refuse_thin_plates_and_gaps_with_the_cells_that_they_need) {
   };
   const auto error_of = [](int n, const std::vector<outside_function>& bodies) -> std::string {
     try {
-      const cut_cells cut(plane(n), bodies, closed, kappa);
+      const cut_cells cut(plane(n), bodies, closed);
     } catch (const apsis::input_error& error) {
       return error.what();
     }
@@ -348,14 +352,14 @@ TEST(cut_cells, accept_the_tip_of_a_wedge) {
         {c * (x[1] - 0.05) + s * (x[0] - 1.27), -c * (x[1] - 0.05) + s * (x[0] - 1.27), -1.1 - x[0]});
   };
   const grid mesh = plane(40);
-  const cut_cells cut(mesh, {wedge}, closed, kappa);
+  const cut_cells cut(mesh, {wedge}, closed);
   expect_sound(mesh, cut);
   EXPECT_GT(cut.thin_cells(), 0);
 }
 
 TEST(cut_cells, refuse_functions_that_are_no_bodies) {
   const auto with = [](const outside_function& phi) {
-    return [phi] { const cut_cells cut(plane(8), {phi}, closed, kappa); };
+    return [phi] { const cut_cells cut(plane(8), {phi}, closed); };
   };
   EXPECT_THAT(with([](const position& x) { return std::log(x[0]); }),
               testing::ThrowsMessage<apsis::input_error>(testing::HasSubstr("not a number")));
@@ -364,14 +368,14 @@ TEST(cut_cells, refuse_functions_that_are_no_bodies) {
   EXPECT_THAT(
       with([](const position& x) { return std::abs(x[0]); }),
       testing::ThrowsMessage<apsis::input_error>(testing::HasSubstr("a body is thinner than a cell")));
-  EXPECT_THAT([] { const cut_cells cut(grid::line(8, 0.0, 1.0), {disc(0, 0, 1)}, closed, kappa); },
+  EXPECT_THAT([] { const cut_cells cut(grid::line(8, 0.0, 1.0), {disc(0, 0, 1)}, closed); },
               testing::ThrowsMessage<apsis::input_error>(testing::HasSubstr("a body on a line")));
 }
 
 TEST(cut_cells, have_walls_of_solid_boxes_next_to_them) {
   // A box on edges of cells beside a disc that overlaps it.
   const grid mesh = plane(16).with_solids({{{4, 4, 0}, {4, 4, 1}}});
-  const cut_cells cut(mesh, {disc(0.2, -0.4, 0.9)}, closed, kappa);
+  const cut_cells cut(mesh, {disc(0.2, -0.4, 0.9)}, closed);
   expect_sound(mesh, cut);
   EXPECT_TRUE(
       std::any_of(cut.walls().begin(), cut.walls().end(), [](const auto& w) { return w.solid == 0; }));

@@ -11,6 +11,10 @@ std::shared_ptr<const boundary> boundary::prepared(const face&, const velocity_s
   return nullptr;
 }
 
+std::shared_ptr<const oblique_wall> boundary::oblique(const velocity_set&) const {
+  return nullptr;
+}
+
 std::optional<int> boundary::cell_of_ghost(int, int) const {
   return std::nullopt;
 }

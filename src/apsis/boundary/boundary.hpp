@@ -1,5 +1,6 @@
 #pragma once
 
+#include <apsis/boundary/oblique_wall.hpp>
 #include <apsis/mesh/face.hpp>
 #include <apsis/velocity/position.hpp>
 #include <apsis/velocity/velocity_set.hpp>
@@ -33,6 +34,9 @@ class boundary {
   /// uses in its place; nullptr, the default, if it needs none. Throws input_error if the boundary condition
   /// is not possible with these velocities.
   virtual std::shared_ptr<const boundary> prepared(const face& where, const velocity_set& velocities) const;
+  /// Returns this condition for walls with any normal, with tables for the velocities of the domain; nullptr,
+  /// the default, if it serves the faces of cells alone. Throws input_error as prepared() does.
+  virtual std::shared_ptr<const oblique_wall> oblique(const velocity_set& velocities) const;
   /// Returns the cell, counted inwards from the face, whose row is used as ghost row `ghost` = 0, 1, …
   /// (counted outwards) of a pencil of `cells` cells; empty if fill() computes the row. Repeated rows are not
   /// copied.

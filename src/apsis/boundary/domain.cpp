@@ -4,6 +4,7 @@
 #include <apsis/core/index.hpp>
 #include <apsis/exec/parallel.hpp>
 #include <apsis/exec/profile.hpp>
+#include <apsis/mesh/cut_cells.hpp>
 
 #include <algorithm>
 #include <cstddef>
@@ -30,6 +31,10 @@ std::array<bool, 3> periodic_directions(const grid& mesh, const std::vector<doma
   return periodic;
 }
 
+/// What whole cells see of cut ones: ghost rows continue the state inside. The values that enter are those of
+/// the cut cells, which the transport has.
+class border_of_cut_cells final : public incoming_boundary {};
+
 }  // namespace
 
 domain::domain(phase_space space, const std::vector<faces>& sides,
@@ -52,15 +57,21 @@ domain::domain(phase_space space, const std::vector<faces>& sides,
 
 void domain::set_sides(const std::vector<faces>& sides,
                        const std::vector<std::shared_ptr<const boundary>>& solids) {
-  if (solids.size() != mesh().solids().size())
-    throw input_error(fmt::format("{} boundaries of solid boxes (the mesh has {}); give one for each",
-                                  solids.size(), mesh().solids().size()));
+  if (solids.size() != at(mesh().obstacles()))
+    throw input_error(
+        fmt::format("{} boundaries of solid boxes and bodies (the mesh has {}); give one for each",
+                    solids.size(), mesh().obstacles()));
+  solids_ = solids;
   sides_.resize(surfaces().size());
   end_rows_.resize(surfaces().size());
   for (std::size_t number = 0; number < sides_.size(); ++number) {
     const auto& [where, solid, ends, own] = surfaces()[number];
     if (solid < 0 && periodic(where.direction)) continue;
     auto& here = sides_[number];
+    if (is_border_of_cut_cells(static_cast<int>(number))) {
+      here = std::make_shared<border_of_cut_cells>();
+      continue;
+    }
     here = solid < 0 ? sides[at(where.direction)][where.upper ? 1 : 0] : solids[at(solid)];
     if (here->periodic())
       throw input_error("a solid box is periodic (nothing lies behind its faces); give it a wall");
@@ -68,6 +79,22 @@ void domain::set_sides(const std::vector<faces>& sides,
     if (solid < 0 || budget_surfaces_.empty() || budget_surfaces_.back().solid != solid)
       budget_surfaces_.push_back({{}, where, solid});
     budget_surfaces_.back().surfaces.push_back(static_cast<int>(number));
+  }
+  add_cut_ends();
+}
+
+/// Faces of the domain, and walls, that belong to cut cells.
+void domain::add_cut_ends() {
+  if (mesh().cut() == nullptr) return;
+  const cut_cells& cut = *mesh().cut();
+  for (budget_surface& one : budget_surfaces_) {
+    for (std::size_t f = 0; f < cut.faces().size() && one.solid < 0; ++f)
+      if (const open_face& at_domain = cut.faces()[f];
+          at_domain.direction == one.where.direction &&
+          (one.where.upper ? at_domain.above : at_domain.below) < 0)
+        one.cut_faces.push_back(static_cast<int>(f));
+    for (std::size_t w = 0; w < cut.walls().size() && one.solid >= 0; ++w)
+      if (cut.walls()[w].solid == one.solid) one.walls.push_back(static_cast<int>(w));
   }
 }
 
@@ -94,7 +121,7 @@ long domain::number_in_whole_mesh(long cell) const {
 std::size_t domain::ends_at(const budget_surface& one) const {
   std::size_t ends = 0;
   for (const int surface : one.surfaces) ends += at(surfaces()[at(surface)].own);
-  return ends;
+  return ends + one.cut_faces.size() + one.walls.size();
 }
 
 bool domain::repeats(int surface) const {

@@ -18,24 +18,26 @@
 
 namespace apsis {
 
-/// A part of the border of the gas with a budget of its own: a face of the domain, or all faces of a solid
-/// box.
+/// A part of the border of the gas with a budget of its own: a face of the domain, or the whole surface of a
+/// solid box or body.
 struct budget_surface {
-  std::vector<int> surfaces;  ///< numbers of its surfaces
-  face where;                 ///< the face of the domain
-  int solid = -1;             ///< or the number of the solid box
+  std::vector<int> surfaces;        ///< numbers of its surfaces
+  face where;                       ///< the face of the domain
+  int solid = -1;                   ///< or the number of the solid box or body
+  std::vector<int> cut_faces = {},  ///< open faces of cut cells at a face of the domain
+      walls = {};                   ///< wall segments of a solid box or body, by their numbers in cut_cells
 };
 
-/// A phase space with the boundary conditions of its faces and of its solid boxes. The domain owns the ghost
-/// rows beyond the ends of segments, which the boundary of each surface fills; a ghost row that repeats an
-/// interior row refers to that row without a copy.
+/// A phase space with the boundary conditions of its faces, of its solid boxes and bodies. The domain owns
+/// the ghost rows beyond the ends of segments, which the boundary of each surface fills; a ghost row that
+/// repeats an interior row refers to that row without a copy.
 class domain : public construction_count<domain> {
  public:
   /// Boundaries at the lower and the upper face of a direction.
   using faces = std::array<std::shared_ptr<const boundary>, 2>;
 
-  /// One pair of boundaries for each direction of the mesh, and one boundary for each of its solid boxes.
-  /// Throws input_error where only one of the two faces of a direction is periodic, or a box is.
+  /// One pair of boundaries for each direction of the mesh, and one boundary for each of its solid boxes and
+  /// bodies. Throws input_error where only one of the two faces of a direction is periodic, or a box is.
   domain(phase_space space, const std::vector<faces>& sides,
          const std::vector<std::shared_ptr<const boundary>>& solids = {});
   /// The block of this process of a mesh that several processes share; `space` has this block as its mesh.
@@ -61,14 +63,24 @@ class domain : public construction_count<domain> {
   const std::vector<surface>& surfaces() const { return segments_.surfaces(); }
   /// Returns the boundary at a surface, as prepared for it; null at a periodic face.
   const boundary* side(int surface) const { return sides_[static_cast<std::size_t>(surface)].get(); }
+  /// Whether a surface is the border to cut cells.
+  bool is_border_of_cut_cells(int surface) const {
+    return mesh().cut() != nullptr &&
+           surfaces()[static_cast<std::size_t>(surface)].solid == mesh().obstacles();
+  }
+  /// Returns the boundary of a solid box or body, as given.
+  const std::shared_ptr<const boundary>& solid_boundary(int solid) const {
+    return solids_[static_cast<std::size_t>(solid)];
+  }
   /// Returns the point at which a segment meets a surface.
   position meeting_point(int surface, int place) const;
   /// Returns the cell in front of a surface: local if segment::ends_here(), otherwise possibly of another
   /// process.
   int cell_at(int surface, int place) const;
-  /// Returns the faces that are not periodic and the solid boxes, in this order.
+  /// Returns the faces that are not periodic, the solid boxes and the bodies, in this order.
   const std::vector<budget_surface>& budget_surfaces() const { return budget_surfaces_; }
-  /// Returns the number of ends of segments at a budget surface, those of its surfaces in their order.
+  /// Returns the number of ends at a budget surface: those of segments at its surfaces in their order, its
+  /// cut faces, and its walls.
   std::size_t ends_at(const budget_surface& one) const;
   /// Returns boundary::entropy_bound() of every budget surface; nothing if one of them has none.
   std::optional<std::vector<std::vector<double>>> entropy_bounds() const;
@@ -123,6 +135,7 @@ class domain : public construction_count<domain> {
   enum class end_kind { all, of_own_cells, of_others };
 
   void set_sides(const std::vector<faces>& sides, const std::vector<std::shared_ptr<const boundary>>& solids);
+  void add_cut_ends();
   bool repeats(int surface) const;
   /// Number of rows inside that a boundary may read.
   int rows_inside() const { return std::max(width_, 3); }
@@ -148,7 +161,8 @@ class domain : public construction_count<domain> {
   std::unique_ptr<halo_exchange> halo_;
   std::array<bool, 3> periodic_{};
   segment_table segments_;
-  std::vector<std::shared_ptr<const boundary>> sides_;  ///< [surface]
+  std::vector<std::shared_ptr<const boundary>> sides_,  ///< [surface]
+      solids_;                                          ///< of boxes and bodies
   std::vector<budget_surface> budget_surfaces_;
   std::vector<end_rows> end_rows_;  ///< [surface]
   int width_ = 0;

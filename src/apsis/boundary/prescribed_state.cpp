@@ -35,7 +35,11 @@ void prescribed_state::compute(double t, const position& x, std::span<double> ro
   constexpr std::size_t usual = 8;  // not on the heap
   boost::container::small_vector<double, usual> numbers;
   for (const auto& value : values_) numbers.push_back(value.at(t, x));
-  if (const std::string problem = form_.row({numbers.data(), numbers.size()}, row); !problem.empty())
+  write_other({numbers.data(), numbers.size()}, t, row);
+}
+
+void prescribed_state::write_other(std::span<const double> numbers, double t, std::span<double> row) const {
+  if (const std::string problem = form_.row(numbers, row); !problem.empty())
     throw input_error(fmt::format("the boundary has no {} at t = {:.10g} ({}); change its values",
                                   form_.description, t, problem));
 }

@@ -23,6 +23,9 @@ class prescribed_state {
   /// Returns the row at time t at a point of the face, in `buffer` of components() numbers unless it is
   /// constant. Throws input_error if no row has the values.
   const double* at(double t, const position& x, std::span<double> buffer) const;
+  /// row ← the row with these values of the variables in place of those that it was made with. Throws as at()
+  /// does; t is for the message.
+  void write_other(std::span<const double> numbers, double t, std::span<double> row) const;
   /// row ← the row at time t at a point of the face. Throws as at() does.
   void write(double t, const position& x, double* row) const;
 

@@ -5,8 +5,9 @@
 namespace apsis {
 
 cut_cells::cut_cells(const grid& mesh, const std::vector<outside_function>& bodies,
-                     const std::array<bool, 3>& periodic, double cfl_number) {
-  mesh_cutter(mesh, bodies, periodic, cfl_number, *this).cut();
+                     const std::array<bool, 3>& periodic)
+    : bodies_(static_cast<int>(bodies.size())) {
+  mesh_cutter(mesh, bodies, periodic, *this).cut();
 }
 
 double cut_cells::volume_of(int cell) const {

@@ -59,21 +59,26 @@ struct cut_group {
 /// Dimensionless lengths.
 class cut_cells {
  public:
+  /// κ. Larger ones join more cells: for κ = 1, those along a wall would have to join without end.
+  static constexpr double cfl_number = 0.5;
+
   /// `mesh` has two or three dimensions and may have solid boxes; `bodies`: φ of each; `periodic`: of each
-  /// direction; `cfl_number`: κ. Throws input_error if
+  /// direction. Throws input_error if
   /// - φ is not finite at a corner of a cell;
+  /// - a body crosses a periodic face, and differs at the opposite one;
   /// - a gap between bodies is thinner than a cell, or most of a body, with the number of cells that are
   ///   needed;
   /// - a body lies between the corners of the cells;
   /// - no cell of gas is left.
   cut_cells(const grid& mesh, const std::vector<outside_function>& bodies,
-            const std::array<bool, 3>& periodic, double cfl_number);
+            const std::array<bool, 3>& periodic);
 
   /// Returns the number of the group of a cut cell; −1 for other cells.
   int group_of(int cell) const { return group_of_[at(cell)]; }
   /// Returns the number of the body that a solid cell belongs to, counted without solid boxes; −1 for other
   /// cells.
   int body_of(int cell) const { return body_of_[at(cell)]; }
+  int bodies() const { return bodies_; }                             ///< number of bodies
   const std::vector<cut_group>& groups() const { return groups_; }   ///< cut cells
   const std::vector<open_face>& faces() const { return faces_; }     ///< of all groups
   const std::vector<wall_segment>& walls() const { return walls_; }  ///< of all groups
@@ -93,7 +98,7 @@ class cut_cells {
   std::vector<wall_segment> walls_;
   std::unordered_map<int, double> volumes_;  ///< of each cut cell
   std::vector<double> outflows_;             ///< of each group
-  int thin_cells_ = 0;
+  int thin_cells_ = 0, bodies_ = 0;
 };
 
 }  // namespace apsis

@@ -1,5 +1,7 @@
 #include <apsis/mesh/grid.hpp>
 
+#include <apsis/mesh/cut_cells.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -41,6 +43,7 @@ grid grid::block(std::array<int, 3> first, std::array<int, 3> cells) const {
   }
   part.solids_.clear();
   part.solid_.reset();
+  part.group_.reset();
   part.find_fluid();
   std::vector<cell_box> inside;
   for (cell_box box : solids_) {
@@ -57,6 +60,7 @@ grid grid::block(std::array<int, 3> first, std::array<int, 3> cells) const {
     inside.push_back(box);
   }
   if (!inside.empty()) part.set_solids(std::move(inside));
+  if (cut_) part.copy_bodies(*this);
   if (part.fluid_.empty()) part.fluid_.push_back({0, 0});
   return part;
 }
@@ -86,6 +90,40 @@ void grid::set_solids(std::vector<cell_box> boxes) {
             cells[2], static_cast<int>(number));
   }
   find_fluid();
+}
+
+grid grid::with_cut_cells(std::shared_ptr<const cut_cells> cut) const {
+  if (cut_) throw input_error("a mesh with cut cells cannot be cut again; give all bodies together");
+  grid made = *this;
+  made.whole_ = std::make_shared<const grid>(*this);
+  made.bodies_ = cut->bodies();
+  made.cut_ = std::move(cut);
+  made.solid_ = solid_ ? std::make_shared<std::vector<int>>(*solid_)
+                       : std::make_shared<std::vector<int>>(at(size()), -1);
+  made.group_ = std::make_shared<std::vector<int>>(at(size()), -1);
+  for (int cell = 0; cell < size(); ++cell) {
+    if (const int body = made.cut_->body_of(cell); body >= 0)
+      (*made.solid_)[at(cell)] = static_cast<int>(solids_.size()) + body;
+    (*made.group_)[at(cell)] = made.cut_->group_of(cell);
+  }
+  made.find_fluid();
+  return made;
+}
+
+/// The bodies of a mesh in its block.
+void grid::copy_bodies(const grid& whole) {
+  if (!solid_) solid_ = std::make_shared<std::vector<int>>(at(size()), -1);
+  group_ = std::make_shared<std::vector<int>>(at(size()), -1);
+  for (int cell = 0; cell < size(); ++cell) {
+    const int there = whole.cell_of(*this, cell);
+    (*solid_)[at(cell)] = whole.solid(there);
+    (*group_)[at(cell)] = whole.cut_group(there);
+  }
+  find_fluid();
+}
+
+double grid::gas_share(int cell) const {
+  return cut_group(cell) < 0 ? 1.0 : cut_->volume_of(whole_->cell_of(*this, cell)) / cell_volume();
 }
 
 void grid::find_fluid() {
@@ -120,6 +158,7 @@ double grid::centre(int cell, int direction) const {
 }
 
 position grid::centre(int cell) const {
+  if (const int group = cut_group(cell); group >= 0) return cut_->groups()[at(group)].centre;
   position x{};
   for (int k = 0; k < dimensions_; ++k) x[at(k)] = centre(cell, k);
   return x;

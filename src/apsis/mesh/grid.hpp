@@ -13,6 +13,8 @@
 
 namespace apsis {
 
+class cut_cells;
+
 /// Cells first … first + cells − 1 of each direction.
 struct cell_box {
   std::array<int, 3> first = {0, 0, 0},  ///< first cell of each direction
@@ -35,9 +37,9 @@ void for_cells_in(const std::vector<cell_range>& ranges, int begin, int end, con
 }
 
 /// Uniform cells on a box in D = 1, 2 or 3 dimensions, the last direction fastest. Unused directions have one
-/// cell. Boxes of cells may be solid: they have numbers, but no gas. A grid may be a block of a larger one,
-/// whose cells it shares bit for bit: cell numbers are local, coordinates are those of the global grid.
-/// Dimensionless lengths.
+/// cell. Boxes of cells may be solid, and bodies may cut cells: solid cells have numbers, but no gas. A grid
+/// may be a block of a larger one, whose cells it shares bit for bit: cell numbers are local, coordinates are
+/// those of the global grid. Dimensionless lengths.
 class grid {
  public:
   /// Largest number of cells; cell numbers, including ghost cells, then fit into int.
@@ -57,6 +59,10 @@ class grid {
   /// inside, and some cell is not solid.
   grid with_solids(std::vector<cell_box> boxes) const;
 
+  /// This grid with the cells that bodies cut; `cut` was made for it. Throws input_error unless this is a
+  /// whole mesh without bodies.
+  grid with_cut_cells(std::shared_ptr<const cut_cells> cut) const;
+
   int dimensions() const { return dimensions_; }  ///< D
   int cells(int direction) const {
     return cells_[at(direction)];
@@ -73,7 +79,7 @@ class grid {
   }
   /// Returns the coordinate of the centre of a cell along a direction.
   double centre(int cell, int direction) const;
-  /// Returns the centre of a cell.
+  /// Returns the centre of a cell; of a cut cell, the centroid of the gas with its unknown.
   position centre(int cell) const;
   /// Returns the distance in cell numbers between neighbours along a direction.
   int stride(int direction) const;
@@ -88,21 +94,38 @@ class grid {
   int first_cell(int direction, int pencil) const;
 
   const std::vector<cell_box>& solids() const { return solids_; }  ///< the solid boxes
-  /// Returns the number of the last of the solid boxes that contain a cell; −1 if none does.
+  /// Returns the number of the last of the solid boxes that contain a cell, or the number of boxes plus that
+  /// of the body; −1 in the gas.
   int solid(int cell) const { return solid_ ? (*solid_)[at(cell)] : -1; }
+  /// Returns the number of solid boxes and bodies.
+  int obstacles() const { return static_cast<int>(solids_.size()) + bodies_; }
+  /// Returns the cut cells of the whole mesh; null without bodies.
+  const cut_cells* cut() const { return cut_.get(); }
+  /// Returns the number of the group of a cut cell among cut_cells::groups(); −1 for other cells.
+  int cut_group(int cell) const { return group_ ? (*group_)[at(cell)] : -1; }
+  /// Returns what ends the segments in front of a cell: the number of a solid box or body, obstacles() for a
+  /// cut cell; −1 for a whole cell of gas.
+  int obstacle(int cell) const { return cut_group(cell) >= 0 ? obstacles() : solid(cell); }
+  /// Returns the share of the volume of a cell that has gas, of a cell that is not solid.
+  double gas_share(int cell) const;
   /// Returns all cells that are not solid, in increasing order; a single empty range for a block without any.
   const std::vector<cell_range>& fluid() const { return fluid_; }
 
  private:
   void check_size() const;
   void set_solids(std::vector<cell_box> boxes);
+  void copy_bodies(const grid& whole);
   void find_fluid();
 
   int dimensions_;
   std::array<int, 3> cells_, first_;
   std::array<double, 3> lower_, spacing_;
   std::vector<cell_box> solids_;
-  std::shared_ptr<std::vector<int>> solid_;  ///< of every cell; null without solid boxes
+  int bodies_ = 0;
+  std::shared_ptr<const cut_cells> cut_;     ///< of the whole mesh
+  std::shared_ptr<const grid> whole_;        ///< the mesh that they were made for
+  std::shared_ptr<std::vector<int>> solid_,  ///< of every cell; null without obstacles
+      group_;                                ///< of every cell; null without bodies
   std::vector<cell_range> fluid_;
 };
 

@@ -8,7 +8,7 @@ segment_table::segment_table(const grid& mesh, const std::array<bool, 3>& period
 
 segment_table::segment_table(const grid& whole, const grid& block, const std::array<bool, 3>& periodic,
                              int reach) {
-  const int dimensions = block.dimensions(), solids = static_cast<int>(block.solids().size());
+  const int dimensions = block.dimensions(), solids = block.obstacles() + (block.cut() != nullptr ? 1 : 0);
   for (int solid = -1; solid < solids; ++solid)
     for (std::size_t k = 0; k < 2 * at(dimensions); ++k) {
       face where = face_of(k);
@@ -33,7 +33,7 @@ void segment_table::cut(const grid& mesh, int direction) {
     const int first = mesh.first_cell(direction, pencil);
     bool inside = false;
     for (int i = 0; i < n; ++i) {
-      const bool fluid = mesh.solid(first + i * stride) < 0;
+      const bool fluid = mesh.obstacle(first + i * stride) < 0;
       if (fluid && !inside) made.push_back({first + i * stride, i, 0, {}});
       if (fluid) ++made.back().cells;
       inside = fluid;
@@ -61,12 +61,12 @@ void segment_table::link(int direction, bool periodic, const grid& mesh) {
           }
           beside = upper ? 0 : n - 1;
           const int opposite = upper ? begin : end - 1;
-          if (mesh.solid(pencil_first + beside * stride) < 0) {
+          if (mesh.obstacle(pencil_first + beside * stride) < 0) {
             one.ends[upper ? 1 : 0] = {-1, opposite};
             continue;
           }
         }
-        const int solid = mesh.solid(pencil_first + beside * stride);
+        const int solid = mesh.obstacle(pencil_first + beside * stride);
         // The face of the box that looks at the segment.
         end_at(faces * (solid + 1) + 2 * direction + (upper ? 0 : 1), direction, number, upper);
       }
@@ -108,7 +108,7 @@ int segment_table::surface_beyond(const grid& whole, const grid& block, int dire
     int beside = here + (beyond + 1) * outwards;
     if (!periodic && (beside < 0 || beside >= all)) return static_cast<int>(face{direction, upper}.index());
     beside = (beside % all + all) % all;
-    const int solid = whole.solid(cell + (beside - here) * whole.stride(direction));
+    const int solid = whole.obstacle(cell + (beside - here) * whole.stride(direction));
     // The face of the box that looks at the segment.
     if (solid >= 0) return 2 * block.dimensions() * (solid + 1) + 2 * direction + (upper ? 0 : 1);
     if (beyond == reach) return -1;

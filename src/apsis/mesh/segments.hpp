@@ -30,16 +30,17 @@ struct segment {
   bool ends_here(bool upper) const { return beyond[upper ? 1 : 0] == 0; }
 };
 
-/// A surface where segments end: a face of the grid, or one of a solid box. Cells of the gas lie on the side
-/// of it that `where` names as inside: `where.upper` if segments have their upper end here.
+/// A surface where segments end: a face of the grid, of a solid box or body, or the border to cut cells.
+/// Cells of the gas lie on the side of it that `where` names as inside: `where.upper` if segments have their
+/// upper end here.
 struct surface {
   face where;                 ///< the end of the segments
-  int solid = -1;             ///< number of the solid box; −1 for a face of the grid
+  int solid = -1;             ///< grid::obstacle(); −1 for a face of the grid
   std::vector<int> segments;  ///< of the direction, in the order of segment_end::place
   int own = 0;                ///< number of these, the first ones, whose end lies at a cell of this process
 };
 
-/// The pencils of a grid, cut at solid boxes.
+/// The pencils of a grid, cut at solid and cut cells.
 class segment_table {
  public:
   segment_table() = default;
@@ -58,7 +59,7 @@ class segment_table {
     return first_of_[static_cast<std::size_t>(direction)][static_cast<std::size_t>(pencil)];
   }
   /// Returns the surfaces: the faces of the grid in the order of face::index(), without segments where they
-  /// are periodic, then those of each solid box.
+  /// are periodic, then those of each solid box and body, and of the cut cells.
   const std::vector<surface>& surfaces() const { return surfaces_; }
 
  private:

@@ -39,16 +39,17 @@ std::vector<line_speeds> line_speeds::of(const model& equation, const grid& mesh
 }
 
 aligned_vector<double> line_speeds::inverse_cfl_numbers(const std::vector<line_speeds>& speeds, double share,
-                                                        double rate_of_force) {
+                                                        double rate_of_force, double kappa) {
   aligned_vector<double> rates;
   for (const auto& line : speeds) {
-    rates.resize(line.per_cell.size(), rate_of_force);
+    rates.resize(line.per_cell.size());
     for (std::size_t k = 0; k < rates.size(); ++k) rates[k] += line.per_cell[k];
   }
   if (rates.empty()) return rates;
-  const double fastest = *std::max_element(rates.begin(), rates.end());
+  const double longest = *std::max_element(rates.begin(), rates.end()) + kappa * rate_of_force;
   for (double& rate : rates)
-    rate = 1.0 / std::max(limiter::least_cfl_number, fastest > 0.0 ? share * (rate / fastest) : 1.0);
+    rate = 1.0 / std::max(limiter::least_cfl_number,
+                          longest > 0.0 ? share * kappa * ((rate + rate_of_force) / longest) : 1.0);
   return rates;
 }
 

@@ -20,11 +20,11 @@ struct line_speeds {
 
   /// Returns the speeds along each direction of a mesh.
   static std::vector<line_speeds> of(const model& equation, const grid& mesh);
-  /// Returns 1/κ of all components for forward Euler steps of `share` times the longest: κ =
-  /// share (Σ_k |v_k|/Δx_k + a)/max(…) of each component, limiter::least_cfl_number at least, with the rate a
-  /// of a force.
+  /// Returns 1/C of all components for forward Euler steps of `share` times the longest, Δt =
+  /// share κ/(max Σ_k |v_k|/Δx_k + κ a): C = Δt (Σ_k |v_k|/Δx_k + a) of each component,
+  /// limiter::least_cfl_number at least, with the rate a of a force.
   static aligned_vector<double> inverse_cfl_numbers(const std::vector<line_speeds>& speeds, double share,
-                                                    double rate_of_force);
+                                                    double rate_of_force, double kappa);
 };
 
 /// T along one direction for some components of some cells of a segment. A workspace of one thread.
@@ -37,7 +37,7 @@ class block_sweep {
     const limited_reconstruction& edges;     ///< edge values and limiter
     const std::vector<line_speeds>& speeds;  ///< of each direction
     const aligned_vector<double>&
-        inverse_cfl_numbers;  ///< 1/κ of limited fluxes per component, for as many cells as the speeds
+        inverse_cfl_numbers;  ///< 1/C of limited fluxes per component, for as many cells as the speeds
     face_fluxes& faces;       ///< takes the fluxes at surfaces
   };
   /// The part of the phase space that a sweep changes.

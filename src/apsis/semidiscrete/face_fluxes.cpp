@@ -1,5 +1,6 @@
 #include <apsis/semidiscrete/face_fluxes.hpp>
 
+#include <apsis/mesh/cut_cells.hpp>
 #include <apsis/semidiscrete/face_rows.hpp>
 
 #include <algorithm>
@@ -18,7 +19,11 @@ std::size_t index(int k) {
 face_fluxes::face_fluxes(const model& equation, std::shared_ptr<domain> space)
     : equation_(equation), space_(std::move(space)), invariants_(equation.invariants().size()) {
   sides_.resize(space_->surfaces().size());
-  for (const budget_surface& one : space_->budget_surfaces())
+  if (const cut_cells* cut = space_->mesh().cut()) {
+    open_faces_.resize(cut->faces().size());
+    walls_.resize(cut->walls().size());
+  }
+  for (const budget_surface& one : space_->budget_surfaces()) {
     for (const int surface : one.surfaces) {
       const auto& of = space_->surfaces()[index(surface)];
       side& made = at(surface);
@@ -30,6 +35,13 @@ face_fluxes::face_fluxes(const model& equation, std::shared_ptr<domain> space)
       made.first = ends_;
       ends_ += ends;
     }
+    for (const int number : one.cut_faces) open_faces_[index(number)] = ends_++;
+    for (const int number : one.walls) walls_[index(number)] = ends_++;
+  }
+  // What whole cells let out to cut ones; it stays in the gas.
+  for (std::size_t k = 0; k < sides_.size(); ++k)
+    if (space_->is_border_of_cut_cells(static_cast<int>(k)))
+      sides_[k].values = field(space_->surfaces()[k].own, equation.components());
   rates_.resize(ends_ * invariants_);
   densities_.resize(ends_ * invariants_);
 }
@@ -75,6 +87,27 @@ void face_fluxes::compute_densities(int surface, int place) {
       if (here.inward[k] == 0.0) values[k] = 0.5 * (cell[k] + ghost[k]);
   }
   equation_.invariant_densities(values, densities_.data() + (here.first + index(place)) * invariants_);
+}
+
+void face_fluxes::receive(std::size_t end, double area, std::span<const double> inward, const double* values,
+                          double* flux) {
+  if (observed_) equation_.invariant_densities(values, densities_.data() + end * invariants_);
+  std::copy_n(values, inward.size(), flux);
+  face_rows::multiply(inward.data(), static_cast<int>(inward.size()), flux);
+  double* received = rates_.data() + end * invariants_;
+  equation_.invariant_densities(flux, received);
+  for (std::size_t k = 0; k < invariants_; ++k) received[k] *= area;
+}
+
+void face_fluxes::receive_through(int number, std::span<const double> inward, const double* values,
+                                  double* flux) {
+  receive(open_faces_[index(number)], space_->mesh().cut()->faces()[index(number)].area, inward, values,
+          flux);
+}
+
+void face_fluxes::receive_at_wall(int number, std::span<const double> inward, const double* values,
+                                  double* flux) {
+  receive(walls_[index(number)], space_->mesh().cut()->walls()[index(number)].area, inward, values, flux);
 }
 
 void face_fluxes::set_inside(std::span<const double> inside) {

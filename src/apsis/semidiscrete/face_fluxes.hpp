@@ -31,6 +31,12 @@ class face_fluxes {
   /// targets. Concurrent calls must differ in the cell at the end.
   void complete(int surface, int place, double t, std::span<const target<field, double>> targets);
 
+  /// Takes the values at an open face of a cut cell at a face of the domain, or at a wall segment, by its
+  /// number in cut_cells. `inward`: v·n of every component, n into the gas; `flux`: scratch of one row.
+  void receive_through(int open_face, std::span<const double> inward, const double* values, double* flux);
+  /// The same at a wall.
+  void receive_at_wall(int wall, std::span<const double> inward, const double* values, double* flux);
+
   /// Whether complete() also computes the densities of the invariants at the surfaces.
   void observe_densities(bool observe) { observed_ = observe; }
   /// Returns the densities of the last complete() of every end, in the order of a boundary_budget: those of
@@ -52,10 +58,13 @@ class face_fluxes {
   };
   side& at(int surface) { return sides_[static_cast<std::size_t>(surface)]; }
   void compute_densities(int surface, int place);
+  void receive(std::size_t end, double area, std::span<const double> inward, const double* values,
+               double* flux);
 
   const model& equation_;
   std::shared_ptr<domain> space_;
-  std::vector<side> sides_;  ///< [surface]
+  std::vector<side> sides_;                      ///< [surface]
+  std::vector<std::size_t> open_faces_, walls_;  ///< their ends, by their numbers in cut_cells
   std::size_t invariants_ = 0;
   std::size_t ends_ = 0;       ///< of all budget surfaces
   std::vector<double> rates_;  ///< what is received per unit of time, in the layout of a boundary_budget

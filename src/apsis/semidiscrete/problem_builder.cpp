@@ -2,9 +2,11 @@
 
 #include <apsis/boundary/boundary_registry.hpp>
 #include <apsis/core/errors.hpp>
+#include <apsis/core/index.hpp>
 #include <apsis/core/printable.hpp>
 #include <apsis/core/suggest.hpp>
 #include <apsis/exec/interruption.hpp>
+#include <apsis/mesh/cut_cells.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -27,7 +29,7 @@ problem_builder& problem_builder::on(const grid& mesh) {
   forget_spaces();
   const auto periodic = make_boundary("periodic");
   sides_.assign(static_cast<std::size_t>(mesh.dimensions()), {periodic, periodic});
-  solids_.assign(mesh.solids().size(), nullptr);
+  solids_.assign(at(mesh.obstacles()), nullptr);
   return *this;
 }
 
@@ -64,7 +66,7 @@ problem_builder& problem_builder::with_boundary(const face& where, std::shared_p
 problem_builder& problem_builder::with_solid(int number, std::shared_ptr<const boundary> wall) {
   if (number < 0 || static_cast<std::size_t>(number) >= solids_.size())
     throw input_error(
-        fmt::format("no solid box {} (the mesh has {}); call on() first", number, solids_.size()));
+        fmt::format("no solid box or body {} (the mesh has {}); call on() first", number, solids_.size()));
   solids_[static_cast<std::size_t>(number)] = std::move(wall);
   forget_spaces();
   return *this;
@@ -154,9 +156,18 @@ collision_layout problem_builder::collisions() const {
   return of_space().collisions_at(collisions_, *scheme_);
 }
 
+double problem_builder::cfl_number() const {
+  const double of_limiter =
+      limited_ && has_space() && !first_order() ? of_space().limited_cfl_number(collisions_) : 1.0;
+  return mesh_.cut() != nullptr ? std::min(of_limiter, cut_cells::cfl_number) : of_limiter;
+}
+
 void problem_builder::check_solids() const {
   for (std::size_t k = 0; k < solids_.size(); ++k)
-    if (!solids_[k]) throw input_error(fmt::format("solid box {} has no wall; call with_solid()", k));
+    if (!solids_[k])
+      throw input_error(fmt::format("{} {} has no wall; call with_solid()",
+                                    k < mesh_.solids().size() ? "solid box" : "body",
+                                    k < mesh_.solids().size() ? k : k - mesh_.solids().size()));
 }
 
 /// For collisions; with_reconstruction() checks the stencil of the reconstruction.
@@ -184,7 +195,7 @@ void problem_builder::check_discretization() const {
                                   printable(collisions_), suggest(collisions_, places)));
   check_cells();
   if (const std::string why = chosen.why_without_solids();
-      !mesh_.solids().empty() && !why.empty() && !collisions().cellwise)
+      mesh_.obstacles() > 0 && !why.empty() && !collisions().cellwise)
     throw input_error(fmt::format("solid boxes with {} ({}); {}", chosen.unknown().plural(), why, otherwise));
 }
 

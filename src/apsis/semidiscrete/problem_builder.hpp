@@ -45,7 +45,8 @@ class problem_builder {
                              const std::optional<std::array<int, 3>>& blocks = std::nullopt);
   /// Sets the boundary of one face of the mesh, which must be set before; the default is periodic.
   problem_builder& with_boundary(const face& where, std::shared_ptr<const boundary> side);
-  /// Sets the boundary at a solid box of the mesh, which must be set before; every box needs one.
+  /// Sets the boundary at a solid box or body of the mesh (grid::solid()), which must be set before; each
+  /// needs one.
   problem_builder& with_solid(int number, std::shared_ptr<const boundary> wall);
   /// Sets the reconstruction scheme. Throws input_error if the mesh, which must be set before, is smaller
   /// than its stencil.
@@ -109,10 +110,8 @@ class problem_builder {
   bool first_order() const { return scheme_ && scheme_->order() == 1; }
   /// Whether steps within r Δt_FE keep nonnegative data nonnegative.
   bool keeps_sign() const { return limited_ || first_order() || !has_space(); }
-  /// Returns κ of Δt_FE = κ / max Σ_k |v_k|/Δx_k: 1 without the positivity limiter.
-  double cfl_number() const {
-    return limited_ && has_space() && !first_order() ? of_space().limited_cfl_number(collisions_) : 1.0;
-  }
+  /// Returns κ of Δt_FE = κ / max Σ_k |v_k|/Δx_k: 1 without the positivity limiter and bodies.
+  double cfl_number() const;
   /// Returns the force; nothing without one.
   const std::optional<acceleration>& force() const { return force_; }
   /// Returns the source of with_source(); nothing without one.

@@ -80,6 +80,11 @@ upwind_transport::upwind_transport(const model& equation, std::shared_ptr<domain
   if (has_space) space_->reserve(equation.components(), edges_.ghosts());
   faces_ = std::make_unique<face_fluxes>(equation_, space_);
   if (has_space) speeds_ = line_speeds::of(equation, mesh());
+  kappa_ = edges_.kappa();
+  if (has_space && mesh().cut() != nullptr) {
+    kappa_ = std::min(kappa_, cut_cells::cfl_number);
+    cut_ = std::make_unique<cut_transport>(equation_, space_, edges_, *faces_);
+  }
   limit_for_steps(1.0);
 }
 
@@ -95,8 +100,12 @@ void upwind_transport::set_source(source_rate rate) {
 void upwind_transport::limit_for_steps(double share) {
   share_ = share;
   // Of 1/Δt_FE, in units of 1/κ.
-  const double rate = force_ ? edges_.kappa() * force_->rate() : 0.0;
-  inverse_cfl_ = line_speeds::inverse_cfl_numbers(speeds_, share, rate);
+  const double rate = force_ ? force_->rate() : 0.0;
+  inverse_cfl_ = line_speeds::inverse_cfl_numbers(speeds_, share, rate, kappa_);
+  if (cut_) {
+    const double step = share * forward_euler_step();
+    cut_->limit_for_steps(step, 1.0 - step * rate);
+  }
   if (force_) force_->limit_for_steps(share);
 }
 
@@ -111,8 +120,8 @@ double upwind_transport::forward_euler_step() const {
     for (const auto& line : speeds_) each += line.per_cell[k];
     fastest = std::max(fastest, each);
   }
-  const double rate = fastest + edges_.kappa() * (force_ ? force_->rate() : 0.0);
-  return rounding_allowance * edges_.kappa() / rate;  // 1/0 is the infinity of a model without space
+  const double rate = fastest + kappa_ * (force_ ? force_->rate() : 0.0);
+  return rounding_allowance * kappa_ / rate;  // 1/0 is the infinity of a model without space
 }
 
 bool upwind_transport::add_transport(double t, const field& u, targets_view targets,
@@ -235,7 +244,8 @@ void upwind_transport::sweep_box(const field& u, targets_view targets, const cel
 }
 
 /// Adds what enters through surfaces at the cells of a box.
-void upwind_transport::complete_box(double t, targets_view targets, const cell_box& box) const {
+void upwind_transport::complete_box(double t, const field& u, targets_view targets,
+                                    const cell_box& box) const {
   if (space_->budget_surfaces().empty()) return;
   for (int direction = 0; direction < mesh().dimensions(); ++direction)
     for_segments(direction, box, [&](int number, int begin, int end) {
@@ -244,7 +254,10 @@ void upwind_transport::complete_box(double t, targets_view targets, const cell_b
         const auto& [surface, place] = one.ends[upper ? 1 : 0];
         if (surface < 0 || !one.ends_here(upper) || (upper ? end != one.cells : begin != 0)) continue;
         const profile::section timed(kernel::walls, equation_.components(), traffic(targets));
-        faces_->complete(surface, place, t, targets);
+        if (space_->is_border_of_cut_cells(surface))
+          cut_->complete(surface, place, u, targets);
+        else
+          faces_->complete(surface, place, t, targets);
       }
     });
 }
@@ -279,11 +292,13 @@ bool upwind_transport::sweep(double t, const field& u, targets_view targets, con
                   std::min(width, widest + width % packet_length), targets.size());
   });
   const sweep_plan plan{boxes, columns, by_boxes};
+  if (cut_) cut_->prepare(u);
   // Rows of other processes arrive while the boxes that do not need them are swept.
   space_->begin_ghosts(t, u);
   sweep_boxes(t, u, targets, plan, scratch_->waves[0], then);
   space_->finish_ghosts(t, u);
   sweep_boxes(t, u, targets, plan, scratch_->waves[1], then);
+  if (cut_) cut_->add(t, u, targets, by_boxes ? then : cells_job());
   return by_boxes && then;
 }
 
@@ -300,7 +315,7 @@ void upwind_transport::sweep_boxes(double t, const field& u, targets_view target
       const cell_box here = box(k);
       for (int column = 0; column < columns; ++column)
         sweep_box(u, targets, here, component(column), component(column + 1));
-      complete_box(t, targets, here);
+      complete_box(t, u, targets, here);
       if (then) finish_box(here, then);
       after_box();
     });
@@ -309,7 +324,7 @@ void upwind_transport::sweep_boxes(double t, const field& u, targets_view target
     sweep_box(u, targets, box(task / columns), component(column), component(column + 1));
     after_box();
   });
-  parallel_for(count, [&](int k) { complete_box(t, targets, box(k)); });
+  parallel_for(count, [&](int k) { complete_box(t, u, targets, box(k)); });
 }
 
 }  // namespace apsis

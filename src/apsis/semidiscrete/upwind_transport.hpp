@@ -5,6 +5,7 @@
 #include <apsis/model/model.hpp>
 #include <apsis/semidiscrete/block_sweep.hpp>
 #include <apsis/semidiscrete/cell_unknown.hpp>
+#include <apsis/semidiscrete/cut_transport.hpp>
 #include <apsis/semidiscrete/face_fluxes.hpp>
 #include <apsis/semidiscrete/force.hpp>
 #include <apsis/semidiscrete/source.hpp>
@@ -36,7 +37,8 @@ class upwind_transport final : public transport {
   void set_force(acceleration of) override;
   void set_source(source_rate rate) override;
 
-  /// 1/Δt_FE = max_j Σ_k |v_jk|/Δx_k / κ + force::rate(), κ = limited_reconstruction::kappa().
+  /// 1/Δt_FE = max_j Σ_k |v_jk|/Δx_k / κ + force::rate(), κ = limited_reconstruction::kappa(), at most
+  /// cut_cells::cfl_number with bodies.
   double forward_euler_step() const override;
   void limit_for_steps(double share) override;
   double growth_of_source(double t, const field& u) const override;
@@ -53,7 +55,8 @@ class upwind_transport final : public transport {
                    const sweep_plan& plan, const std::vector<int>& numbers, const cells_job& then) const;
   void sweep_box(const field& u, std::span<const target<field, double>> targets, const cell_box& box,
                  int first, int last) const;
-  void complete_box(double t, std::span<const target<field, double>> targets, const cell_box& box) const;
+  void complete_box(double t, const field& u, std::span<const target<field, double>> targets,
+                    const cell_box& box) const;
   void finish_box(const cell_box& box, const cells_job& then) const;
   template <class Body>
   void for_segments(int direction, const cell_box& box, const Body& body) const;
@@ -65,9 +68,11 @@ class upwind_transport final : public transport {
   limited_reconstruction edges_;
   const cell_unknown& unknown_;
   double share_ = 1.0;  ///< of Δt_FE that the limiter is for
+  double kappa_ = 1.0;
   std::unique_ptr<face_fluxes> faces_;
-  std::unique_ptr<force> force_;    ///< null without
-  std::unique_ptr<source> source_;  ///< null without
+  std::unique_ptr<cut_transport> cut_;  ///< null without bodies
+  std::unique_ptr<force> force_;        ///< null without
+  std::unique_ptr<source> source_;      ///< null without
   struct scratch;
   std::vector<line_speeds> speeds_;     ///< of each direction
   aligned_vector<double> inverse_cfl_;  ///< 1/κ of limited fluxes

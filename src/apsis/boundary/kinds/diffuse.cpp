@@ -8,12 +8,80 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <span>
 #include <utility>
 
 #include <fmt/format.h>
 
 namespace apsis {
 namespace {
+
+/// A diffuse wall with any normal: f_in = ρ_w M[1, u_w, T_w] with the part of u_w along the wall. No mass
+/// crosses it. A wall that is cut into flat pieces moves along each of them.
+class oblique_diffuse_wall final : public oblique_wall {
+ public:
+  oblique_diffuse_wall(const velocity_set& velocities, prescribed_state emitted, face_quantity temperature,
+                       std::vector<face_quantity> velocity)
+      : velocities_(velocities),
+        emitted_(std::move(emitted)),
+        temperature_(std::move(temperature)),
+        velocity_(std::move(velocity)) {
+    for (const auto& one : velocity_) moves_ = moves_ || !one.is_constant() || one.at(0.0, {}) != 0.0;
+  }
+
+  std::array<double, 3> velocity(const wall_point& where) const override {
+    std::array<double, 3> u{};
+    double normal = 0.0, square = 0.0;
+    for (std::size_t k = 0; k < velocity_.size(); ++k) {
+      u[k] = velocity_[k].at(where.t, where.at);
+      normal += u[k] * where.normal[k];
+      square += u[k] * u[k];
+    }
+    // Pieces are chords of a curved wall, which deviate from it by less.
+    constexpr double most_of_square = 0.25;
+    if (normal * normal > most_of_square * square)
+      throw input_error(fmt::format(
+          "the velocity of a diffuse wall is {:g} along its normal at t = {:.10g} (the body would "
+          "have to move); give a velocity along the wall",
+          normal, where.t));
+    for (std::size_t k = 0; k < velocity_.size(); ++k) u[k] -= normal * where.normal[k];
+    return u;
+  }
+
+  void emit(const wall_point& where, const double* inward, const double* arriving,
+            double* values) const override {
+    const auto weights = velocities_.weights();
+    const double* emitted = emission(where, {values, static_cast<std::size_t>(velocities_.components())});
+    double arrived = 0.0, leaving = 0.0;
+    for (std::size_t j = 0; j < weights.size(); ++j) {
+      if (inward[j] < 0.0) arrived -= weights[j] * inward[j] * arriving[j];
+      if (inward[j] > 0.0) leaving += weights[j] * inward[j] * emitted[j];
+    }
+    if (!(leaving > 0.0))
+      throw input_error(
+          "the Maxwellian of a wall is 0 at all velocities that leave it (they do not resolve it); increase "
+          "velocity.points, or the temperature of the wall");
+    const double rho = arrived / leaving;
+    for (int k = 0; k < velocities_.components(); ++k) values[k] = rho * emitted[k];
+  }
+
+ private:
+  const double* emission(const wall_point& where, std::span<double> row) const {
+    if (!moves_) return emitted_.at(where.t, where.at, row);
+    const auto u = velocity(where);
+    std::array<double, 5> numbers = {1.0};
+    for (std::size_t k = 0; k < velocity_.size(); ++k) numbers[k + 1] = u[k];
+    numbers[velocity_.size() + 1] = temperature_.at(where.t, where.at);
+    emitted_.write_other({numbers.data(), velocity_.size() + 2}, where.t, row);
+    return row.data();
+  }
+
+  velocity_set velocities_;
+  prescribed_state emitted_;
+  face_quantity temperature_;
+  std::vector<face_quantity> velocity_;
+  bool moves_ = false;
+};
 
 /// A wall of temperature T that moves along itself (Maxwell 1879): of the molecules that arrive, the fraction
 /// α leaves with the Maxwellian of the wall and 1 − α is reflected specularly,
@@ -36,6 +104,14 @@ class diffuse_wall final : public incoming_boundary {
     for (std::size_t j = 0; j < own->mass_flux_.size(); ++j) own->mass_flux_[j] *= inward[j];  // > 0: enters
     own->entropy_bound_ = bound_of_entropy(velocities);
     return own;
+  }
+
+  std::shared_ptr<const oblique_wall> oblique(const velocity_set& velocities) const override {
+    if (!accommodation_.is_constant() || accommodation_.at(0.0, {}) != 1.0)
+      throw input_error(
+          "a diffuse wall of a body reflects a part of the molecules (only full accommodation is possible "
+          "there); leave out its accommodation");
+    return std::make_shared<oblique_diffuse_wall>(velocities, emitted_, temperature_, velocity_);
   }
 
   std::optional<std::vector<double>> entropy_bound() const override { return entropy_bound_; }

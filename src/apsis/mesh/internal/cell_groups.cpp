@@ -48,7 +48,7 @@ double mesh_cutter::outflow(const std::vector<int>& cells) {
   for (int k = 0; k < mesh_.dimensions(); ++k)
     for (const bool upper : {false, true})
       most = std::max(most, out[face{k, upper}.index()] * mesh_.spacing(k));
-  return cfl_number_ * most / volume;
+  return cut_cells::cfl_number * most / volume;
 }
 
 /// Returns the neighbours of a group behind its largest open faces, one cell of each.
@@ -79,12 +79,7 @@ void mesh_cutter::join() {
     }
     for (const auto& [a, b] : pairs) {
       for (const int cell : {a, b})
-        if (kinds_[at(cell)] == kind::whole) {
-          kinds_[at(cell)] = kind::cut;
-          gas_of_cell whole{.volume = mesh_.cell_volume(), .centre = mesh_.centre(cell)};
-          add_walls(cell, whole);
-          gas_.emplace(cell, std::move(whole));
-        }
+        if (kinds_[at(cell)] == kind::whole) make_cut(cell);
       unite(a, b);
       changed = true;
     }

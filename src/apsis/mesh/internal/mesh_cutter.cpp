@@ -23,11 +23,10 @@ constexpr double most_thin_cells = 0.2;
 }  // namespace
 
 mesh_cutter::mesh_cutter(const grid& mesh, const std::vector<outside_function>& bodies,
-                         const std::array<bool, 3>& periodic, double cfl_number, cut_cells& result)
+                         const std::array<bool, 3>& periodic, cut_cells& result)
     : mesh_(mesh),
       bodies_(bodies),
       periodic_(periodic),
-      cfl_number_(cfl_number),
       result_(result),
       phi_([this](const position& x) { return outside(x); }),
       parts_(mesh, phi_),
@@ -35,6 +34,7 @@ mesh_cutter::mesh_cutter(const grid& mesh, const std::vector<outside_function>& 
       parents_(at(mesh.size()), -1) {}
 
 void mesh_cutter::cut() {
+  check_periodic_faces();
   sort_cells();
   join();
   number_groups();
@@ -76,6 +76,25 @@ open_parts::part mesh_cutter::open_face_of(int cell, int direction, bool upper) 
   return parts_.face(direction, corner);
 }
 
+/// Throws input_error if a body that crosses a periodic face does not continue at the opposite one.
+void mesh_cutter::check_periodic_faces() {
+  // Zeros of φ at both faces are found at coordinates that differ by rounding.
+  constexpr double equal_shares = 1e-9;
+  for (int k = 0; k < mesh_.dimensions(); ++k) {
+    if (!periodic_[at(k)]) continue;
+    for (int pencil = 0; pencil < mesh_.pencils(k); ++pencil) {
+      const int first = mesh_.first_cell(k, pencil), last = first + (mesh_.cells(k) - 1) * mesh_.stride(k);
+      if (std::abs(share_of(first, k, false) - share_of(last, k, true)) <= equal_shares) continue;
+      const position x = mesh_.centre(first);
+      throw input_error(fmt::format(
+          "a body crosses the periodic face at {} = {:.6g} near ({:.6g}), and does not continue at the "
+          "opposite "
+          "one (the domain is repeated there); add its image, as a union of both",
+          "xyz"[k], mesh_.edge(k, 0), fmt::join(x.begin(), x.begin() + mesh_.dimensions(), ", ")));
+    }
+  }
+}
+
 /// Finds out what each cell is.
 void mesh_cutter::sort_cells() {
   std::vector<int> cut, thin;
@@ -97,7 +116,7 @@ void mesh_cutter::sort_cells() {
   check_thin_cells(thin, cut.size());
   for (const int cell : cut) measure(cell);
   for (const int cell : cut)
-    if (kinds_[at(cell)] == kind::whole) check_plates(cell);
+    if (kinds_[at(cell)] == kind::whole) check_closed_faces(cell);
   bool any = false;
   for (int cell = 0; cell < mesh_.size(); ++cell) {
     any = any || is_gas(cell);
@@ -153,14 +172,25 @@ bool mesh_cutter::is_like_whole(int cell) {
   return true;
 }
 
-/// Throws input_error if a closed face separates two cells of gas.
-void mesh_cutter::check_plates(int cell) {
+/// Looks at the closed faces of a whole cell. A cut cell may lie behind one, which then is a wall of this
+/// cell. Throws input_error if another whole cell does.
+void mesh_cutter::check_closed_faces(int cell) {
   for (int k = 0; k < mesh_.dimensions(); ++k)
     for (const bool upper : {false, true}) {
       const int beside = neighbour(cell, k, upper);
-      if (beside >= 0 && kinds_[at(beside)] == kind::whole && !(share_of(cell, k, upper) > 0.0))
-        parts_.refuse_as_thin("a body", lowest_corner(cell));
+      if (beside < 0 || !is_gas(beside) || share_of(cell, k, upper) > 0.0) continue;
+      if (kinds_[at(beside)] == kind::whole) parts_.refuse_as_thin("a body", lowest_corner(cell));
+      make_cut(cell);
+      return;
     }
+}
+
+/// Gives a whole cell walls of its own.
+void mesh_cutter::make_cut(int cell) {
+  gas_of_cell whole{.volume = mesh_.cell_volume(), .centre = mesh_.centre(cell)};
+  kinds_[at(cell)] = kind::cut;
+  add_walls(cell, whole);
+  gas_.emplace(cell, std::move(whole));
 }
 
 /// Measures the gas of a cell by the cones from the middle of the zeros of φ to the open faces: the cone to

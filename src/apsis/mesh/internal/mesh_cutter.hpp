@@ -14,7 +14,7 @@ namespace apsis {
 class mesh_cutter {
  public:
   mesh_cutter(const grid& mesh, const std::vector<outside_function>& bodies,
-              const std::array<bool, 3>& periodic, double cfl_number, cut_cells& result);
+              const std::array<bool, 3>& periodic, cut_cells& result);
   void cut();
 
  private:
@@ -48,13 +48,15 @@ class mesh_cutter {
 
   open_parts::part open_face_of(int cell, int direction, bool upper);
   double share_of(int cell, int direction, bool upper) { return open_face_of(cell, direction, upper).share; }
+  void check_periodic_faces();
   void sort_cells();
   void check_thin_cells(const std::vector<int>& thin, std::size_t of_bodies) const;
   void check_bodies() const;
   void measure(int cell);
   bool is_whole(int cell);
   bool is_like_whole(int cell);
-  void check_plates(int cell);
+  void check_closed_faces(int cell);
+  void make_cut(int cell);
   void add_walls(int cell, gas_of_cell& to);
   position on_surface(position from, const std::array<double, 3>& normal) const;
   std::vector<way_out> ways_out(int cell);
@@ -73,7 +75,6 @@ class mesh_cutter {
   const grid& mesh_;
   const std::vector<outside_function>& bodies_;
   std::array<bool, 3> periodic_;
-  double cfl_number_;
   cut_cells& result_;
   outside_function phi_;
   open_parts parts_;

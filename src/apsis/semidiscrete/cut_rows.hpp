@@ -1,0 +1,53 @@
+#pragma once
+
+#include <array>
+#include <span>
+
+namespace apsis {
+
+/// Loops over the rows of cut cells, for the instruction set of this processor. `outward` is the share of the
+/// gas of a cell that leaves through a face or wall per unit of time, of every component: < 0 where it
+/// enters.
+namespace cut_rows {
+
+/// The gradient of a row: one row for each direction.
+using gradient = std::array<double*, 3>;
+
+/// outward ← Σ_k vector[k] speeds[k].
+void project(const std::array<double, 3>& vector, const std::array<const double*, 3>& speeds, int directions,
+             int n, double* outward);
+
+/// A neighbour in a least-squares gradient.
+struct neighbour {
+  const double* row;
+  std::array<double, 3> weight;
+};
+
+/// slopes[d] ← Σ weight[d] (row − u) over the neighbours.
+void fit(const double* u, std::span<const neighbour> around, int directions, int n, const gradient& slopes);
+
+/// Sums over the faces and walls of a cell for its limiter, a row each.
+struct demand_rows {
+  double *lowest, *size, *outflow, *increase;
+};
+
+/// Adds a face or wall at a vector from the centroid, for a step of length `step`.
+void add_demand(const double* outward, double step, const gradient& slopes,
+                const std::array<double, 3>& vector, int directions, int n, const demand_rows& demand);
+
+/// Multiplies the slopes by the factor of the limiter. `kept`: the share of u that transport may take.
+void limit(const double* u, const demand_rows& demand, double kept, int directions, int n,
+           const gradient& slopes);
+
+/// values ← u + slopes·vector where outward > 0, and 0 for negligible u; elsewhere they stay as they are.
+void leave(const double* u, const double* outward, const gradient& slopes,
+           const std::array<double, 3>& vector, int directions, int n, double* values);
+
+/// rate ← rate − outward values.
+void take(const double* outward, const double* values, int n, double* rate);
+
+/// acc ← (fresh ? 0 : acc) + α u + β rate.
+void add(const double* u, const double* rate, double alpha, double beta, bool fresh, int n, double* acc);
+
+}  // namespace cut_rows
+}  // namespace apsis

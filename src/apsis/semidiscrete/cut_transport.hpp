@@ -1,0 +1,106 @@
+#pragma once
+
+#include <apsis/boundary/domain.hpp>
+#include <apsis/boundary/oblique_wall.hpp>
+#include <apsis/exec/parallel.hpp>
+#include <apsis/integrate/problem.hpp>
+#include <apsis/mesh/cut_cells.hpp>
+#include <apsis/mesh/field.hpp>
+#include <apsis/model/model.hpp>
+#include <apsis/semidiscrete/cut_rows.hpp>
+#include <apsis/semidiscrete/face_fluxes.hpp>
+#include <apsis/semidiscrete/limited_reconstruction.hpp>
+#include <apsis/semidiscrete/transport.hpp>
+
+#include <array>
+#include <memory>
+#include <span>
+#include <vector>
+
+namespace apsis {
+
+/// Transport in cut cells, by fluxes between straight lines. A cut cell i with the volume V_i of gas and the
+/// centroid x_i has the line
+///     f_i + ϑ g·(x − x_i),   g by least squares from the neighbours behind open faces (weights 1/distance²),
+/// with ϑ ≤ 1 of each velocity such that all values that leave are nonnegative, and a step lets out no more
+/// than f_i. Then
+///     T_i = (1/V_i) (Σ_faces |v·e| a (f_up) in − out + Σ_walls A v·n f_w),
+/// where f_up is the line of the donor at the middle of the open face, or the limited edge value of a whole
+/// cell. At a wall with the normal n into the gas, f_w is the line for v·n < 0 and what the wall emits for
+/// v·n > 0. Both sides of a face use the same value, so that the invariants are conserved.
+///
+/// Values remain nonnegative within Δt_FE: what leaves is at most f_i, and what enters is nonnegative.
+class cut_transport {
+ public:
+  /// `equation` and `faces` must outlive the object. Throws input_error if a boundary of a body cannot have
+  /// any normal.
+  cut_transport(const model& equation, std::shared_ptr<domain> space, const limited_reconstruction& edges,
+                face_fluxes& faces);
+
+  /// For steps of at most this length, in which transport may take the share `kept` of a value.
+  void limit_for_steps(double step, double kept);
+  /// Computes the lines of u.
+  void prepare(const field& u);
+  /// Adds what enters a whole cell from a cut one, at an end of a segment. Concurrent calls must differ in
+  /// the cell at the end.
+  void complete(int surface, int place, const field& u, std::span<const target<field, double>> targets);
+  /// Adds T(t, u) to the cut cells, after the whole cells are complete, and then calls `then` for each.
+  void add(double t, const field& u, std::span<const target<field, double>> targets, const cells_job& then);
+
+ private:
+  /// An open face of a group, or a piece of wall.
+  struct way {
+    enum class kind { group, whole, domain, wall } to;
+    int number;                     ///< of the group, end of the border, open face or wall
+    std::array<double, 3> outward,  ///< area × normal out of the gas / volume
+        from_centre,                ///< vector to its middle
+        from_other = {};            ///< the same from the centroid of the other group
+    int surface = -1;               ///< of the border, or the face of the domain
+  };
+  struct neighbour {
+    int cell;
+    std::array<double, 3> weight;
+  };
+  struct group {
+    int cell;  ///< the first of its cells
+    std::vector<way> ways;
+    std::vector<neighbour> around;
+  };
+  struct scratch {
+    field rows;
+    std::vector<cut_rows::neighbour> around;
+  };
+
+  void add_ways(int number);
+  void add_neighbours(int number);
+  cut_rows::gradient lines_of(int group);
+  void fit_group(const field& u, int number, scratch& own);
+  void add_group(double t, const field& u, int number, double* rate, scratch& own);
+  void add_way(double t, const field& u, const group& of, int number, const way& one, double* rate,
+               scratch& own);
+  void domain_values(double t, const way& one, double* values, scratch& own);
+  void make_scratch();
+
+  const cut_cells& cut() const { return *space_->mesh().cut(); }
+  int directions() const { return space_->mesh().dimensions(); }
+
+  const model& equation_;
+  std::shared_ptr<domain> space_;
+  face_fluxes& faces_;
+  bool flat_, limited_;
+  int ghosts_;
+  double step_ = 0.0, kept_ = 1.0;
+  std::array<const double*, 3> speeds_ = {};
+  std::array<std::vector<double>, 6> inward_;               ///< speed away from each face of a cell
+  std::vector<std::shared_ptr<const oblique_wall>> walls_;  ///< of boxes and bodies
+  std::vector<group> groups_;
+  /// The group and the way beyond each end at the border: [surface][place].
+  struct border_end {
+    int group = -1, way = -1;
+  };
+  std::vector<std::vector<border_end>> ends_;
+  field slopes_;  ///< limited, [group][direction]
+  per_thread<scratch> scratch_;
+};
+
+}  // namespace apsis

@@ -1,0 +1,342 @@
+// Transport past bodies: a gas at rest, conservation, positivity, images, threads, and what no body can have.
+#include <apsis/semidiscrete/cut_transport.hpp>
+
+#include <apsis/boundary/boundary_registry.hpp>
+#include <apsis/core/errors.hpp>
+#include <apsis/exec/parallel.hpp>
+#include <apsis/model/gas_model.hpp>
+#include <apsis/model/model_registry.hpp>
+#include <apsis/scheme/reconstruction_registry.hpp>
+#include <apsis/semidiscrete/problem_builder.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <random>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace cut_transport_test {
+namespace {
+
+using apsis::field;
+using apsis::grid;
+using apsis::outside_function;
+using apsis::position;
+
+outside_function ball(position centre, double r) {
+  return [=](const position& at) {
+    return std::hypot(at[0] - centre[0], at[1] - centre[1], at[2] - centre[2]) - r;
+  };
+}
+
+outside_function either(const outside_function& a, const outside_function& b) {
+  return [=](const position& at) { return std::min(a(at), b(at)); };
+}
+
+/// A gas past bodies in a square or cube of side 2.
+struct gas_past_bodies {
+  std::shared_ptr<const apsis::relaxation_model> equation;
+  std::unique_ptr<apsis::problem_builder> builder;
+  std::unique_ptr<apsis::semidiscrete_problem> problem;
+
+  const grid& mesh() const { return builder->mesh(); }
+  /// The Maxwellian of density 1, temperature 1 and this velocity in each cell.
+  field uniform(double ux = 0.0) const {
+    const auto count = static_cast<std::size_t>(equation->moment_count());
+    std::vector<double> omega(count, 0.0);
+    omega[0] = 1.0;
+    omega[1] = ux;
+    omega.back() = 0.5 * equation->as_gas()->molecules().degrees_of_freedom() + 0.5 * ux * ux;
+    field f(mesh().size(), equation->components());
+    for (int cell = 0; cell < f.cells(); ++cell)
+      if (mesh().solid(cell) < 0) equation->equilibrium(omega.data(), f.row(cell));
+    return f;
+  }
+  /// acc = α u + β T(u).
+  field step(const field& u, double alpha, double beta) const {
+    field acc(u.cells(), u.components());
+    const apsis::target<field, double> to{&acc, alpha, beta, true};
+    problem->add_transport(0.0, u, {&to, 1});
+    return acc;
+  }
+};
+
+struct choices {
+  int dimensions = 2, cells = 20;
+  std::vector<outside_function> bodies;
+  std::string model = "bgk", scheme = "weno5-z", boundary = "periodic";
+  bool limited = true;
+  double wall_temperature = 1.0;
+  std::vector<apsis::face_quantity> wall_velocity = {};
+};
+
+gas_past_bodies make(const choices& of) {
+  const int d = of.dimensions;
+  auto config = apsis::default_config(apsis::find_model(of.model));
+  config.space_dimensions = d;
+  config.velocity = {4.0, d == 2 ? 10 : 6};
+  config.parameters["velocity_dimensions"] = d;
+  config.parameters["degrees_of_freedom"] = 3;
+  const std::shared_ptr<const apsis::model> made = apsis::find_model(of.model).make(config);
+  gas_past_bodies gas{{made, made->as_relaxation()}, nullptr, nullptr};
+  gas.builder = std::make_unique<apsis::problem_builder>(*gas.equation);
+  const bool is_periodic = of.boundary == "periodic";
+  const grid plain(d, {of.cells, of.cells, d > 2 ? of.cells : 1}, {-1, -1, -1}, {1, 1, 1});
+  const grid mesh = plain.with_cut_cells(std::make_shared<apsis::cut_cells>(
+      plain, of.bodies, std::array{is_periodic, is_periodic, is_periodic}));
+  gas.builder->on(mesh)
+      .with_discretization("finite-difference")
+      .with_reconstruction(apsis::find_reconstruction(of.scheme).make())
+      .with_epsilon([](const position&) { return 1.0; });
+  if (of.limited) gas.builder->with_positivity_limiter();
+  for (std::size_t k = 0; !is_periodic && k < 2 * static_cast<std::size_t>(d); ++k)
+    gas.builder->with_boundary(apsis::face_of(k), apsis::find_boundary(of.boundary).variables == nullptr
+                                                      ? apsis::make_boundary(of.boundary)
+                                                      : apsis::make_boundary(of.boundary, *gas.equation));
+  apsis::face_quantities wall{{"T", {of.wall_temperature}}};
+  if (!of.wall_velocity.empty()) wall["velocity"] = of.wall_velocity;
+  for (int body = 0; body < mesh.obstacles(); ++body)
+    gas.builder->with_solid(body, apsis::make_boundary("diffuse", *gas.equation, wall));
+  gas.problem = gas.builder->build();
+  return gas;
+}
+
+double largest(const field& u) {
+  double most = 0.0;
+  for (int cell = 0; cell < u.cells(); ++cell)
+    for (int k = 0; k < u.components(); ++k) most = std::max(most, std::abs(u.row(cell)[k]));
+  return most;
+}
+
+double smallest(const field& u) {
+  double least = 1e300;
+  for (int cell = 0; cell < u.cells(); ++cell)
+    for (int k = 0; k < u.components(); ++k) least = std::min(least, u.row(cell)[k]);
+  return least;
+}
+
+/// Values over ten decades, with exact zeros. Cells of a group have the same.
+field random_state(const grid& mesh, int components, std::mt19937& generator) {
+  std::uniform_real_distribution<double> exponent(-10.0, 0.0), choice(0.0, 1.0);
+  field f(mesh.size(), components);
+  for (int cell = 0; cell < f.cells(); ++cell) {
+    if (mesh.solid(cell) >= 0) continue;
+    const int group = mesh.cut_group(cell);
+    const int first = group < 0 ? cell : mesh.cut()->groups()[apsis::at(group)].cells.front();
+    for (int k = 0; k < components; ++k)
+      f.row(cell)[k] = first < cell              ? f.row(first)[k]
+                       : choice(generator) < 0.2 ? 0.0
+                                                 : std::pow(10.0, exponent(generator));
+  }
+  return f;
+}
+
+/// Sums of the densities of the invariants times the volume of gas.
+std::vector<double> integrals(const gas_past_bodies& gas, const field& u) {
+  const std::size_t count = gas.equation->invariants().size();
+  std::vector<double> sum(count), here(count);
+  for (int cell = 0; cell < u.cells(); ++cell) {
+    gas.equation->invariant_densities(u.row(cell), here.data());
+    for (std::size_t k = 0; k < count; ++k)
+      sum[k] += here[k] * gas.mesh().gas_share(cell) * gas.mesh().cell_volume();
+  }
+  return sum;
+}
+
+std::vector<choices> some_flows() {
+  const std::vector<outside_function> discs = {ball({0.21, 0.13, 0}, 0.4), ball({-0.32, -0.2, 0}, 0.45)};
+  return {{.bodies = discs},
+          {.bodies = discs, .boundary = "outflow"},
+          {.bodies = {ball({-0.95, 0.03, 0}, 0.41)}, .boundary = "diffuse"},
+          {.bodies = {ball({0.07, -1.0, 0}, 0.5)}, .boundary = "symmetry"},
+          {.bodies = {either(ball({0.07, -1.0, 0}, 0.5), ball({0.07, 1.0, 0}, 0.5))}, .scheme = "upwind5"},
+          {.bodies = discs, .scheme = "upwind1"},
+          {.bodies = discs, .limited = false},
+          {.bodies = discs, .model = "es-bgk"},
+          {.dimensions = 3, .cells = 12, .bodies = {ball({0.1, -0.05, 0.03}, 0.55)}},
+          {.dimensions = 3, .cells = 12, .bodies = {ball({0.1, -0.05, 1.0}, 0.55)}, .boundary = "diffuse"}};
+}
+
+}  // namespace
+
+TEST(cut_transport, leaves_a_gas_at_rest_alone) {
+  for (const choices& one : some_flows()) {
+    const gas_past_bodies gas = make(one);
+    ASSERT_GT(gas.mesh().cut()->groups().size(), 10U);
+    const field u = gas.uniform();
+    // In units of the fluxes through the faces of a cell.
+    EXPECT_LT(largest(gas.step(u, 0.0, 1.0)) * gas.mesh().spacing(0) / 4.0, 1e-14)
+        << one.scheme << one.boundary;
+    // The force on each wall is its area times the pressure.
+    const auto rates = gas.problem->budget_rates();
+    for (const double rate : rates) EXPECT_TRUE(std::isfinite(rate));
+  }
+}
+
+TEST(cut_transport, conserves_what_walls_do_not_give) {
+  std::mt19937 generator(1);
+  for (const choices& one : some_flows()) {
+    const gas_past_bodies gas = make(one);
+    const field u = random_state(gas.mesh(), gas.equation->components(), generator);
+    const auto change = integrals(gas, gas.step(u, 0.0, 1.0));
+    const auto rates = gas.problem->budget_rates();
+    const std::size_t count = change.size();
+    std::vector<double> given(count), sizes(count);
+    for (std::size_t k = 0; k < rates.size(); ++k) {
+      given[k % count] += rates[k];
+      sizes[k % count] += std::abs(rates[k]);
+    }
+    // Relative to what passes the border: sums of some thousand terms.
+    for (std::size_t k = 0; k < count; ++k)
+      EXPECT_NEAR(change[k], given[k], 1e-12 * (1.0 + sizes[k])) << one.scheme << " " << one.boundary << k;
+    // No mass passes a wall, up to rounding of fluxes of size 10.
+    const auto& space = gas.builder->space();
+    std::size_t end = 0;
+    for (const auto& surface : space.budget_surfaces()) {
+      const std::size_t ends = space.ends_at(surface);
+      for (std::size_t k = end; k < end + ends && surface.solid >= 0; ++k)
+        EXPECT_NEAR(rates[k * count], 0.0, 1e-14) << one.scheme << one.boundary;
+      end += ends;
+    }
+  }
+}
+
+TEST(cut_transport, keeps_random_states_nonnegative_in_steps_within_the_bound) {
+  std::mt19937 generator(2);
+  std::uniform_real_distribution<double> place(-1.0, 1.0), size(0.25, 0.6);
+  int runs = 0, broken = 0;
+  for (int k = 0; k < 40; ++k) {
+    choices one{.cells = 16 + k % 4,
+                .bodies = {ball({place(generator), place(generator), 0}, size(generator)),
+                           ball({place(generator), place(generator), 0}, size(generator))},
+                .scheme = k % 2 == 0 ? "weno5-z" : "upwind5",
+                .boundary = k % 3 == 0 ? "diffuse" : "outflow"};
+    if (k % 8 == 7) {
+      one.dimensions = 3;
+      one.cells = 10;
+      one.bodies = {ball({0.4 * place(generator), 0.4 * place(generator), 0.4 * place(generator)}, 0.6)};
+    }
+    try {
+      const gas_past_bodies gas = make(one);
+      field u = random_state(gas.mesh(), gas.equation->components(), generator);
+      const double dt = gas.problem->forward_euler_step(0.0, u);
+      for (int step = 0; step < 4; ++step) {
+        const field longer = gas.step(u, 1.0, 1.5 * dt);
+        broken += smallest(longer) < 0.0 ? 1 : 0;
+        u = gas.step(u, 1.0, dt);
+        ASSERT_GE(smallest(u), 0.0) << k << " " << step;
+      }
+      ++runs;
+    } catch (const apsis::input_error& error) {
+      EXPECT_THAT(error.what(), testing::AnyOf(testing::HasSubstr("thinner than a cell"),
+                                               testing::HasSubstr("has no wall in the domain")));
+    }
+  }
+  EXPECT_GT(runs, 20);
+  EXPECT_GT(broken, 20);
+}
+
+TEST(cut_transport, gives_the_cells_of_a_group_the_same_values) {
+  std::mt19937 generator(3);
+  const gas_past_bodies gas = make(some_flows().front());
+  const field u = gas.step(random_state(gas.mesh(), gas.equation->components(), generator), 1.0, 0.01);
+  int joined = 0;
+  for (const auto& group : gas.mesh().cut()->groups())
+    for (const int cell : group.cells) {
+      joined += cell > group.cells.front() ? 1 : 0;
+      for (int k = 0; k < u.components(); ++k) EXPECT_EQ(u.row(cell)[k], u.row(group.cells.front())[k]);
+    }
+  EXPECT_GT(joined, 5);
+}
+
+TEST(cut_transport, commutes_with_rotations_by_right_angles) {
+  // x → y, y → −x of the body, of the state and of the velocities.
+  const auto with = [](position centre) {
+    return make({.cells = 18, .bodies = {ball(centre, 0.47)}, .boundary = "outflow"});
+  };
+  const gas_past_bodies gas = with({0.21, 0.13, 0}), turned = with({-0.13, 0.21, 0});
+  const int n = 18, points = 10;
+  field u = gas.uniform(), v = turned.uniform();
+  const auto image_of = [&](int cell) { return (n - 1 - cell % n) * n + cell / n; };
+  const auto velocity_of = [&](int k) {
+    const int set = k / (points * points), i = k / points % points, j = k % points;
+    return set * points * points + (points - 1 - j) * points + i;
+  };
+  for (int cell = 0; cell < u.cells(); ++cell)
+    for (int k = 0; k < u.components(); ++k) {
+      const position x = gas.mesh().centre(cell);
+      if (gas.mesh().solid(cell) < 0) u.row(cell)[k] *= 1.5 + std::sin(3.0 * x[0] + x[1] + 0.1 * k);
+      v.row(image_of(cell))[velocity_of(k)] = u.row(cell)[k];
+    }
+  const field a = gas.step(u, 0.0, 1.0), b = turned.step(v, 0.0, 1.0);
+  double difference = 0.0;
+  for (int cell = 0; cell < u.cells(); ++cell)
+    for (int k = 0; k < u.components(); ++k)
+      difference = std::max(difference, std::abs(a.row(cell)[k] - b.row(image_of(cell))[velocity_of(k)]));
+  EXPECT_LT(difference, 1e-12 * largest(a));
+}
+
+TEST(cut_transport, does_not_depend_on_the_number_of_threads) {
+  std::mt19937 generator(4);
+  const gas_past_bodies gas = make(some_flows().front());
+  const field u = random_state(gas.mesh(), gas.equation->components(), generator);
+  const field one = gas.step(u, 1.0, 0.01);
+  apsis::set_threads(3);
+  const field three = gas.step(u, 1.0, 0.01);
+  apsis::set_threads(1);
+  for (int cell = 0; cell < u.cells(); ++cell)
+    for (int k = 0; k < u.components(); ++k) ASSERT_EQ(one.row(cell)[k], three.row(cell)[k]);
+}
+
+TEST(cut_transport, of_a_box_on_edges_is_that_of_a_solid_box) {
+  const outside_function box = [](const position& x) {
+    return std::max(std::abs(x[0]), std::abs(x[1])) - 0.5;
+  };
+  const gas_past_bodies body = make({.cells = 16, .bodies = {box}});
+  apsis::problem_builder builder(*body.equation);
+  builder.on(grid(2, {16, 16, 1}, {-1, -1, -1}, {1, 1, 1}).with_solids({{{4, 4, 0}, {8, 8, 1}}}))
+      .with_discretization("finite-difference")
+      .with_reconstruction(apsis::find_reconstruction("weno5-z").make())
+      .with_positivity_limiter()
+      .with_epsilon([](const position&) { return 1.0; })
+      .with_solid(0, apsis::make_boundary("diffuse", *body.equation, {{"T", {1.0}}}));
+  const auto solid = builder.build();
+  std::mt19937 generator(5);
+  const field u = random_state(body.mesh(), body.equation->components(), generator);
+  const field a = body.step(u, 0.0, 1.0);
+  field b(u.cells(), u.components());
+  const apsis::target<field, double> to{&b, 0.0, 1.0, true};
+  // The same limiter: it depends on the step, and that of a mesh with bodies is half as long.
+  solid->limit_for_steps(0.5);
+  solid->add_transport(0.0, u, {&to, 1});
+  for (int cell = 0; cell < u.cells(); ++cell)
+    for (int k = 0; k < u.components(); ++k) ASSERT_EQ(a.row(cell)[k], b.row(cell)[k]) << cell;
+}
+
+TEST(cut_transport, refuses_boundaries_and_walls_that_a_body_cannot_have) {
+  const auto with = [](const std::string& kind, const apsis::face_quantities& values) {
+    return [=] {
+      gas_past_bodies gas = make({.bodies = {ball({0.1, 0, 0}, 0.5)}});
+      gas.builder->with_solid(
+          0, values.empty() ? apsis::make_boundary(kind) : apsis::make_boundary(kind, *gas.equation, values));
+      gas.builder->build();
+    };
+  };
+  EXPECT_THAT(with("outflow", {}), testing::ThrowsMessage<apsis::input_error>(
+                                       testing::HasSubstr("that serves faces of cells alone")));
+  EXPECT_THAT(with("diffuse", {{"T", {1.0}}, {"accommodation", {0.5}}}),
+              testing::ThrowsMessage<apsis::input_error>(testing::HasSubstr("full accommodation")));
+  EXPECT_THAT(
+      [] {
+        const gas_past_bodies gas = make({.bodies = {ball({0.1, 0, 0}, 0.5)}, .wall_velocity = {1.0, 0.0}});
+        gas.step(gas.uniform(), 1.0, 0.1);
+      },
+      testing::ThrowsMessage<apsis::input_error>(testing::HasSubstr("along its normal")));
+}
+
+}  // namespace cut_transport_test

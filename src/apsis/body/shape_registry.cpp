@@ -47,13 +47,15 @@ std::vector<shape_key> common_shape_keys(int dimensions) {
   shape_key rotate = {.name = "rotate",
                       .doc = "angle in degrees, about the origin, before the shift",
                       .kind = shape_value_kind::number,
-                      .value = 0.0};
+                      .value = 0.0,
+                      .is_length = false};
   if (dimensions == 3)
     rotate = {.name = "rotate",
               .doc = "axis through the origin and angle in degrees, before the shift",
               .kind = shape_value_kind::vector,
               .value = std::vector<double>{0.0, 0.0, 1.0, 0.0},
-              .components = 4};
+              .components = 4,
+              .is_length = false};
   return {{.name = "shift",
            .doc = "vector that is added to all points",
            .kind = shape_value_kind::vector,

@@ -48,6 +48,7 @@ struct shape_key {
   std::size_t components = 0;  ///< of a vector and of each point; 0 stands for the dimensions of the mesh
   std::size_t fewest = 0;      ///< least number of points or shapes
   std::size_t most = 0;        ///< largest number of points or shapes; 0 stands for no limit
+  bool is_length = true;       ///< whether its numbers are lengths; others have no unit
   bool planar = false;         ///< whether its shapes lie in the plane (x, y), in a body of 3 dimensions
 };
 

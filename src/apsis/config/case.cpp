@@ -1,6 +1,7 @@
 #include <apsis/config/case.hpp>
 
 #include <apsis/boundary/boundary_registry.hpp>
+#include <apsis/config/body_reader.hpp>
 #include <apsis/config/case_resolver.hpp>
 #include <apsis/config/case_schema.hpp>
 #include <apsis/config/case_text.hpp>
@@ -55,7 +56,7 @@ override_form form_of(const std::string& path, const std::string& value) {
     return {path.ends_with(".name") || path.ends_with(".normal"), "write for example 0.5 or [0.5, 0.2]"};
   const bool list = is_list(path);
   const bool may_be_list = list || path.rfind("initial.", 0) == 0 || path.rfind("boundary.", 0) == 0 ||
-                           path.rfind("space.solid.", 0) == 0;
+                           path.rfind("space.solid.", 0) == 0 || path.rfind("space.body.", 0) == 0;
   const bool bracket = may_be_list && value.find('[') == 0;
   return {!bracket, type_advice(list && bracket ? key_type::text_list : key_type::text)};
 }
@@ -190,7 +191,8 @@ grid make_mesh(const case_config& config) {
     upper[k] = config.space.domain.at(k)[1];
   }
   const grid mesh(static_cast<int>(config.space.cells.size()), cells, lower, upper);
-  return config.solids.empty() ? mesh : mesh.with_solids(solid_boxes(config, mesh));
+  const grid with_boxes = config.solids.empty() ? mesh : mesh.with_solids(solid_boxes(config, mesh));
+  return config.bodies.empty() ? with_boxes : with_boxes.with_cut_cells(cut_cells_of(config, with_boxes));
 }
 
 std::vector<std::string> case_names() {

@@ -66,6 +66,7 @@ struct case_config {
   } space;
   std::array<face_table, 6> faces;  ///< tables [boundary.NAME], by face::index(), of models with space
   std::vector<solid_table> solids;  ///< tables [[space.solid]]
+  std::vector<body_table> bodies;   ///< tables [[space.body]]
   /// Table [force], of models with a velocity grid.
   struct {
     std::optional<std::vector<std::string>> acceleration;  ///< formulas in t and the position

@@ -63,7 +63,7 @@ void case_checks::check_mesh() const {
     check_interval(config_.space.domain[k], config_.space.cells[k]);
   check_discretization();
   check_faces();
-  if (!config_.solids.empty()) check_solids();
+  if (!config_.solids.empty() || !config_.bodies.empty()) check_solids();
   make_acceleration(config_, *checked_model(config_));
   const int of_line = config_.velocity.points;
   double points = std::max(1, of_line);
@@ -132,15 +132,35 @@ void case_checks::check_discretization() const {
 void case_checks::check_solids() const {
   make_mesh(config_);
   const auto walls = make_solid_walls(config_, checked_model(config_));
-  for (std::size_t k = 0; k < walls.size(); ++k)
+  for (std::size_t k = 0; k < config_.solids.size(); ++k)
     if (walls[k]->periodic())
       throw input_error(place_of(config_, fmt::format("space.solid.{}.kind", k + 1)),
                         "a solid box cannot be periodic (nothing lies behind its faces); give it a wall, "
                         "for example kind = \"diffuse\"");
+  for (std::size_t k = 0; k < config_.bodies.size(); ++k) check_body(k, *walls[config_.solids.size() + k]);
+  const bool boxes = !config_.solids.empty();
   if (const std::string why = discretization_of(config_).why_without_solids(); !why.empty())
-    throw input_error(place_of(config_, "space.solid.1"),
-                      fmt::format("solid boxes need point values ({}); write {} = \"finite-difference\"", why,
-                                  discretization_key));
+    throw input_error(
+        place_of(config_, boxes ? "space.solid.1" : "space.body.1"),
+        fmt::format("solid boxes and bodies need point values ({}); write {} = \"finite-difference\"", why,
+                    discretization_key));
+}
+
+/// A wall of a body has any normal.
+void case_checks::check_body(std::size_t k, const boundary& wall) const {
+  const std::string path = fmt::format("space.body.{}", k + 1);
+  const source_place place = place_of_emitter(config_, path);
+  std::shared_ptr<const oblique_wall> made;
+  try {
+    made = wall.oblique(checked_model(config_)->velocities());
+  } catch (const input_error& problem) {
+    throw input_error(place, problem.what());
+  }
+  if (!made)
+    throw input_error(place,
+                      fmt::format("a body cannot have the wall '{}' (its normal may have any direction); "
+                                  "write kind = \"diffuse\"",
+                                  config_.bodies[k].kind));
 }
 
 void case_checks::check_faces() const {

@@ -30,6 +30,7 @@ class case_checks {
   void check_interval(const interval& ends, int cells) const;
   void check_discretization() const;
   void check_solids() const;
+  void check_body(std::size_t k, const boundary& wall) const;
   void check_faces() const;
   void check_epsilon() const;
   void check_fields() const;

@@ -192,6 +192,15 @@ std::string schema_text() {
       "      Boundary condition at the faces of the box, with numbers or formulas in t and the position.\n"
       "  name (text, default \"solid-1\", …)\n"
       "      Names the columns of the history for what its walls give to the gas.\n"
+      "\n[[space.body]], in two and three space dimensions\n"
+      "  shape (text) and its keys (apsis list shapes)\n"
+      "      Shape of a body that cuts cells, with numbers or formulas without variables. Lists of tables "
+      "are\n"
+      "      shapes that it combines: shapes = [{ shape = \"circle\", ... }, ...].\n"
+      "  kind (text, default \"diffuse\") and its variables (apsis list boundaries)\n"
+      "      Boundary condition at its wall, with numbers or formulas in t and the position.\n"
+      "  name (text, default \"body-1\", …)\n"
+      "      Names the columns of the history for what its wall gives to the gas.\n"
       "\n[[output.probe]], of models with space\n"
       "  name (text, default \"probe-1\", ...), from, to (points [x, y, z]), points (integer, default 101)\n"
       "      The fields along the line between two points, interpolated linearly, in probes/NAME.csv.\n"
@@ -248,6 +257,34 @@ std::string numbers_text(const std::vector<double>& numbers) {
   std::vector<std::string> texts;
   for (const double x : numbers) texts.push_back(number_text(x));
   return fmt::format("{}", fmt::join(texts, ", "));
+}
+
+/// Returns the keys of a shape and their values in TOML.
+std::vector<std::pair<std::string, std::string>> entries_of(const shape_table& table) {
+  const auto list = [](const std::vector<double>& numbers) { return "[" + numbers_text(numbers) + "]"; };
+  struct text_of {
+    decltype(list)& as_list;
+    std::string operator()(double number) const { return number_text(number); }
+    std::string operator()(const std::vector<double>& vector) const { return as_list(vector); }
+    std::string operator()(const std::vector<std::vector<double>>& points) const {
+      std::vector<std::string> all;
+      for (const auto& one : points) all.push_back(as_list(one));
+      return fmt::format("[{}]", fmt::join(all, ", "));
+    }
+    std::string operator()(const std::string& text) const { return quoted(text); }
+  };
+  std::vector<std::pair<std::string, std::string>> all = {{"shape", quoted(table.shape)}};
+  for (const auto& [key, value] : table.values) all.emplace_back(key, std::visit(text_of{list}, value));
+  for (const auto& [key, parts] : table.parts) {
+    std::vector<std::string> texts;
+    for (const shape_table& part : parts) {
+      std::vector<std::string> inner;
+      for (const auto& [name, value] : entries_of(part)) inner.push_back(fmt::format("{} = {}", name, value));
+      texts.push_back(fmt::format("{{ {} }}", fmt::join(inner, ", ")));
+    }
+    all.emplace_back(key, fmt::format("[{}]", fmt::join(texts, ", ")));
+  }
+  return all;
 }
 
 void add_face(std::string& out, const std::string& side, const face_table& table) {
@@ -308,6 +345,11 @@ std::string to_toml(const case_config& config) {
         fmt::format("\n[[space.solid]]\nname = {}\nfrom = [{}]\nto = [{}]\nkind = {}\n", quoted(solid.name),
                     numbers_text(solid.from), numbers_text(solid.to), quoted(solid.kind));
     add_state(out, solid.values);
+  }
+  for (const auto& body : config.bodies) {
+    out += fmt::format("\n[[space.body]]\nname = {}\nkind = {}\n", quoted(body.name), quoted(body.kind));
+    for (const auto& [key, value] : entries_of(body.shape)) out += fmt::format("{} = {}\n", key, value);
+    add_state(out, body.values);
   }
   if (!config.source_term.empty()) {
     out += "\n[source]\n";

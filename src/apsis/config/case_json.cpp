@@ -30,6 +30,15 @@ nlohmann::ordered_json to_json(const state_formulas& state) {
   return out;
 }
 
+nlohmann::ordered_json to_json(const shape_table& table) {
+  nlohmann::ordered_json out = {{"shape", table.shape}};
+  for (const auto& [key, value] : table.values)
+    std::visit([&, name = key](const auto& one) { out[name] = one; }, value);
+  for (const auto& [key, parts] : table.parts)
+    for (const shape_table& part : parts) out[key].push_back(to_json(part));
+  return out;
+}
+
 void add_parts(nlohmann::ordered_json& out, const std::vector<initial_part>& parts) {
   for (const auto& part : parts) {
     nlohmann::ordered_json one = {{"weight", part.weight}};
@@ -83,6 +92,12 @@ nlohmann::ordered_json to_json(const case_config& config) {
         {"name", solid.name}, {"from", solid.from}, {"to", solid.to}, {"kind", solid.kind}};
     if (!solid.values.empty()) one.update(to_json(solid.values));
     out["space"]["solid"].push_back(std::move(one));
+  }
+  for (const auto& body : config.bodies) {
+    nlohmann::ordered_json one = {{"name", body.name}, {"kind", body.kind}};
+    one.update(to_json(body.shape));
+    if (!body.values.empty()) one.update(to_json(body.values));
+    out["space"]["body"].push_back(std::move(one));
   }
   if (!config.source_term.empty()) out["source_term"] = to_json(config.source_term);
   if (!config.prescribed.empty()) out["initial"] = to_json(config.prescribed);

@@ -2,6 +2,7 @@
 
 #include <apsis/boundary/domain.hpp>
 #include <apsis/config/surface_tables.hpp>
+#include <apsis/mesh/cut_cells.hpp>
 #include <apsis/model/model_registry.hpp>
 
 #include <array>
@@ -49,8 +50,14 @@ struct case_parts {
   template <class Tables>
   using surface_key = std::tuple<std::shared_ptr<const model>, std::string, Tables, formula_constants>;
   made_once<surface_key<std::array<face_table, 6>>, std::vector<domain::faces>> sides;  ///< make_boundaries()
-  made_once<surface_key<std::vector<solid_table>>, std::vector<std::shared_ptr<const boundary>>>
+  made_once<surface_key<std::pair<std::vector<solid_table>, std::vector<body_table>>>,
+            std::vector<std::shared_ptr<const boundary>>>
       walls;  ///< make_solid_walls()
+
+  /// The mesh, the boxes, the bodies, which directions are periodic, and the constants of formulas.
+  using body_key = std::tuple<std::vector<int>, std::vector<std::array<double, 2>>, std::vector<solid_table>,
+                              std::vector<body_table>, std::array<bool, 3>, formula_constants>;
+  made_once<body_key, std::shared_ptr<const cut_cells>> cut;  ///< cut_cells_of()
 };
 
 }  // namespace apsis

@@ -1,5 +1,6 @@
 #include <apsis/config/case_resolver.hpp>
 
+#include <apsis/config/body_reader.hpp>
 #include <apsis/config/boundary_reader.hpp>
 #include <apsis/config/case_checks.hpp>
 #include <apsis/config/case_schema.hpp>
@@ -52,6 +53,7 @@ class resolver {
     const case_checks checks(text_, file_, *model_, config_);
     if (has_space(*model_)) checks.check_dimensions();
     read_solids(text_, *checked_model(), config_);
+    read_bodies(text_, *checked_model(), config_);
     take_initial_data();
     read_boundary_values(text_, *checked_model(), config_);
     read_source_values(text_, *checked_model(), config_);
@@ -79,8 +81,8 @@ class resolver {
     for (const auto& [name, place] : text_.tables) config_.places[name] = place;
     for (const auto& [path, raw] : text_.values)
       config_.places[path] = is_in(path, "initial") || is_in(path, "boundary") ||
-                                     is_in(path, "space.solid") || is_in(path, "force") ||
-                                     is_in(path, "source") || path == "model.epsilon"
+                                     is_in(path, "space.solid") || is_in(path, "space.body") ||
+                                     is_in(path, "force") || is_in(path, "source") || path == "model.epsilon"
                                  ? place_of_formula(raw)
                                  : raw.place;
   }
@@ -150,7 +152,8 @@ class resolver {
       if (std::find(valid.begin(), valid.end(), path) != valid.end() || is_in(path, "parameters") ||
           is_in(path, "initial") || path == "output.probe" || is_in(path, "output.probe") ||
           path == "output.slice" || is_in(path, "output.slice") ||
-          ((is_in(path, "boundary") || is_in(path, "source") || is_in(path, "space.solid")) &&
+          ((is_in(path, "boundary") || is_in(path, "source") || is_in(path, "space.solid") ||
+            is_in(path, "space.body")) &&
            has_space(*model_)))
         continue;
       for (const case_key& key : case_schema())

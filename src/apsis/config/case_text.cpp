@@ -67,8 +67,8 @@ void add_value(case_text& out, const std::string& path, const toml::key& key, co
   out.values.emplace(path, convert(node, place_of(key.source(), file), file));
 }
 
-/// Levels of tables below one that may have them, [[initial.region.part]].
-constexpr int most_levels = 4;
+/// Levels of tables below one that may have them, [[initial.region.part]], or shapes of shapes.
+constexpr int most_levels = 12;
 
 /// Adds a value, or the values of a table or of a list of tables, whose items are numbered from 1:
 /// "initial.region.1.T".
@@ -156,7 +156,8 @@ case_text read_case_text(std::string_view text, const std::string& file) {
       for (const auto& [inner, value] : *table) {
         const std::string path = fmt::format("{}.{}", name, inner.str());
         const bool nested = name == "boundary" || name == "initial" || path == "model.knudsen" ||
-                            path == "space.solid" || path == "output.probe" || path == "output.slice";
+                            path == "space.solid" || path == "space.body" || path == "output.probe" ||
+                            path == "output.slice";
         add_nested(out, path, inner, value, file, nested ? most_levels : 0);
       }
     }

@@ -19,6 +19,7 @@ std::vector<std::vector<double>> sample_data(const case_config& config, const mo
   });
   const int dimensions = equation.space_dimensions();
   case_config sampled = config;
+  sampled.bodies.clear();
   sampled.solids.clear();  // their faces are on edges of the mesh of the case
   sampled.space.cells = dimensions == 0
                             ? std::vector{1}

@@ -1,6 +1,7 @@
 #include <apsis/config/emitted_values.hpp>
 
 #include <apsis/boundary/boundary_registry.hpp>
+#include <apsis/mesh/cut_cells.hpp>
 
 #include <algorithm>
 #include <utility>
@@ -32,6 +33,19 @@ std::vector<position> points_of_face(const case_config& config, const face& wher
   auto& normal = sides[static_cast<std::size_t>(where.direction)];
   if (where.upper) normal[0] = normal[1];
   return points_of_box(sides, where.direction);
+}
+
+/// Points on the walls of a body, or of the solid faces next to it.
+std::vector<position> points_of_body(const case_config& config, std::size_t body) {
+  constexpr std::size_t most = 100;
+  std::vector<position> points;
+  const grid mesh = make_mesh(config);
+  for (const wall_segment& one : mesh.cut()->walls())
+    if (one.solid == static_cast<int>(mesh.solids().size() + body)) points.push_back(one.middle);
+  std::vector<position> some;
+  for (std::size_t k = 0; k < points.size(); k += std::max<std::size_t>(1, points.size() / most))
+    some.push_back(points[k]);
+  return some;
 }
 
 /// The moments of functions of the velocity at all velocities.
@@ -69,6 +83,9 @@ std::vector<emitter> emitters_of(const case_config& config) {
     all.push_back(
         {fmt::format("space.solid.{}", k + 1), solid.kind, &solid.values, points_of_box(sides, -1)});
   }
+  for (std::size_t k = 0; k < config.bodies.size(); ++k)
+    all.push_back({fmt::format("space.body.{}", k + 1), config.bodies[k].kind, &config.bodies[k].values,
+                   points_of_body(config, k)});
   return all;
 }
 

@@ -13,7 +13,7 @@
 
 namespace apsis {
 
-/// A surface of a case that may emit a gas: a side of the domain or a solid box.
+/// A surface of a case that may emit a gas: a side of the domain, a solid box or a body.
 struct emitter {
   std::string path;              ///< its table: "boundary.left"
   std::string kind;              ///< kind of the boundary condition
@@ -21,7 +21,7 @@ struct emitter {
   std::vector<position> points;  ///< points at which formulas are sampled
 };
 
-/// Returns the sides of the domain and the solid boxes. The configuration must outlive them.
+/// Returns the sides of the domain, the solid boxes and the bodies. The configuration must outlive them.
 std::vector<emitter> emitters_of(const case_config& config);
 
 /// The variables of the boundary condition of an emitter, by formulas or their defaults.

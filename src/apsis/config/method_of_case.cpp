@@ -17,11 +17,12 @@
 namespace apsis {
 namespace {
 
-/// A coarse mesh of the domain, without solids, whose faces are on edges of the mesh of the case.
+/// A coarse mesh of the domain, without solids and bodies, whose faces are on edges of the mesh of the case.
 grid sample_mesh(const case_config& config) {
   constexpr int per_direction[] = {64, 8, 4};
   case_config sampled = config;
   sampled.solids.clear();
+  sampled.bodies.clear();
   const std::size_t dimensions = config.space.domain.size();
   sampled.space.cells.assign(dimensions, per_direction[std::min<std::size_t>(dimensions, 3) - 1]);
   return make_mesh(sampled);

@@ -222,13 +222,14 @@ class reader_of_output {
                                     path, with));
   }
 
-  /// Names of the faces that are not periodic and of the solid boxes.
+  /// Names of the faces that are not periodic, of the solid boxes and of the bodies.
   std::vector<std::string> open_surfaces() const {
     std::vector<std::string> names;
     const auto sides = make_boundaries(config_, make_model(config_));
     for (std::size_t k = 0; k < 2 * sides.size(); ++k)
       if (!sides[k / 2][k % 2]->periodic()) names.push_back(face_names[k]);
     for (const auto& solid : config_.solids) names.push_back(solid.name);
+    for (const auto& body : config_.bodies) names.push_back(body.name);
     return names;
   }
 

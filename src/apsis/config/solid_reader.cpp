@@ -24,12 +24,6 @@ std::string path_of(std::size_t box) {
   return fmt::format("{}{}", head, box + 1);
 }
 
-bool is_name(const std::string& text) {
-  return !text.empty() && std::isalpha(static_cast<unsigned char>(text.front())) != 0 &&
-         std::all_of(text.begin(), text.end(),
-                     [](unsigned char c) { return std::isalnum(c) != 0 || c == '-' || c == '_'; });
-}
-
 /// A corner of a box: one number, or constant formula, for each direction.
 std::vector<double> corner(const raw_value& raw, const std::string& path, const case_config& config) {
   const auto texts = formula_texts(raw, path);
@@ -122,11 +116,11 @@ class reader_of_solids {
     std::vector<std::string> taken(face_names.begin(), face_names.end());
     taken.insert(taken.end(), {"force", "source", all_surfaces});
     for (std::size_t other = 0; other < box; ++other) taken.push_back(config_.solids[other].name);
-    if (!is_name(here.name) || std::find(taken.begin(), taken.end(), here.name) != taken.end())
+    if (!is_surface_name(here.name) || std::find(taken.begin(), taken.end(), here.name) != taken.end())
       throw input_error(
           place_of(config_, path + ".name"),
           fmt::format("'{}.name' = \"{}\" cannot be used ({}); choose another name", path, shown(here.name),
-                      is_name(here.name) ? "it is taken" : "letters, digits, - and _ only"));
+                      is_surface_name(here.name) ? "it is taken" : "letters, digits, - and _ only"));
     for (const char* key : {"from", "to"})
       if ((key[0] == 'f' ? here.from : here.to).empty())
         throw input_error(
@@ -142,6 +136,12 @@ class reader_of_solids {
 };
 
 }  // namespace
+
+bool is_surface_name(const std::string& text) {
+  return !text.empty() && std::isalpha(static_cast<unsigned char>(text.front())) != 0 &&
+         std::all_of(text.begin(), text.end(),
+                     [](unsigned char c) { return std::isalnum(c) != 0 || c == '-' || c == '_'; });
+}
 
 void read_solids(const case_text& text, const model& equation, case_config& config) {
   reader_of_solids(text, equation, config).read();
@@ -175,9 +175,12 @@ std::vector<std::shared_ptr<const boundary>> make_solid_walls(const case_config&
     for (std::size_t k = 0; k < config.solids.size(); ++k)
       walls.push_back(
           make_wall(config, *equation, path_of(k), config.solids[k].kind, config.solids[k].values));
+    for (std::size_t k = 0; k < config.bodies.size(); ++k)
+      walls.push_back(make_wall(config, *equation, fmt::format("space.body.{}", k + 1), config.bodies[k].kind,
+                                config.bodies[k].values));
     return walls;
   };
-  return config.parts->walls.get({equation, "", config.solids, config.constants}, make);
+  return config.parts->walls.get({equation, "", {config.solids, config.bodies}, config.constants}, make);
 }
 
 }  // namespace apsis

@@ -4,9 +4,13 @@
 #include <apsis/config/case_text.hpp>
 
 #include <memory>
+#include <string>
 #include <vector>
 
 namespace apsis {
+
+/// Whether a text may name a solid box or a body: a letter, then letters, digits, - and _.
+bool is_surface_name(const std::string& text);
 
 /// Reads the tables [[space.solid]] into `config`, whose mesh is known. Throws input_error at the place of a
 /// key: no box inside the domain with its faces on edges of cells, a name that occurs twice, or a variable
@@ -16,8 +20,8 @@ void read_solids(const case_text& text, const model& equation, case_config& conf
 /// Returns the solid boxes of a case as cells of its mesh. Throws input_error where they do not fit.
 std::vector<cell_box> solid_boxes(const case_config& config, const grid& mesh);
 
-/// Returns the wall of each solid box, made once for a case and its copies. Throws input_error at the place
-/// of the table or the formula that is wrong.
+/// Returns the wall of each solid box, and then of each body, made once for a case and its copies. Throws
+/// input_error at the place of the table or the formula that is wrong.
 std::vector<std::shared_ptr<const boundary>> make_solid_walls(const case_config& config,
                                                               const std::shared_ptr<const model>& equation);
 

@@ -2,8 +2,10 @@
 
 #include <apsis/config/initial_table.hpp>
 
+#include <map>
 #include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
 namespace apsis {
@@ -26,6 +28,26 @@ struct solid_table {
   std::string kind = "diffuse";  ///< boundary condition at its faces
   state_formulas values;         ///< of the variables of the kind, formulas in t and the position
   bool operator==(const solid_table&) const = default;  ///< equal texts
+};
+
+/// A shape of a body: its kind, and the values of its keys.
+struct shape_table {
+  /// A number, a vector, points, or a text or formula.
+  using value = std::variant<double, std::vector<double>, std::vector<std::vector<double>>, std::string>;
+
+  std::string shape;                                      ///< kind: "circle"
+  std::map<std::string, value> values;                    ///< by key
+  std::map<std::string, std::vector<shape_table>> parts;  ///< shapes that it combines, by key
+  bool operator==(const shape_table&) const = default;    ///< equal values
+};
+
+/// A table [[space.body]]: a body of any shape and its wall.
+struct body_table {
+  std::string name;              ///< in the history of what its wall receives
+  shape_table shape;             ///< where it is
+  std::string kind = "diffuse";  ///< boundary condition at its wall
+  state_formulas values;         ///< of the variables of the kind, formulas in t and the position
+  bool operator==(const body_table&) const = default;  ///< equal texts
 };
 
 }  // namespace apsis

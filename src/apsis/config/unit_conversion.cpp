@@ -1,4 +1,5 @@
 // Values with units become dimensionless before any formula is read.
+#include <apsis/body/shape_registry.hpp>
 #include <apsis/boundary/boundary_registry.hpp>
 #include <apsis/config/case_schema.hpp>
 #include <apsis/config/case_value.hpp>
@@ -62,9 +63,24 @@ class unit_remover {
     if (path == "initial.time" && !variables_.contains("time")) return dimensions::time;
     const bool solid = begins_with(path, "space.solid.");
     if (solid && (path.ends_with(".from") || path.ends_with(".to"))) return dimensions::length;
-    if (!begins_with(path, "initial.") && !begins_with(path, "boundary.") && !solid) return std::nullopt;
-    const auto variable = variables_.find(path.substr(path.rfind('.') + 1));
+    const bool body = begins_with(path, "space.body.");
+    if (!begins_with(path, "initial.") && !begins_with(path, "boundary.") && !solid && !body)
+      return std::nullopt;
+    const std::string name = path.substr(path.rfind('.') + 1);
+    if (body)
+      if (const auto found = dimension_of_shape_key(name)) return found;
+    const auto variable = variables_.find(name);
     return variable == variables_.end() ? std::nullopt : std::optional(variable->second);
+  }
+
+  /// Returns the dimension of the numbers of a key of a shape; nothing of other keys.
+  static std::optional<dimension> dimension_of_shape_key(const std::string& name) {
+    for (const shape_entry* shape : shape_entries())
+      for (const auto& keys : {shape->keys, common_shape_keys(3)})
+        for (const shape_key& key : keys)
+          if (key.name == name && key.kind != shape_value_kind::text)
+            return key.is_length ? dimensions::length : dimensions::none;
+    return std::nullopt;
   }
 
   /// `dims`: of the key; null if any is valid.

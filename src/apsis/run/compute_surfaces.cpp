@@ -1,6 +1,7 @@
 #include <apsis/run/compute_surfaces.hpp>
 
 #include <apsis/core/index.hpp>
+#include <apsis/mesh/cut_cells.hpp>
 #include <apsis/model/gas_model.hpp>
 #include <apsis/velocity/component_name.hpp>
 
@@ -9,6 +10,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <numbers>
 #include <numeric>
 #include <optional>
 #include <span>
@@ -49,6 +51,26 @@ struct derived_columns {
     add("pressure", momenta.front());
     if (momenta.size() > 1) add("shear_stress", momenta.front());
     if (energy) add("heat_flux", *energy);
+  }
+
+  /// The same at a wall with the normal n into the gas. In the plane the component along it is that
+  /// counter-clockwise around the body.
+  void add_values(std::vector<double>& row, const std::vector<double>& given, const std::array<double, 3>& n,
+                  const std::array<double, 3>& wall_velocity) const {
+    if (momenta.empty()) return;
+    double normal = 0.0, square = 0.0, work = 0.0;
+    for (std::size_t k = 0; k < momenta.size(); ++k) {
+      normal += given[momenta[k]] * n[k];
+      work += wall_velocity[k] * given[momenta[k]];
+    }
+    row.push_back(-normal);
+    for (std::size_t k = 0; k < momenta.size(); ++k) {
+      const double along = given[momenta[k]] - normal * n[k];
+      square += along * along;
+    }
+    if (momenta.size() == 2) row.push_back(n[0] * given[momenta[1]] - n[1] * given[momenta[0]]);
+    if (momenta.size() == 3) row.push_back(std::sqrt(square));
+    if (energy) row.push_back(given[*energy] - work);
   }
 
   /// Appends the values for the given fluxes of the invariants.
@@ -115,6 +137,8 @@ face face_beside(const surface& one) {
 double arc_length(const grid& mesh, const surface& one, const position& x) {
   const int along = 1 - one.where.direction;
   if (one.solid < 0) return x[at(along)] - mesh.edge(along, 0);
+  if (one.solid >= static_cast<int>(mesh.solids().size()))
+    return 0.0;  // a body, whose rows get another measure
   const cell_box& box = mesh.solids()[at(one.solid)];
   const auto end = [&](int direction, bool upper) {
     const auto k = at(direction);
@@ -154,7 +178,18 @@ class surface_writer {
         table.numbers.rows.push_back(row(number, static_cast<int>(place), first));
         first += invariants_.size();
       }
+    for (const int number : one.cut_faces) {
+      table.faces.push_back(name);
+      table.numbers.rows.push_back(row_of_cut_face(number, one, first));
+      first += invariants_.size();
+    }
+    for (const int number : one.walls) {
+      table.faces.emplace_back("wall");
+      table.numbers.rows.push_back(row_of_wall(number, first));
+      first += invariants_.size();
+    }
     if (one.solid >= 0 && in_plane()) sort_along(table);
+    if (!one.walls.empty() && in_plane()) measure_around(table);
     return table;
   }
 
@@ -180,24 +215,89 @@ class surface_writer {
   }
 
   std::vector<double> row(int number, int place, std::size_t first) const {
-    const grid& mesh = space_.mesh();
     const surface& one = space_.surfaces()[at(number)];
     const position x = space_.meeting_point(number, place);
-    const double area = mesh.face_area(one.where);
-    std::vector<double> row, given;
-    if (in_plane()) row.push_back(arc_length(mesh, one, x));
-    row.insert(row.end(), x.begin(), x.begin() + mesh.dimensions());
-    row.push_back(area);
+    const double area = space_.mesh().face_area(one.where);
+    const double s = in_plane() ? arc_length(space_.mesh(), one, x) : 0.0;
+    const auto given = fluxes_at(first, area);
+    std::vector<double> row = place_and_fluxes(s, x, area, given);
+    derived_.add_values(row, given, one.where, space_.side(number)->wall_velocity(middle_of_step(), x));
+    gas_.add_values(row, densities_at(first));
+    return row;
+  }
+
+  std::vector<double> row_of_cut_face(int number, const budget_surface& of, std::size_t first) const {
+    const open_face& one = space_.mesh().cut()->faces()[at(number)];
+    const double s =
+        in_plane() ? one.middle[at(1 - one.direction)] - space_.mesh().edge(1 - one.direction, 0) : 0.0;
+    const auto given = fluxes_at(first, one.area);
+    std::vector<double> row = place_and_fluxes(s, one.middle, one.area, given);
+    const int side = static_cast<int>(of.where.index());
+    derived_.add_values(row, given, of.where, space_.side(side)->wall_velocity(middle_of_step(), one.middle));
+    gas_.add_values(row, densities_at(first));
+    return row;
+  }
+
+  /// The first column is the angle around the middle of the body, until measure_around().
+  std::vector<double> row_of_wall(int number, std::size_t first) const {
+    const wall_segment& one = space_.mesh().cut()->walls()[at(number)];
+    const auto given = fluxes_at(first, one.area);
+    std::vector<double> row = place_and_fluxes(angle_around(one), one.middle, one.area, given);
+    const boundary& wall = *space_.solid_boundary(one.solid);
+    const auto oblique = wall.oblique(space_.space().velocities);
+    derived_.add_values(row, given, one.normal,
+                        oblique->velocity({one.normal, one.middle, middle_of_step()}));
+    gas_.add_values(row, densities_at(first));
+    return row;
+  }
+
+  double middle_of_step() const { return last_.t - 0.5 * last_.dt; }
+
+  std::vector<double> fluxes_at(std::size_t first, double area) const {
+    std::vector<double> given;
     for (std::size_t k = first; k < first + invariants_.size(); ++k)
       given.push_back(last_.received.empty() ? std::numeric_limits<double>::quiet_NaN()
                                              : (0.0 - last_.received[k]) / (area * last_.dt));
+    return given;
+  }
+
+  std::span<const double> densities_at(std::size_t first) const {
+    return last_.densities.empty() ? std::span<const double>()
+                                   : std::span(last_.densities).subspan(first, invariants_.size());
+  }
+
+  std::vector<double> place_and_fluxes(double s, const position& x, double area,
+                                       const std::vector<double>& given) const {
+    std::vector<double> row;
+    if (in_plane()) row.push_back(s);
+    row.insert(row.end(), x.begin(), x.begin() + space_.mesh().dimensions());
+    row.push_back(area);
     row.insert(row.end(), given.begin(), given.end());
-    const double middle = last_.t - 0.5 * last_.dt;
-    derived_.add_values(row, given, one.where, space_.side(number)->wall_velocity(middle, x));
-    gas_.add_values(row, last_.densities.empty()
-                             ? std::span<const double>()
-                             : std::span(last_.densities).subspan(first, invariants_.size()));
     return row;
+  }
+
+  /// Returns the angle of a wall around the mean of the walls of its body, from 0 to 2π.
+  double angle_around(const wall_segment& one) const {
+    position mean{};
+    double area = 0.0;
+    for (const wall_segment& other : space_.mesh().cut()->walls()) {
+      if (other.solid != one.solid) continue;
+      area += other.area;
+      for (std::size_t k = 0; k < 2; ++k) mean[k] += other.area * other.middle[k];
+    }
+    const double angle = std::atan2(one.middle[1] - mean[1] / area, one.middle[0] - mean[0] / area);
+    return angle < 0.0 ? angle + 2.0 * std::numbers::pi : angle;
+  }
+
+  /// Replaces the angles of sorted rows by lengths along the wall, to the middle of each piece.
+  void measure_around(surface_table& table) const {
+    const auto column = std::find(table.numbers.columns.begin(), table.numbers.columns.end(), "area");
+    const auto area = static_cast<std::size_t>(column - table.numbers.columns.begin());
+    double length = 0.0;
+    for (auto& row : table.numbers.rows) {
+      row.front() = length + 0.5 * row[area];
+      length += row[area];
+    }
   }
 
   /// Sorts the rows by s.

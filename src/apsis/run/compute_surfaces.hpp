@@ -17,20 +17,22 @@ struct surface_values {
 
 /// Returns the tables of the surfaces of output.surfaces, a row for each cell face, with the columns
 ///   s          in the plane: arc length; on a face of the domain from its lower end, around a box
-///              counter-clockwise from its lower left corner
+///              counter-clockwise from its lower left corner, around a body from its rightmost side, in the
+///              order of the angle around the middle of its wall
 ///   x, y, z    centre of the cell face
 ///   area       of the cell face: 1 on a line, a length in the plane
 ///   INVARIANT  what the gas gives to the surface per unit of time and area, in the mean over the step: minus
 ///              what it receives
 /// and, where the model has the momenta m and the energy, with the normal n into the surface,
 ///   pressure       m·n
-///   shear_stress   the component of m along the surface and an axis, or with three velocity dimensions the
-///                  norm of the part of m along the surface; none with one dimension
+///   shear_stress   the component of m along the surface and an axis, counter-clockwise around a body, or
+///   with
+///                  three velocity dimensions the norm of the part of m along the surface; none with one
 ///   heat_flux      energy − u_w·m with the velocity u_w of the wall in the middle of the step
 /// NaN before the first step; and, of a gas, the moments of the distribution at the face, of the molecules
 /// that arrive as of those that leave, after the step:
 ///   rho, u_x … or u, T   density, bulk velocity and temperature, NaN where they are unknown
-/// Rows of a box in the plane are in the order of s, others in that of the ends.
+/// Rows of a box or body in the plane are in the order of s, others in that of the ends.
 std::vector<surface_table> compute_surfaces(const run_setup& setup, const surface_values& last);
 
 }  // namespace apsis

@@ -305,7 +305,7 @@ void initial_table_file::expand_coordinates(const hdf5_file& file) {
 
 std::vector<bool> initial_table_file::solid_rows(std::size_t rows) const {
   std::vector<bool> solid(rows, false);
-  if (mesh_rank() < 2 || config_.solids.empty()) return solid;
+  if (mesh_rank() < 2 || (config_.solids.empty() && config_.bodies.empty())) return solid;
   const grid mesh = make_mesh(config_);
   for (std::size_t k = 0; k < rows && k < static_cast<std::size_t>(mesh.size()); ++k)
     solid[k] = mesh.solid(static_cast<int>(k)) >= 0;

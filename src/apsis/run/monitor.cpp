@@ -57,18 +57,19 @@ void monitor::check_cells(const field& u, int begin, int end, partial& own) cons
     equation_.invariant_densities(row, own.densities.data());
     equation_.invariant_scales(own.densities, own.scales.data());
     if (watched) velocities_.look(own.densities.data(), cell, own.velocities);
+    const double share = setup_.mesh().gas_share(cell);
     for (std::size_t k = 0; k < count; ++k) {
-      own.sums[k].add(own.densities[k]);
-      own.sums[count + k].add(own.scales[k]);
+      own.sums[k].add(share * own.densities[k]);
+      own.sums[count + k].add(share * own.scales[k]);
     }
     if (count > 0) {
       const auto [change, turn] = differences_.record(cell, own.densities.back());
-      own.sums[2 * count].add(change);
-      own.sums[2 * count + 1].add(turn);
+      own.sums[2 * count].add(share * change);
+      own.sums[2 * count + 1].add(share * turn);
     }
     if (conditional && !equation_.check_supported(row).problem.empty())
       own.violating = std::min(own.violating, cell);
-    if (entropy_ && below == 0) own.sums.back().add(entropy_->density(row));
+    if (entropy_ && below == 0) own.sums.back().add(share * entropy_->density(row));
   }
 }
 

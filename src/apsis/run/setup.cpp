@@ -99,6 +99,10 @@ void run_setup::build_space(std::shared_ptr<communicator> processes) {
   if (space.collisions) builder_.with_collisions_at(*space.collisions);
   at_key(config_, space.blocks ? "space.blocks" : "space.cells",
          [&] { builder_.shared_by(std::move(processes), given_blocks(space.blocks)); });
+  if (!config_.bodies.empty() && !builder_.processes().is_single())
+    refuse(
+        config_, "space.body.1",
+        "bodies on several processes (a cut cell and its neighbours must belong to one); start one process");
   const auto sides = make_boundaries(config_, equation);
   for (int direction = 0; direction < static_cast<int>(sides.size()); ++direction)
     for (const bool upper : {false, true})
@@ -201,11 +205,15 @@ std::vector<std::string> run_setup::open_faces() const {
   if (!has_space()) return open;
   const domain& space = builder_.space();
   for (const budget_surface& one : space.budget_surfaces())
-    open.push_back(one.solid < 0 ? face_names[one.where.index()]
-                                 : config_.solids[static_cast<std::size_t>(one.solid)].name);
+    open.push_back(one.solid < 0 ? face_names[one.where.index()] : solid_name(one.solid));
   if (config_.force.acceleration) open.emplace_back("force");
   if (!config_.source_term.empty()) open.emplace_back("source");
   return open;
+}
+
+std::string run_setup::solid_name(int solid) const {
+  const auto number = static_cast<std::size_t>(solid), boxes = config_.solids.size();
+  return number < boxes ? config_.solids[number].name : config_.bodies[number - boxes].name;
 }
 
 std::vector<std::size_t> run_setup::open_ends() const {

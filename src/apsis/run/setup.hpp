@@ -106,6 +106,7 @@ class run_setup : public construction_count<run_setup> {
                        bool exact_equilibrium) const;
 
  private:
+  std::string solid_name(int solid) const;
   const initial_data& data() const;
   void check_cells(const field& u, bool computed) const;
   void warn_of_velocities(const velocity_support& support, double missed, int cell,

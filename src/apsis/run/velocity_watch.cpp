@@ -21,9 +21,10 @@ constexpr double least_share_of_density = 1e-3, fewest_collisions = 0.1;
 
 /// Of the gas in the whole mesh.
 double volume_of_gas(const run_setup& setup) {
-  long cells = 0;
-  for (const cell_range& range : setup.whole_mesh().fluid()) cells += range.end - range.begin;
-  return static_cast<double>(cells) * setup.cell_volume();
+  double cells = 0.0;
+  for (const cell_range& range : setup.whole_mesh().fluid())
+    for (int cell = range.begin; cell < range.end; ++cell) cells += setup.whole_mesh().gas_share(cell);
+  return cells * setup.cell_volume();
 }
 
 /// The negative part of the mass of a row.
@@ -35,7 +36,7 @@ double negative_mass(const gas& molecules, const double* row) {
 }
 
 bool has_walls(const case_config& config) {
-  if (!config.solids.empty()) return true;
+  if (!config.solids.empty() || !config.bodies.empty()) return true;
   for (std::size_t k = 0; k < 2 * config.space.cells.size(); ++k) {
     const std::string kind = config.faces[k].kind.value_or(config.space.boundary);
     if (kind == "diffuse" || kind == "symmetry") return true;

@@ -21,7 +21,7 @@ constexpr int halo = 2;
 
 domain space_of(const case_config& config, const relaxation_model& equation) {
   if (equation.space_dimensions() == 0) return domain::point();
-  if (!config.solids.empty())
+  if (!config.solids.empty() || !config.bodies.empty())
     throw input_error("the case has no limit scheme (it has solid boxes); remove them");
   domain made({make_mesh(config), equation.velocities()}, make_boundaries(config, make_model(config)));
   for (const budget_surface& one : made.budget_surfaces())

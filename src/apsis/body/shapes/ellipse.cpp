@@ -36,7 +36,7 @@ const shape_entry shape_ellipse = {
               .doc = "two semi-axes, along x and y for the angle 0",
               .kind = shape_value_kind::vector,
               .positive = true},
-             {.name = "angle", .doc = "angle in degrees about the centre", .value = 0.0}},
+             {.name = "angle", .doc = "angle in degrees about the centre", .value = 0.0, .is_length = false}},
     .dimensions = {2},
     .alternative = "ellipsoid",
     .make = ellipse_shape::make};

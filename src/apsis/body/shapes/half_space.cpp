@@ -31,7 +31,10 @@ const shape_entry shape_half_space = {
     .name = "half_space",
     .description = "all points behind a plane, or behind a line in the plane",
     .keys = {{.name = "point", .doc = "point of the surface", .kind = shape_value_kind::vector},
-             {.name = "normal", .doc = "vector into the gas", .kind = shape_value_kind::vector}},
+             {.name = "normal",
+              .doc = "vector into the gas",
+              .kind = shape_value_kind::vector,
+              .is_length = false}},
     .make = half_space_shape::make};
 
 }  // namespace apsis

@@ -42,9 +42,12 @@ extern const shape_entry shape_stl;
 const shape_entry shape_stl = {
     .name = "stl",
     .description = "closed surface of triangles from an STL file, ASCII or binary",
-    .keys =
-        {{.name = "file", .doc = "path of the STL file", .kind = shape_value_kind::text},
-         {.name = "scale", .doc = "factor of all coordinates of the file", .value = 1.0, .positive = true}},
+    .keys = {{.name = "file", .doc = "path of the STL file", .kind = shape_value_kind::text},
+             {.name = "scale",
+              .doc = "factor of all coordinates of the file",
+              .value = 1.0,
+              .positive = true,
+              .is_length = false}},
     .dimensions = {3},
     .alternative = "polygon",
     .make = stl_shape::make};

@@ -1,0 +1,274 @@
+#include <apsis/config/body_reader.hpp>
+
+#include <apsis/body/shape_registry.hpp>
+#include <apsis/boundary/boundary_registry.hpp>
+#include <apsis/config/boundary_reader.hpp>
+#include <apsis/config/case_value.hpp>
+#include <apsis/config/solid_reader.hpp>
+#include <apsis/core/index.hpp>
+#include <apsis/core/suggest.hpp>
+#include <apsis/model/expression.hpp>
+
+#include <algorithm>
+#include <charconv>
+#include <set>
+
+#include <fmt/format.h>
+
+namespace apsis {
+namespace {
+
+constexpr int most_bodies = 1000;
+const std::string head_of_bodies = "space.body.";
+
+std::string path_of_body(std::size_t body) {
+  return fmt::format("{}{}", head_of_bodies, body + 1);
+}
+
+std::vector<shape_key> keys_of(const shape_entry& entry, int dimensions) {
+  std::vector<shape_key> keys = entry.keys;
+  for (shape_key& one : common_shape_keys(dimensions)) keys.push_back(std::move(one));
+  return keys;
+}
+
+/// Calls body() and adds a place to its input errors.
+template <class Body>
+auto with_place(const source_place& place, const Body& body) {
+  try {
+    return body();
+  } catch (const input_error& problem) {
+    throw input_error(place, problem.what());
+  }
+}
+
+class reader_of_bodies {
+ public:
+  reader_of_bodies(const case_text& text, const model& equation, case_config& config)
+      : text_(text), equation_(equation), config_(config) {}
+
+  void read() {
+    config_.bodies.clear();
+    std::size_t count = 0;
+    for (const auto& [path, raw] : text_.values)
+      if (path.rfind(head_of_bodies, 0) == 0) count = std::max(count, number_in(path, raw));
+    if (count > 0 && dimensions() < 2)
+      throw input_error(place_of_emitter(config_, path_of_body(0)),
+                        "a body on a line (it needs two or three dimensions); use [[space.solid]]");
+    for (std::size_t k = 0; k < count; ++k) read_body(k);
+  }
+
+ private:
+  int dimensions() const { return static_cast<int>(config_.space.cells.size()); }
+
+  /// Returns the number of a body, from 1.
+  static std::size_t number_in(const std::string& path, const raw_value& raw) {
+    const auto dot = path.find('.', head_of_bodies.size());
+    const std::string number =
+        path.substr(head_of_bodies.size(), dot == std::string::npos ? dot : dot - head_of_bodies.size());
+    int body = 0;
+    const auto [stop, error] = std::from_chars(number.data(), number.data() + number.size(), body);
+    if (error != std::errc{} || stop != number.data() + number.size() || body < 1 || body > most_bodies ||
+        dot == std::string::npos)
+      throw input_error(
+          raw.place,
+          fmt::format("unknown key '{}' (bodies are a list of tables); write [[space.body]]", shown(path)));
+    return static_cast<std::size_t>(body);
+  }
+
+  void read_body(std::size_t number) {
+    const std::string path = path_of_body(number);
+    body_table body;
+    taken_.clear();
+    body.name = text_at(path + ".name").value_or(fmt::format("body-{}", number + 1));
+    body.kind = text_at(path + ".kind").value_or(body.kind);
+    const auto variables = boundary_variables(body.kind, equation_, place_of_emitter(config_, path));
+    for (const std::string& name : variables)
+      if (const raw_value* raw = text_.find(path + "." + name)) {
+        body.values[name] = formula_texts(*raw, path + "." + name);
+        taken_.insert(path + "." + name);
+      }
+    body.shape = read_shape(path, dimensions());
+    std::vector<std::string> names = {"name", "kind", "shape"};
+    names.insert(names.end(), variables.begin(), variables.end());
+    check_all_taken(path, body.shape, names);
+    check_name(path, body.name);
+    config_.bodies.push_back(std::move(body));
+  }
+
+  std::optional<std::string> text_at(const std::string& path) {
+    const raw_value* raw = text_.find(path);
+    if (raw == nullptr) return std::nullopt;
+    const auto* text = std::get_if<std::string>(&raw->value);
+    if (text == nullptr)
+      refuse(*raw, path, "it must be a text", fmt::format("write for example {} = \"...\"", last_of(path)));
+    taken_.insert(path);
+    return *text;
+  }
+
+  static std::string last_of(const std::string& path) { return path.substr(path.rfind('.') + 1); }
+
+  source_place place_of_shape(const std::string& path) const {
+    if (const raw_value* raw = text_.find(path + ".shape")) return raw->place;
+    const auto table = text_.tables.find(path);
+    return table != text_.tables.end() ? table->second : place_of_emitter(config_, path);
+  }
+
+  shape_table read_shape(const std::string& path, int dimensions) {
+    shape_table table;
+    const auto kind = text_at(path + ".shape");
+    if (!kind)
+      throw input_error(place_of_shape(path),
+                        fmt::format("key '{}.shape' is missing (a body has a shape); add for example "
+                                    "shape = \"{}\"",
+                                    path, dimensions == 2 ? "circle" : "sphere"));
+    table.shape = *kind;
+    const shape_entry& entry = with_place(
+        place_of_shape(path), [&]() -> decltype(auto) { return std::cref(find_shape(table.shape)); });
+    for (const shape_key& key : keys_of(entry, dimensions)) {
+      const std::string of_key = path + "." + key.name;
+      if (key.kind == shape_value_kind::shapes)
+        read_parts(of_key, key.planar ? 2 : dimensions, table.parts[key.name]);
+      else if (const raw_value* raw = text_.find(of_key))
+        table.values[key.name] = value_of(*raw, of_key, key);
+    }
+    std::erase_if(table.parts, [](const auto& one) { return one.second.empty(); });
+    return table;
+  }
+
+  /// Shapes in a list of tables, or a single table.
+  void read_parts(const std::string& path, int dimensions, std::vector<shape_table>& parts) {
+    const auto has = [&](const std::string& table) { return text_.tables.contains(table); };
+    for (int k = 1; has(fmt::format("{}.{}", path, k)); ++k)
+      parts.push_back(read_shape(fmt::format("{}.{}", path, k), dimensions));
+    if (parts.empty() && has(path)) parts.push_back(read_shape(path, dimensions));
+  }
+
+  shape_table::value value_of(const raw_value& raw, const std::string& path, const shape_key& key) {
+    taken_.insert(path);
+    switch (key.kind) {
+      case shape_value_kind::number: {
+        const auto found = numbers_of(raw, path);
+        if (found.size() != 1 || std::holds_alternative<raw_value::list>(raw.value))
+          refuse(raw, path, "it must be a number", fmt::format("write for example {} = 0.5", key.name));
+        return found.front();
+      }
+      case shape_value_kind::vector:
+        return numbers_of(raw, path);
+      case shape_value_kind::points: {
+        std::vector<std::vector<double>> points;
+        const auto* list = std::get_if<raw_value::list>(&raw.value);
+        if (list == nullptr)
+          refuse(raw, path, "it must be a list of points", "write for example [[0, 0], [1, 0], [0, 1]]");
+        for (const raw_value& one : *list) points.push_back(numbers_of(one, path));
+        return points;
+      }
+      default: {
+        const auto* text = std::get_if<std::string>(&raw.value);
+        if (text == nullptr)
+          refuse(raw, path, "it must be a text", fmt::format("write for example {} = \"...\"", key.name));
+        return *text;
+      }
+    }
+  }
+
+  /// Numbers, or formulas of constants.
+  std::vector<double> numbers_of(const raw_value& raw, const std::string& path) const {
+    std::vector<double> numbers;
+    for (const auto& text : formula_texts(raw, path)) {
+      const expression value(text, raw.value_place, formula_of_position(0, false, config_.constants));
+      if (!value.is_constant()) refuse(raw, path, "it depends on x", "give numbers");
+      numbers.push_back(value.evaluate(position{}));
+    }
+    return numbers;
+  }
+
+  void check_all_taken(const std::string& path, const shape_table& shape,
+                       const std::vector<std::string>& of_body) const {
+    for (const auto& [other, raw] : text_.values) {
+      if (other.rfind(path + ".", 0) != 0 || taken_.contains(other)) continue;
+      std::vector<std::string> names = of_body;
+      for (const shape_key& key : keys_of(find_shape(shape.shape), dimensions())) names.push_back(key.name);
+      throw input_error(raw.place,
+                        fmt::format("unknown key '{}' (shape '{}' and its wall have no such key); {}",
+                                    shown(other), shape.shape, suggest(last_of(other), names)));
+    }
+  }
+
+  void check_name(const std::string& path, const std::string& name) const {
+    std::vector<std::string> taken(face_names.begin(), face_names.end());
+    taken.insert(taken.end(), {"force", "source", all_surfaces});
+    for (const auto& solid : config_.solids) taken.push_back(solid.name);
+    for (const auto& body : config_.bodies) taken.push_back(body.name);
+    if (is_surface_name(name) && std::find(taken.begin(), taken.end(), name) == taken.end()) return;
+    throw input_error(
+        place_of(config_, path + ".name"),
+        fmt::format("'{}.name' = \"{}\" cannot be used ({}); choose another name", path, shown(name),
+                    is_surface_name(name) ? "it is taken" : "letters, digits, - and _ only"));
+  }
+
+  const case_text& text_;
+  const model& equation_;
+  case_config& config_;
+  std::set<std::string> taken_;
+};
+
+/// Returns the shape of a table.
+std::shared_ptr<const shape> made_shape(const case_config& config, const shape_table& table,
+                                        const std::string& path, int dimensions) {
+  const shape_entry& entry = find_shape(table.shape);
+  shape_values values;
+  for (const shape_key& key : keys_of(entry, dimensions)) {
+    if (const auto found = table.values.find(key.name); found != table.values.end()) {
+      std::visit([&](const auto& one) { values[key.name] = one; }, found->second);
+      if (key.kind == shape_value_kind::formula) {
+        const source_place place = place_of(config, path + "." + key.name);
+        const expression phi(std::get<std::string>(found->second), place,
+                             formula_of_position(dimensions, false, config.constants));
+        values[key.name] = level_set_function([phi](const position& x) { return phi.evaluate(x); });
+      }
+    }
+    if (const auto found = table.parts.find(key.name); found != table.parts.end()) {
+      shape_list parts;
+      for (std::size_t k = 0; k < found->second.size(); ++k)
+        parts.push_back(made_shape(config, found->second[k], fmt::format("{}.{}.{}", path, key.name, k + 1),
+                                   key.planar ? 2 : dimensions));
+      values[key.name] = std::move(parts);
+    }
+  }
+  source_place place = place_of(config, path + ".shape");
+  if (place.file.empty()) place = place_of(config, path);
+  return with_place(place, [&] { return make_shape(table.shape, values, dimensions); });
+}
+
+std::array<bool, 3> periodic_directions_of(const case_config& config) {
+  std::array<bool, 3> periodic{};
+  for (std::size_t k = 0; k < config.space.cells.size(); ++k) {
+    const boundary_entry& side = find_boundary(config.faces[2 * k].kind.value_or(config.space.boundary));
+    periodic[k] = side.variables == nullptr && side.make({})->periodic();
+  }
+  return periodic;
+}
+
+}  // namespace
+
+void read_bodies(const case_text& text, const model& equation, case_config& config) {
+  reader_of_bodies(text, equation, config).read();
+}
+
+std::shared_ptr<const cut_cells> cut_cells_of(const case_config& config, const grid& mesh) {
+  const std::array<bool, 3> periodic = periodic_directions_of(config);
+  const auto make = [&] {
+    std::vector<outside_function> bodies;
+    for (std::size_t k = 0; k < config.bodies.size(); ++k) {
+      const auto made = made_shape(config, config.bodies[k].shape, path_of_body(k), mesh.dimensions());
+      bodies.emplace_back([made](const position& x) { return made->outside(x); });
+    }
+    return with_place(place_of_emitter(config, path_of_body(0)),
+                      [&] { return std::make_shared<const cut_cells>(mesh, bodies, periodic); });
+  };
+  return config.parts->cut.get(
+      {config.space.cells, config.space.domain, config.solids, config.bodies, periodic, config.constants},
+      make);
+}
+
+}  // namespace apsis

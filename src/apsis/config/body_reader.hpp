@@ -1,0 +1,21 @@
+#pragma once
+
+#include <apsis/config/case.hpp>
+#include <apsis/config/case_text.hpp>
+#include <apsis/mesh/cut_cells.hpp>
+
+#include <memory>
+
+namespace apsis {
+
+/// Reads the tables [[space.body]] into `config`, whose mesh is known. Throws input_error at the place of a
+/// key: an unknown shape or key, a value of another kind, a name that occurs twice, or a mesh of one
+/// dimension.
+void read_bodies(const case_text& text, const model& equation, case_config& config);
+
+/// Returns the cells of a mesh that the bodies of a case cut, made once for a case and its copies. `mesh` is
+/// that of the case with its solid boxes. Throws input_error at the place of a body as cut_cells and the
+/// shapes do, and io_error for a file that cannot be read.
+std::shared_ptr<const cut_cells> cut_cells_of(const case_config& config, const grid& mesh);
+
+}  // namespace apsis

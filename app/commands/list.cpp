@@ -4,6 +4,7 @@
 #include "print.hpp"
 #include "text_table.hpp"
 
+#include <apsis/body/shape_registry.hpp>
 #include <apsis/boundary/boundary_registry.hpp>
 #include <apsis/config/case.hpp>
 #include <apsis/config/case_schema.hpp>
@@ -154,6 +155,22 @@ json boundaries() {
   return all;
 }
 
+std::string text_of(const shape_key& key) {
+  return fmt::format("{}: {}{}", key.name, key.doc, key.value ? "" : " (needed)");
+}
+
+json shapes() {
+  json all = json::array();
+  for (const shape_entry* s : shape_entries()) {
+    json one = {{"name", s->name}, {"description", s->description}, {"dimensions", s->dimensions}};
+    for (const shape_key& key : s->keys) one["variables"].push_back(text_of(key));
+    for (const shape_key& key : common_shape_keys(s->dimensions.back()))
+      one["variables"].push_back(text_of(key));
+    all.push_back(one);
+  }
+  return all;
+}
+
 json claims() {
   json all = json::array();
   for (const paper::claim_entry* c : paper::find_claims({}))
@@ -269,7 +286,7 @@ const std::map<std::string, json (*)()>& lists() {
       {"methods", methods}, {"families", families},     {"multistep", multistep},       {"models", models},
       {"cases", cases},     {"schemes", schemes},       {"formulations", formulations}, {"claims", claims},
       {"keys", keys},       {"boundaries", boundaries}, {"quantities", quantities},     {"gases", gases},
-      {"choices", choices}};
+      {"choices", choices}, {"shapes", shapes}};
   return all;
 }
 

@@ -1,0 +1,71 @@
+#pragma once
+
+#include <apsis/velocity/velocity_set.hpp>
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+namespace apsis {
+
+/// The axes of velocities that are all combinations of numbers in each of d directions, the last fastest.
+/// Dimensionless.
+class velocity_axes {
+ public:
+  /// An interval of an axis, and where a number lies in it.
+  struct place {
+    std::size_t below;  ///< index of its lower end
+    double share;       ///< 0 at the lower end, 1 at the upper one
+  };
+
+  /// Throws input_error if the velocities are not such combinations, with at least two numbers in each
+  /// direction.
+  explicit velocity_axes(const velocity_set& velocities);
+
+  /// Returns d.
+  std::size_t dimensions() const { return points_.size(); }
+  /// Returns the numbers of a direction, which increase.
+  const std::vector<double>& points(std::size_t k) const { return points_[k]; }
+  /// Returns the numbers of the last direction.
+  const std::vector<double>& last() const { return points_.back(); }
+  /// Returns the distance of neighbours along a direction in a row.
+  std::size_t stride(std::size_t k) const { return strides_[k]; }
+  /// Returns the number of velocities.
+  std::size_t size() const { return size_; }
+  /// Returns the number of lines in the last direction.
+  std::size_t lines() const { return size_ / last().size(); }
+  /// Returns the indices of a line in the last direction; the last index is 0.
+  std::array<std::size_t, 3> indices_of_line(std::size_t line) const;
+  /// Whether the numbers of a direction are symmetric, with symmetric weights of the velocities.
+  bool is_symmetric(std::size_t k) const { return symmetric_[k]; }
+  /// Returns the place of a number of a direction; numbers beyond the ends are moved to these.
+  place find(std::size_t k, double v) const {
+    const double* all = points_[k].data();
+    const bins& of = bins_[k];
+    const double at = (v - all[0]) * of.per_unit;
+    const int bin = static_cast<int>(at > 0.0 ? (at < of.last ? at : of.last) : 0.0);
+    auto below = static_cast<std::size_t>(of.first[static_cast<std::size_t>(bin)]);
+    while (below > 0 && v < all[below]) --below;
+    while (below + 2 < points_[k].size() && v >= all[below + 1]) ++below;
+    const double share = (v - all[below]) * of.inverse_gaps[below];
+    return {below, share > 0.0 ? (share < 1.0 ? share : 1.0) : 0.0};
+  }
+
+ private:
+  void add_axis(const velocity_set& velocities, std::size_t k);
+
+  /// Equal bins along an axis.
+  struct bins {
+    double per_unit = 0.0, last = 0.0;  ///< their number per unit of velocity, and the last one
+    std::vector<int> first = {};        ///< interval at the lower end of each
+    std::vector<double> inverse_gaps = {};
+  };
+
+  std::vector<std::vector<double>> points_;
+  std::vector<bins> bins_;
+  std::vector<std::size_t> strides_;
+  std::vector<bool> symmetric_;
+  std::size_t size_ = 1;
+};
+
+}  // namespace apsis

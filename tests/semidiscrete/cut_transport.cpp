@@ -73,6 +73,8 @@ struct choices {
   bool limited = true;
   double wall_temperature = 1.0;
   std::vector<apsis::face_quantity> wall_velocity = {};
+  std::string wall = "diffuse";
+  apsis::face_quantity accommodation = 1.0;
 };
 
 gas_past_bodies make(const choices& of) {
@@ -98,10 +100,11 @@ gas_past_bodies make(const choices& of) {
     gas.builder->with_boundary(apsis::face_of(k), apsis::find_boundary(of.boundary).variables == nullptr
                                                       ? apsis::make_boundary(of.boundary)
                                                       : apsis::make_boundary(of.boundary, *gas.equation));
-  apsis::face_quantities wall{{"T", {of.wall_temperature}}};
+  apsis::face_quantities wall{{"T", {of.wall_temperature}}, {"accommodation", {of.accommodation}}};
+  if (of.wall != "diffuse") wall.clear();
   if (!of.wall_velocity.empty()) wall["velocity"] = of.wall_velocity;
   for (int body = 0; body < mesh.obstacles(); ++body)
-    gas.builder->with_solid(body, apsis::make_boundary("diffuse", *gas.equation, wall));
+    gas.builder->with_solid(body, apsis::make_boundary(of.wall, *gas.equation, wall));
   gas.problem = gas.builder->build();
   return gas;
 }
@@ -158,6 +161,12 @@ std::vector<choices> some_flows() {
           {.bodies = discs, .scheme = "upwind1"},
           {.bodies = discs, .limited = false},
           {.bodies = discs, .model = "es-bgk"},
+          {.bodies = discs, .accommodation = 0.5},
+          {.bodies = discs, .limited = false, .accommodation = 0.0},
+          {.bodies = discs, .wall = "symmetry"},
+          {.bodies = discs, .model = "es-bgk", .boundary = "outflow", .wall = "symmetry"},
+          {.dimensions = 3, .cells = 12, .bodies = {ball({0.1, -0.05, 0.03}, 0.55)}, .wall = "symmetry"},
+          {.dimensions = 3, .cells = 12, .bodies = {ball({0.1, -0.05, 0.03}, 0.55)}, .accommodation = 0.5},
           {.dimensions = 3, .cells = 12, .bodies = {ball({0.1, -0.05, 0.03}, 0.55)}},
           {.dimensions = 3, .cells = 12, .bodies = {ball({0.1, -0.05, 1.0}, 0.55)}, .boundary = "diffuse"}};
 }
@@ -200,7 +209,10 @@ TEST(cut_transport, conserves_what_walls_do_not_give) {
     for (const auto& surface : space.budget_surfaces()) {
       const std::size_t ends = space.ends_at(surface);
       for (std::size_t k = end; k < end + ends && surface.solid >= 0; ++k)
-        EXPECT_NEAR(rates[k * count], 0.0, 1e-14) << one.scheme << one.boundary;
+        EXPECT_NEAR(rates[k * count], 0.0, 1e-14) << one.scheme << one.boundary << one.wall;
+      // No energy passes a wall that reflects.
+      for (std::size_t k = end; k < end + ends && surface.solid >= 0 && one.wall == "symmetry"; ++k)
+        EXPECT_NEAR(rates[k * count + count - 1], 0.0, 1e-13) << one.scheme << one.boundary;
       end += ends;
     }
   }
@@ -215,7 +227,9 @@ TEST(cut_transport, keeps_random_states_nonnegative_in_steps_within_the_bound) {
                 .bodies = {ball({place(generator), place(generator), 0}, size(generator)),
                            ball({place(generator), place(generator), 0}, size(generator))},
                 .scheme = k % 2 == 0 ? "weno5-z" : "upwind5",
-                .boundary = k % 3 == 0 ? "diffuse" : "outflow"};
+                .boundary = k % 3 == 0 ? "diffuse" : "outflow",
+                .wall = k % 5 == 1 ? "symmetry" : "diffuse",
+                .accommodation = k % 5 == 2 ? 0.5 : 1.0};
     if (k % 8 == 7) {
       one.dimensions = 3;
       one.cells = 10;
@@ -256,29 +270,31 @@ TEST(cut_transport, gives_the_cells_of_a_group_the_same_values) {
 
 TEST(cut_transport, commutes_with_rotations_by_right_angles) {
   // x → y, y → −x of the body, of the state and of the velocities.
-  const auto with = [](position centre) {
-    return make({.cells = 18, .bodies = {ball(centre, 0.47)}, .boundary = "outflow"});
-  };
-  const gas_past_bodies gas = with({0.21, 0.13, 0}), turned = with({-0.13, 0.21, 0});
-  const int n = 18, points = 10;
-  field u = gas.uniform(), v = turned.uniform();
-  const auto image_of = [&](int cell) { return (n - 1 - cell % n) * n + cell / n; };
-  const auto velocity_of = [&](int k) {
-    const int set = k / (points * points), i = k / points % points, j = k % points;
-    return set * points * points + (points - 1 - j) * points + i;
-  };
-  for (int cell = 0; cell < u.cells(); ++cell)
-    for (int k = 0; k < u.components(); ++k) {
-      const position x = gas.mesh().centre(cell);
-      if (gas.mesh().solid(cell) < 0) u.row(cell)[k] *= 1.5 + std::sin(3.0 * x[0] + x[1] + 0.1 * k);
-      v.row(image_of(cell))[velocity_of(k)] = u.row(cell)[k];
-    }
-  const field a = gas.step(u, 0.0, 1.0), b = turned.step(v, 0.0, 1.0);
-  double difference = 0.0;
-  for (int cell = 0; cell < u.cells(); ++cell)
-    for (int k = 0; k < u.components(); ++k)
-      difference = std::max(difference, std::abs(a.row(cell)[k] - b.row(image_of(cell))[velocity_of(k)]));
-  EXPECT_LT(difference, 1e-12 * largest(a));
+  for (const std::string wall : {"diffuse", "symmetry"}) {
+    const auto with = [&](position centre) {
+      return make({.cells = 18, .bodies = {ball(centre, 0.47)}, .boundary = "outflow", .wall = wall});
+    };
+    const gas_past_bodies gas = with({0.21, 0.13, 0}), turned = with({-0.13, 0.21, 0});
+    const int n = 18, points = 10;
+    field u = gas.uniform(), v = turned.uniform();
+    const auto image_of = [&](int cell) { return (n - 1 - cell % n) * n + cell / n; };
+    const auto velocity_of = [&](int k) {
+      const int set = k / (points * points), i = k / points % points, j = k % points;
+      return set * points * points + (points - 1 - j) * points + i;
+    };
+    for (int cell = 0; cell < u.cells(); ++cell)
+      for (int k = 0; k < u.components(); ++k) {
+        const position x = gas.mesh().centre(cell);
+        if (gas.mesh().solid(cell) < 0) u.row(cell)[k] *= 1.5 + std::sin(3.0 * x[0] + x[1] + 0.1 * k);
+        v.row(image_of(cell))[velocity_of(k)] = u.row(cell)[k];
+      }
+    const field a = gas.step(u, 0.0, 1.0), b = turned.step(v, 0.0, 1.0);
+    double difference = 0.0;
+    for (int cell = 0; cell < u.cells(); ++cell)
+      for (int k = 0; k < u.components(); ++k)
+        difference = std::max(difference, std::abs(a.row(cell)[k] - b.row(image_of(cell))[velocity_of(k)]));
+    EXPECT_LT(difference, 1e-12 * largest(a)) << wall;
+  }
 }
 
 TEST(cut_transport, does_not_depend_on_the_number_of_threads) {
@@ -297,25 +313,27 @@ TEST(cut_transport, of_a_box_on_edges_is_that_of_a_solid_box) {
   const outside_function box = [](const position& x) {
     return std::max(std::abs(x[0]), std::abs(x[1])) - 0.5;
   };
-  const gas_past_bodies body = make({.cells = 16, .bodies = {box}});
-  apsis::problem_builder builder(*body.equation);
-  builder.on(grid(2, {16, 16, 1}, {-1, -1, -1}, {1, 1, 1}).with_solids({{{4, 4, 0}, {8, 8, 1}}}))
-      .with_discretization("finite-difference")
-      .with_reconstruction(apsis::find_reconstruction("weno5-z").make())
-      .with_positivity_limiter()
-      .with_epsilon([](const position&) { return 1.0; })
-      .with_solid(0, apsis::make_boundary("diffuse", *body.equation, {{"T", {1.0}}}));
-  const auto solid = builder.build();
-  std::mt19937 generator(5);
-  const field u = random_state(body.mesh(), body.equation->components(), generator);
-  const field a = body.step(u, 0.0, 1.0);
-  field b(u.cells(), u.components());
-  const apsis::target<field, double> to{&b, 0.0, 1.0, true};
-  // The same limiter: it depends on the step, and that of a mesh with bodies is half as long.
-  solid->limit_for_steps(0.5);
-  solid->add_transport(0.0, u, {&to, 1});
-  for (int cell = 0; cell < u.cells(); ++cell)
-    for (int k = 0; k < u.components(); ++k) ASSERT_EQ(a.row(cell)[k], b.row(cell)[k]) << cell;
+  for (const double accommodation : {1.0, 0.5, 0.0}) {
+    const gas_past_bodies body = make({.cells = 16, .bodies = {box}, .accommodation = accommodation});
+    apsis::problem_builder builder(*body.equation);
+    builder.on(grid(2, {16, 16, 1}, {-1, -1, -1}, {1, 1, 1}).with_solids({{{4, 4, 0}, {8, 8, 1}}}))
+        .with_discretization("finite-difference")
+        .with_reconstruction(apsis::find_reconstruction("weno5-z").make())
+        .with_positivity_limiter()
+        .with_epsilon([](const position&) { return 1.0; })
+        .with_solid(0, apsis::make_boundary("diffuse", *body.equation, {{"accommodation", {accommodation}}}));
+    const auto solid = builder.build();
+    std::mt19937 generator(5);
+    const field u = random_state(body.mesh(), body.equation->components(), generator);
+    const field a = body.step(u, 0.0, 1.0);
+    field b(u.cells(), u.components());
+    const apsis::target<field, double> to{&b, 0.0, 1.0, true};
+    // The same limiter: it depends on the step, and that of a mesh with bodies is half as long.
+    solid->limit_for_steps(0.5);
+    solid->add_transport(0.0, u, {&to, 1});
+    for (int cell = 0; cell < u.cells(); ++cell)
+      for (int k = 0; k < u.components(); ++k) ASSERT_EQ(a.row(cell)[k], b.row(cell)[k]) << cell;
+  }
 }
 
 TEST(cut_transport, refuses_boundaries_and_walls_that_a_body_cannot_have) {
@@ -329,8 +347,17 @@ TEST(cut_transport, refuses_boundaries_and_walls_that_a_body_cannot_have) {
   };
   EXPECT_THAT(with("outflow", {}), testing::ThrowsMessage<apsis::input_error>(
                                        testing::HasSubstr("that serves faces of cells alone")));
-  EXPECT_THAT(with("diffuse", {{"T", {1.0}}, {"accommodation", {0.5}}}),
-              testing::ThrowsMessage<apsis::input_error>(testing::HasSubstr("full accommodation")));
+  EXPECT_THAT(with("diffuse", {{"accommodation", {1.5}}}),
+              testing::ThrowsMessage<apsis::input_error>(
+                  testing::HasSubstr("the accommodation of a diffuse wall is 1.5 at t = 0 (")));
+  EXPECT_THAT(
+      [] {
+        const gas_past_bodies gas =
+            make({.bodies = {ball({0.1, 0, 0}, 0.5)},
+                  .accommodation = apsis::face_quantity([](double, const position& at) { return at[0]; })});
+        gas.step(gas.uniform(), 1.0, 0.1);
+      },
+      testing::ThrowsMessage<apsis::input_error>(testing::HasSubstr("(a number from 0 to 1")));
   EXPECT_THAT(
       [] {
         const gas_past_bodies gas = make({.bodies = {ball({0.1, 0, 0}, 0.5)}, .wall_velocity = {1.0, 0.0}});

@@ -61,14 +61,13 @@ cut_transport::cut_transport(const model& equation, std::shared_ptr<domain> spac
   }
   const velocity_set velocities = space_->space().velocities;
   for (int solid = 0; solid < space_->mesh().obstacles(); ++solid) {
-    walls_.push_back(space_->solid_boundary(solid)->oblique(velocities));
     const bool is_needed = std::any_of(cut().walls().begin(), cut().walls().end(),
                                        [&](const wall_segment& one) { return one.solid == solid; });
+    walls_.push_back(is_needed ? space_->solid_boundary(solid)->oblique(velocities) : nullptr);
     if (is_needed && !walls_.back())
       throw input_error(
           "a boundary of a body that serves faces of cells alone (a curved body has any normal); use a "
-          "diffuse "
-          "wall");
+          "diffuse wall, or symmetry");
   }
   ends_.resize(space_->surfaces().size());
   groups_.resize(cut().groups().size());

@@ -1,5 +1,6 @@
 #include <apsis/boundary/boundary_registry.hpp>
 #include <apsis/boundary/mirrored_components.hpp>
+#include <apsis/boundary/oblique_reflection.hpp>
 #include <apsis/boundary/prescribed_state.hpp>
 #include <apsis/core/errors.hpp>
 
@@ -16,16 +17,31 @@
 namespace apsis {
 namespace {
 
-/// A diffuse wall with any normal: f_in = ρ_w M[1, u_w, T_w] with the part of u_w along the wall. No mass
-/// crosses it. A wall that is cut into flat pieces moves along each of them.
+/// Returns α at a point of a wall.
+double accommodation_at(const face_quantity& accommodation, double t, const position& at) {
+  const double alpha = accommodation.at(t, at);
+  if (!(alpha >= 0.0 && alpha <= 1.0))
+    throw input_error(
+        fmt::format("the accommodation of a diffuse wall is {:g} at t = {:.10g} (a number "
+                    "from 0 to 1 is needed); change it",
+                    alpha, t));
+  return alpha;
+}
+
+/// A wall with any normal (Maxwell 1879): f_in = α ρ_w M[1, u_w, T_w] + (1 − α) f_reflected with the part of
+/// u_w along the wall, and with the specular reflection of oblique_reflection. No mass crosses it. A wall
+/// that is cut into flat pieces moves along each of them. Reflection does not depend on u_w, as u_w·n = 0.
 class oblique_diffuse_wall final : public oblique_wall {
  public:
   oblique_diffuse_wall(const velocity_set& velocities, prescribed_state emitted, face_quantity temperature,
-                       std::vector<face_quantity> velocity)
+                       std::vector<face_quantity> velocity, face_quantity accommodation)
       : velocities_(velocities),
         emitted_(std::move(emitted)),
         temperature_(std::move(temperature)),
-        velocity_(std::move(velocity)) {
+        velocity_(std::move(velocity)),
+        accommodation_(std::move(accommodation)) {
+    if (!accommodation_.is_constant() || accommodation_at(accommodation_, 0.0, {}) < 1.0)
+      reflection_.emplace(velocities);
     for (const auto& one : velocity_) moves_ = moves_ || !one.is_constant() || one.at(0.0, {}) != 0.0;
   }
 
@@ -50,8 +66,30 @@ class oblique_diffuse_wall final : public oblique_wall {
 
   void emit(const wall_point& where, const double* inward, const double* arriving,
             double* values) const override {
+    const double alpha = accommodation_at(accommodation_, where.t, where.at);
+    const auto n = static_cast<std::size_t>(velocities_.components());
+    if (alpha < 1.0) reflection_->reflect(where.normal, inward, arriving, values);
+    if (alpha == 0.0) return;
+    thread_local std::vector<double> memory;  // a row of the wall beside the reflected one
+    if (alpha < 1.0 && memory.size() < n) memory.resize(n);
+    const auto [density, emitted] =
+        emission(where, inward, arriving, {alpha < 1.0 ? memory.data() : values, n});
+    const double rho = alpha * density;
+    for (std::size_t k = 0; k < n; ++k)
+      values[k] = rho * emitted[k] + (alpha < 1.0 ? (1.0 - alpha) * values[k] : 0.0);
+  }
+
+ private:
+  struct emitted_gas {
+    double density;
+    const double* row;  ///< of density 1
+  };
+
+  /// Returns what a wall with α = 1 emits. It may be in the buffer.
+  emitted_gas emission(const wall_point& where, const double* inward, const double* arriving,
+                       std::span<double> buffer) const {
     const auto weights = velocities_.weights();
-    const double* emitted = emission(where, {values, static_cast<std::size_t>(velocities_.components())});
+    const double* emitted = maxwellian(where, buffer);
     double arrived = 0.0, leaving = 0.0;
     for (std::size_t j = 0; j < weights.size(); ++j) {
       if (inward[j] < 0.0) arrived -= weights[j] * inward[j] * arriving[j];
@@ -61,12 +99,10 @@ class oblique_diffuse_wall final : public oblique_wall {
       throw input_error(
           "the Maxwellian of a wall is 0 at all velocities that leave it (they do not resolve it); increase "
           "velocity.points, or the temperature of the wall");
-    const double rho = arrived / leaving;
-    for (int k = 0; k < velocities_.components(); ++k) values[k] = rho * emitted[k];
+    return {arrived / leaving, emitted};
   }
 
- private:
-  const double* emission(const wall_point& where, std::span<double> row) const {
+  const double* maxwellian(const wall_point& where, std::span<double> row) const {
     if (!moves_) return emitted_.at(where.t, where.at, row);
     const auto u = velocity(where);
     std::array<double, 5> numbers = {1.0};
@@ -80,6 +116,8 @@ class oblique_diffuse_wall final : public oblique_wall {
   prescribed_state emitted_;
   face_quantity temperature_;
   std::vector<face_quantity> velocity_;
+  face_quantity accommodation_;
+  std::optional<oblique_reflection> reflection_;  ///< unless α = 1
   bool moves_ = false;
 };
 
@@ -107,11 +145,8 @@ class diffuse_wall final : public incoming_boundary {
   }
 
   std::shared_ptr<const oblique_wall> oblique(const velocity_set& velocities) const override {
-    if (!accommodation_.is_constant() || accommodation_.at(0.0, {}) != 1.0)
-      throw input_error(
-          "a diffuse wall of a body reflects a part of the molecules (only full accommodation is possible "
-          "there); leave out its accommodation");
-    return std::make_shared<oblique_diffuse_wall>(velocities, emitted_, temperature_, velocity_);
+    return std::make_shared<oblique_diffuse_wall>(velocities, emitted_, temperature_, velocity_,
+                                                  accommodation_);
   }
 
   std::optional<std::vector<double>> entropy_bound() const override { return entropy_bound_; }
@@ -130,12 +165,7 @@ class diffuse_wall final : public incoming_boundary {
           fmt::format("the velocity of a diffuse wall is {:g} along its normal at t = {:.10g} (the "
                       "domain would have to move); give 0 there",
                       normal, t));
-    const double alpha = accommodation_.at(t, at);
-    if (!(alpha >= 0.0 && alpha <= 1.0))
-      throw input_error(
-          fmt::format("the accommodation of a diffuse wall is {:g} at t = {:.10g} (a number "
-                      "from 0 to 1 is needed); change it",
-                      alpha, t));
+    const double alpha = accommodation_at(accommodation_, t, at);
     const double* emitted = emitted_.at(t, at, {values, mirrored_.size()});
     double arriving = 0.0, leaving = 0.0;
     for (std::size_t j = 0; j < mass_flux_.size(); ++j) {

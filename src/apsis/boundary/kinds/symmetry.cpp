@@ -1,12 +1,30 @@
 #include <apsis/boundary/boundary_registry.hpp>
 #include <apsis/boundary/mirrored_components.hpp>
+#include <apsis/boundary/oblique_reflection.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <vector>
 
 namespace apsis {
 namespace {
+
+/// A wall with any normal that reflects specularly: neither shear nor heat, the velocity of the wall is 0.
+class oblique_mirror final : public oblique_wall {
+ public:
+  explicit oblique_mirror(const velocity_set& velocities) : reflection_(velocities) {}
+
+  void emit(const wall_point& where, const double* inward, const double* arriving,
+            double* values) const override {
+    reflection_.reflect(where.normal, inward, arriving, values);
+  }
+
+  std::array<double, 3> velocity(const wall_point&) const override { return {}; }
+
+ private:
+  oblique_reflection reflection_;
+};
 
 /// A plane of symmetry, or a wall that reflects particles specularly: ghost cells are the mirror images of
 /// the cells inside, with the normal velocity reversed. Mass, energy and tangential momentum do not cross the
@@ -26,6 +44,12 @@ class symmetry_boundary final : public boundary {
     for (std::size_t k = 0; k < own->signs_.size() && !of_sets.empty(); ++k)
       own->signs_[k] = of_sets[k / static_cast<std::size_t>(velocities.size())];
     return own;
+  }
+
+  /// Only the components of a gas are known to be densities of particles.
+  std::shared_ptr<const oblique_wall> oblique(const velocity_set& velocities) const override {
+    if (equation_ == nullptr || equation_->as_gas() == nullptr) return nullptr;
+    return std::make_shared<oblique_mirror>(velocities);
   }
 
   void fill(const face&, double, const pencil_end& rows) const override {

@@ -3,6 +3,7 @@
 #include <apsis/core/errors.hpp>
 #include <apsis/exec/memory.hpp>
 #include <apsis/integrate/schedule.hpp>
+#include <apsis/mesh/cut_cells.hpp>
 #include <apsis/mesh/field.hpp>
 #include <apsis/model/model.hpp>
 #include <apsis/steady/macroscopic_system.hpp>
@@ -86,6 +87,9 @@ memory_need::memory_need(const run_setup& setup, int copies)
                                                       : output.fields.size());
   if (setup.has_space()) shape_ = config.space.cells;
   cells_ = product(shape_);
+  if (const cut_cells* cut = setup.has_space() ? setup.mesh().cut() : nullptr)
+    rows_of_bodies_ =
+        static_cast<double>(cut->groups().size() * shape_.size() + cut->faces().size()) / cells_;
   const auto& points = config.velocity.points;
   if (points > 0 && velocity_dimensions_ > 0) points_ = points.each();
   if (const relaxation_model* relaxes = setup.equation->as_relaxation();
@@ -95,7 +99,8 @@ memory_need::memory_need(const run_setup& setup, int copies)
 }
 
 double memory_need::bytes(double cells, double components) const {
-  const double padded = buffers_ * field::padded(static_cast<int>(std::min(components, 1e9)));
+  const double padded =
+      (buffers_ + rows_of_bodies_) * field::padded(static_cast<int>(std::min(components, 1e9)));
   constexpr double of_monitor = 2.0;  // step_differences
   return cells * (bytes_of_moments_ +
                   sizeof(double) * (padded + copies_ * components + snapshots_ * fields_ + of_monitor));

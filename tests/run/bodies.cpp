@@ -1,0 +1,151 @@
+// Runs past bodies: drag in free molecules, tables of walls, totals of the history, restarts, promises.
+#include <apsis/config/case.hpp>
+#include <apsis/core/errors.hpp>
+#include <apsis/run/compute_surfaces.hpp>
+#include <apsis/run/simulation.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace runs_past_bodies_test {
+namespace {
+
+std::string cylinder(const std::string& more, const std::string& model = "bgk") {
+  return R"(
+[model]
+name = ")" +
+         model + R"("
+degrees_of_freedom = 3
+epsilon = 1e9
+[initial]
+rho = 1
+u = [2.5, 0]
+T = 1
+[space]
+cells = [20, 10]
+domain = [[-1.3, 1.3], [0, 1.3]]
+boundary = "outflow"
+[boundary.left]
+kind = "inflow"
+rho = 1
+u = [2.5, 0]
+T = 1
+[boundary.bottom]
+kind = "symmetry"
+[[space.body]]
+name = "cylinder"
+shape = "circle"
+centre = [0, 0]
+radius = 1
+)" + more +
+         R"(
+[velocity]
+max = 7
+points = 20
+[time]
+method = "md-imex-5-2"
+end = 2
+safety = 1
+[output]
+surfaces = "all"
+)";
+}
+
+apsis::simulation finished(const std::string& text) {
+  apsis::simulation run(apsis::parse_case(text, "cylinder.toml"));
+  while (!run.finished()) run.advance();
+  return run;
+}
+
+const apsis::surface_table& table_of(const std::vector<apsis::surface_table>& all, const std::string& name) {
+  return *std::find_if(all.begin(), all.end(), [&](const auto& one) { return one.name == name; });
+}
+
+std::vector<double> column(const apsis::surface_table& table, const std::string& name) {
+  const auto& names = table.numbers.columns;
+  const auto place = static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
+  std::vector<double> values;
+  for (const auto& row : table.numbers.rows) values.push_back(row.at(place));
+  return values;
+}
+
+/// Free-molecular pressure and heat flux at a wall that makes the angle with the stream, over ρ, for u = 2.5
+/// and T = 1 on both sides. S: speed along the normal over √(2T).
+struct free_molecular {
+  double pressure, heat;
+  explicit free_molecular(double cosine) {
+    const double s = 2.5 / std::sqrt(2.0), S = s * cosine, root = std::sqrt(std::numbers::pi);
+    const double chi = std::exp(-S * S) + root * S * (1.0 + std::erf(S));
+    const double arriving = chi / std::sqrt(2.0 * std::numbers::pi);
+    // Bird, Molecular Gas Dynamics (1994), section 7: of diffuse walls.
+    pressure = (S * std::exp(-S * S) + root * (0.5 + S * S) * (1.0 + std::erf(S))) / root +
+               0.5 * std::sqrt(2.0 * std::numbers::pi) * arriving;
+    heat = arriving * (s * s + 2.5 - 2.0) - 0.5 * std::exp(-S * S) / std::sqrt(2.0 * std::numbers::pi);
+  }
+};
+
+}  // namespace
+
+TEST(runs_past_bodies, have_free_molecular_pressure_and_heat_at_every_piece_of_wall) {
+  const apsis::simulation run = finished(cylinder(""));
+  EXPECT_EQ(run.summary().negative_values, 0);
+  EXPECT_LT(run.summary().conservation_defect, 1e-13);
+  const auto tables = run.surfaces();
+  const auto& wall = table_of(tables, "cylinder");
+  const auto x = column(wall, "x"), y = column(wall, "y"), p = column(wall, "pressure"),
+             q = column(wall, "heat_flux"), s = column(wall, "s");
+  ASSERT_GT(x.size(), 12U);
+  for (std::size_t k = 0; k < x.size(); ++k) {
+    EXPECT_NEAR(std::hypot(x[k], y[k]), 1.0, 1e-9);
+    const free_molecular exact(-x[k]);
+    // Of ρU² and ρU³/2: the wall is a polygon with sides of a tenth of its radius.
+    EXPECT_NEAR(p[k], exact.pressure, 0.02 * 6.25) << x[k];
+    EXPECT_NEAR(q[k], exact.heat, 0.02 * 7.8) << x[k];
+    if (k > 0) {
+      EXPECT_GT(s[k], s[k - 1]);
+    }
+  }
+}
+
+TEST(runs_past_bodies, give_walls_what_the_history_says) {
+  const apsis::simulation run = finished(cylinder("velocity = [\"-0.5*y\", \"0.5*x\"]\nT = 1.3\n"));
+  const auto tables = run.surfaces();
+  const auto& wall = table_of(tables, "cylinder");
+  const auto area = column(wall, "area");
+  const auto& faces = run.setup().open_faces();
+  const auto number =
+      static_cast<std::size_t>(std::find(faces.begin(), faces.end(), "cylinder") - faces.begin());
+  const auto rates = run.last().flux;
+  const std::size_t count = run.setup().equation->invariants().size();
+  for (std::size_t k = 0; k < count; ++k) {
+    const auto flux = column(wall, run.setup().equation->invariants()[k]);
+    double sum = 0.0, size = 0.0;
+    for (std::size_t j = 0; j < flux.size(); ++j) {
+      sum += area[j] * flux[j];
+      size += area[j] * std::abs(flux[j]);
+    }
+    EXPECT_NEAR(-sum, rates.at(number * count + k), 1e-13 * (1.0 + size)) << k;
+  }
+}
+
+TEST(runs_past_bodies, keep_promises_with_every_gas_and_wall) {
+  for (const std::string model : {"bgk", "shakhov", "es-bgk"})
+    for (const std::string wall : {"T = 0.7\naccommodation = 0.5\n", "kind = \"symmetry\"\n", "T = 2\n"}) {
+      std::string text = cylinder(wall, model);
+      text.replace(text.find("epsilon = 1e9"), 13, "epsilon = 0.05");
+      text.replace(text.find("end = 2"), 7, "end = 0.1");
+      if (model == "shakhov") text.replace(text.find("degrees"), 0, "tails = \"nonnegative\"\n");
+      const apsis::simulation run = finished(text);
+      EXPECT_TRUE(run.promises().positivity) << model;
+      EXPECT_EQ(run.summary().negative_values, 0) << model << wall;
+      EXPECT_LT(run.summary().conservation_defect, 1e-13) << model << wall;
+    }
+}
+
+}  // namespace runs_past_bodies_test

@@ -28,14 +28,14 @@ HWY_INLINE cut_demand<N> demand_at(const demand_rows& demand, int k) {
           N::load(demand.increase + k)};
 }
 
-void project(const std::array<double, 3>& vector, const std::array<const double*, 3>& speeds, int directions,
-             int n, double* outward) {
+void project(const std::array<double, 3>& vector, double rate, const std::array<const double*, 3>& speeds,
+             int directions, int n, double* outward) {
   for_packs(n, [&](auto lanes, int k) APSIS_PACKED {
     using N = pack<decltype(lanes)>;
     N sum = N::load(speeds[0] + k) * N(vector[0]);
     for (std::size_t d = 1; d < static_cast<std::size_t>(directions); ++d)
       sum = fma(N::load(speeds[d] + k), N(vector[d]), sum);
-    sum.store(outward + k);
+    (N(rate) * sum).store(outward + k);
   });
 }
 
@@ -122,9 +122,9 @@ HWY_EXPORT(add);
 
 namespace cut_rows {
 
-void project(const std::array<double, 3>& vector, const std::array<const double*, 3>& speeds, int directions,
-             int n, double* outward) {
-  HWY_DYNAMIC_DISPATCH(project)(vector, speeds, directions, n, outward);
+void project(const std::array<double, 3>& vector, double rate, const std::array<const double*, 3>& speeds,
+             int directions, int n, double* outward) {
+  HWY_DYNAMIC_DISPATCH(project)(vector, rate, speeds, directions, n, outward);
 }
 
 void fit(const double* u, std::span<const neighbour> around, int directions, int n, const gradient& slopes) {

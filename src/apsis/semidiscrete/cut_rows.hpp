@@ -13,9 +13,9 @@ namespace cut_rows {
 /// The gradient of a row: one row for each direction.
 using gradient = std::array<double*, 3>;
 
-/// outward ← Σ_k vector[k] speeds[k].
-void project(const std::array<double, 3>& vector, const std::array<const double*, 3>& speeds, int directions,
-             int n, double* outward);
+/// outward ← rate Σ_k vector[k] speeds[k]. The sign of the sum does not depend on the rate.
+void project(const std::array<double, 3>& vector, double rate, const std::array<const double*, 3>& speeds,
+             int directions, int n, double* outward);
 
 /// A neighbour in a least-squares gradient.
 struct neighbour {

@@ -93,7 +93,8 @@ void cut_transport::add_ways(int number) {
              {},
              is_below ? one.from_below : one.from_above,
              is_below ? one.from_above : one.from_below};
-    made.outward[at(one.direction)] = (is_below ? one.area : -one.area) / from.volume;
+    made.normal[at(one.direction)] = is_below ? 1.0 : -1.0;
+    made.rate = one.area / from.volume;
     made.surface = static_cast<int>(face{one.direction, is_below}.index());
     if (other >= 0 && cut().group_of(other) >= 0) {
       made.to = way::kind::group;
@@ -114,7 +115,8 @@ void cut_transport::add_ways(int number) {
   for (const int w : from.walls) {
     const wall_segment& one = cut().walls()[at(w)];
     way made{way::kind::wall, w, {}, one.from_centre};
-    for (std::size_t k = 0; k < 3; ++k) made.outward[k] = -one.area * one.normal[k] / from.volume;
+    made.normal = one.normal;
+    made.rate = -one.area / from.volume;
     add(made);
   }
 }
@@ -184,7 +186,7 @@ void cut_transport::fit_group(const field& u, int number, scratch& own) {
   for (double* row : {demand.lowest, demand.size, demand.outflow, demand.increase}) std::fill_n(row, n, 0.0);
   double* outward = own.rows.row(outward_row);
   for (const way& one : of.ways) {
-    cut_rows::project(one.outward, speeds_, directions(), n, outward);
+    cut_rows::project(one.normal, one.rate, speeds_, directions(), n, outward);
     cut_rows::add_demand(outward, step_, slopes, one.from_centre, directions(), n, demand);
   }
   cut_rows::limit(here, demand, kept_, directions(), n, slopes);
@@ -199,7 +201,7 @@ void cut_transport::complete(int surface, int place, const field& u,
   const int n = equation_.components();
   double *outward = own.rows.row(outward_row), *values = own.rows.row(values_row);
   std::fill_n(values, n, 0.0);
-  cut_rows::project(one.outward, speeds_, directions(), n, outward);
+  cut_rows::project(one.normal, one.rate, speeds_, directions(), n, outward);
   cut_rows::leave(u.row(of.cell), outward, lines_of(number), one.from_centre, directions(), n, values);
   const face where = space_->surfaces()[at(surface)].where;
   const int cell = space_->cell_at(surface, place);
@@ -239,7 +241,7 @@ void cut_transport::add_way(double t, const field& u, const group& of, int numbe
   const int n = equation_.components();
   double *outward = own.rows.row(outward_row), *values = own.rows.row(values_row),
          *inward = own.rows.row(inward_row);
-  cut_rows::project(one.outward, speeds_, directions(), n, outward);
+  cut_rows::project(one.normal, one.rate, speeds_, directions(), n, outward);
   const double* here = u.row(of.cell);
   std::copy_n(here, n, values);
   switch (one.to) {
@@ -262,7 +264,7 @@ void cut_transport::add_way(double t, const field& u, const group& of, int numbe
   }
   if (one.to == way::kind::wall) {
     const wall_segment& wall = cut().walls()[at(one.number)];
-    cut_rows::project(wall.normal, speeds_, directions(), n, inward);
+    cut_rows::project(one.normal, 1.0, speeds_, directions(), n, inward);
     double* emitted = own.rows.row(ghost_rows);
     walls_[at(wall.solid)]->emit({wall.normal, wall.middle, t}, inward, values, emitted);
     face_rows::take_entering(inward, emitted, n, values);

@@ -51,11 +51,12 @@ class cut_transport {
   /// An open face of a group, or a piece of wall.
   struct way {
     enum class kind { group, whole, domain, wall } to;
-    int number;                     ///< of the group, end of the border, open face or wall
-    std::array<double, 3> outward,  ///< area × normal out of the gas / volume
-        from_centre,                ///< vector to its middle
-        from_other = {};            ///< the same from the centroid of the other group
-    int surface = -1;               ///< of the border, or the face of the domain
+    int number;                    ///< of the group, end of the border, open face or wall
+    std::array<double, 3> normal,  ///< unit vector out of the gas at a face, into it at a wall
+        from_centre,               ///< vector to its middle
+        from_other = {};           ///< the same from the centroid of the other group
+    double rate = 0.0;             ///< area / volume; negative at a wall, so that both have the sign of v·n
+    int surface = -1;              ///< of the border, or the face of the domain
   };
   struct neighbour {
     int cell;

@@ -1,0 +1,122 @@
+// Nonnegativity and conservation of gases past random bodies in the plane and in space, for every convex
+// method, over more than 1e9 point·stages.
+#include <apsis/config/case.hpp>
+#include <apsis/core/errors.hpp>
+#include <apsis/method/method.hpp>
+#include <apsis/run/simulation.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <support/catalogue.hpp>
+
+namespace body_positivity_test {
+namespace {
+
+/// Cases with random bodies, walls, ends and rarefactions. The gas is nearly a vacuum in parts of the domain.
+/// No expression draws twice, so that all compilers draw the same cases.
+class random_bodies {
+ public:
+  explicit random_bodies(unsigned seed) : generator_(seed) {}
+
+  std::string next(const std::string& model, const std::string& method, int dimensions) {
+    const bool plane = dimensions == 2;
+    std::string text =
+        fmt::format("[model]\nname = \"{}\"\nepsilon = {:g}\n", model, std::pow(10.0, number(-8.0, 6.0)));
+    if (model == "shakhov") text += "tails = \"nonnegative\"\n";
+    text += fmt::format("[initial]\nrho = \"x > {:.3f} ? 1 : 1e-12\"\n", number(-0.8, 0.5));
+    text += fmt::format("u = [{:.3f}, 0.3{}]\nT = \"y > 0 ? 0.6 : 1.2\"\n", number(-1.0, 1.0),
+                        plane ? "" : ", 0");
+    text += plane ? "[space]\ncells = [18, 18]\ndomain = [[-1, 1], [-1, 1]]\n"
+                  : "[space]\ncells = [10, 10, 10]\ndomain = [[-1, 1], [-1, 1], [-1, 1]]\n";
+    text += "boundary = \"" + pick({"outflow", "symmetry", "diffuse"}) + "\"\n";
+    for (int body = 0; body < (plane ? 2 : 1); ++body) text += table(dimensions);
+    return text +
+           fmt::format("[velocity]\nmax = 6\npoints = {}\n[time]\nmethod = \"{}\"\nend = 9\nsafety = 1\n",
+                       plane ? 14 : 10, method);
+  }
+
+ private:
+  double number(double from, double to) {
+    return std::uniform_real_distribution<double>(from, to)(generator_);
+  }
+  std::string pick(const std::vector<std::string>& from) {
+    return from[std::uniform_int_distribution<std::size_t>(0, from.size() - 1)(generator_)];
+  }
+  std::string vector(int d, double from, double to) {
+    std::string text;
+    for (int k = 0; k < d; ++k) text += (k > 0 ? ", " : "") + fmt::format("{:.4f}", number(from, to));
+    return "[" + text + "]";
+  }
+  std::string table(int d) {
+    const bool is_round = number(0.0, 1.0) < 0.7;
+    const std::string shape = is_round ? (d == 2 ? "circle" : "sphere") : (d == 2 ? "ellipse" : "ellipsoid");
+    std::string text = "[[space.body]]\nshape = \"" + shape + "\"\ncentre = " + vector(d, -0.9, 0.9) + "\n";
+    text += is_round ? fmt::format("radius = {:.4f}\n", number(0.3, 0.7))
+                     : "semi_axes = " + vector(d, 0.35, 0.8) + "\n";
+    if (!is_round && d == 2) text += fmt::format("angle = {:.1f}\n", number(0.0, 180.0));
+    if (number(0.0, 1.0) < 0.2) return text + "kind = \"symmetry\"\n";
+    text += fmt::format("T = {:.3f}\n", number(0.4, 2.0));
+    return text + "accommodation = " + pick({"1", "1", "0.4"}) + "\n";
+  }
+
+  std::mt19937 generator_;
+};
+
+void expect_nonnegative(int dimensions, int steps, double point_stages, unsigned seed) {
+  random_bodies cases(seed);
+  const auto methods = methods_where(is_convex_at_every_epsilon);
+  const std::vector<std::string> models = {"bgk", "bgk", "shakhov", "es-bgk"};
+  double done = 0.0, defect = 0.0;
+  int complete = 0, ended = 0, refused = 0;
+  for (std::size_t k = 0; done < point_stages && !testing::Test::HasFailure(); ++k) {
+    const std::string& method = methods[k % methods.size()];
+    const std::string text = cases.next(models[k % models.size()], method, dimensions);
+    try {
+      apsis::simulation run(apsis::parse_case(text, "random.toml"));
+      ASSERT_TRUE(run.promises().positivity) << text;
+      for (int step = 0; step < steps; ++step) run.advance();
+      ++complete;
+      ASSERT_EQ(run.summary().negative_values, 0) << text;
+      defect = std::max(defect, run.summary().conservation_defect);
+      done += static_cast<double>(run.step()) * static_cast<double>(run.state().size()) *
+              static_cast<double>(apsis::find_method(method).stages());
+    } catch (const apsis::numerical_error& failure) {
+      // A gas that becomes too hot or too cold for the velocities ends a run.
+      ASSERT_THAT(failure.what(), testing::AnyOf(testing::HasSubstr("no Maxwellian has the state outside"),
+                                                 testing::HasSubstr("is too small for the gas")))
+          << text;
+      ++ended;
+    } catch (const apsis::input_error& failure) {
+      ASSERT_THAT(failure.what(), testing::AnyOf(testing::HasSubstr("is thinner than a cell"),
+                                                 testing::HasSubstr("has no wall in the domain")))
+          << text;
+      ++refused;
+    }
+  }
+  EXPECT_GT(complete, ended + refused);
+  EXPECT_LT(defect, 1e-12);
+}
+
+}  // namespace
+
+TEST(body_positivity, quick_in_the_plane) {
+  expect_nonnegative(2, 10, 2e7, 1);
+}
+
+TEST(body_positivity, quick_in_space) {
+  expect_nonnegative(3, 4, 2e7, 2);
+}
+
+TEST(SLOW_body_positivity, holds_for_1e9_point_stages_in_the_plane_and_in_space) {
+  expect_nonnegative(2, 25, 6e8, 3);
+  expect_nonnegative(3, 10, 6e8, 4);
+}
+
+}  // namespace body_positivity_test

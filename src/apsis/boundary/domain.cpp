@@ -31,7 +31,7 @@ std::array<bool, 3> periodic_directions(const grid& mesh, const std::vector<doma
   return periodic;
 }
 
-/// What whole cells see of cut ones: ghost rows continue the state inside. The values that enter are those of
+/// The border of whole cells to cut ones: ghost rows continue the state inside. The values that enter are those of
 /// the cut cells, which the transport has.
 class border_of_cut_cells final : public incoming_boundary {};
 

@@ -38,7 +38,7 @@ face_fluxes::face_fluxes(const model& equation, std::shared_ptr<domain> space)
     for (const int number : one.cut_faces) open_faces_[index(number)] = ends_++;
     for (const int number : one.walls) walls_[index(number)] = ends_++;
   }
-  // What whole cells let out to cut ones; it stays in the gas.
+  // Fluxes from whole cells to cut ones stay in the gas.
   for (std::size_t k = 0; k < sides_.size(); ++k)
     if (space_->is_border_of_cut_cells(static_cast<int>(k)))
       sides_[k].values = field(space_->surfaces()[k].own, equation.components());

@@ -13,7 +13,7 @@
 namespace apsis {
 namespace {
 
-/// Gas in a cell below this share of its volume is none.
+/// A cell with a smaller share of gas in its volume is solid.
 constexpr double no_gas = 1e-15;
 /// A cell with more than this share of its volume is whole.
 constexpr double all_gas = 1.0 - 1e-9;

@@ -15,7 +15,7 @@ namespace apsis::APSIS_NUMBERS {
 /// Terms of a correction are at most so many times the value.
 inline constexpr double largest_terms = 50.0;
 
-/// What the corrections of a cut cell ask for: the lowest one, the largest sum of the sizes of their terms,
+/// Measures of the corrections of a cut cell: the lowest one, the largest sum of the sizes of their terms,
 /// and sums over the faces and walls where a component leaves, of its outflow in a step and of the
 /// corrections that increase it.
 template <class N>

@@ -234,6 +234,18 @@ TEST(cut_cells, leave_boxes_on_edges_of_cells_whole) {
   EXPECT_EQ(solid, 64);
 }
 
+TEST(cut_cells, have_no_slivers_where_a_body_touches_an_edge) {
+  // The disc touches the edges of cells at (±1, 0) and (0, ±1).
+  const grid mesh = plane(16);
+  const cut_cells cut(mesh, {disc(0.0, 0.0, 1.0)}, closed);
+  expect_sound(mesh, cut);
+  for (const auto& wall : cut.walls()) EXPECT_GT(wall.area, 0.01 * mesh.spacing(0));
+  for (int cell = 0; cell < mesh.size(); ++cell)
+    if (cut.group_of(cell) >= 0) {
+      EXPECT_LT(std::hypot(mesh.centre(cell)[0], mesh.centre(cell)[1]), 1.0 + mesh.spacing(0));
+    }
+}
+
 TEST(cut_cells, see_the_same_body_across_periodic_faces) {
   const grid mesh = plane(24);
   const std::array<bool, 3> periodic = {true, true, false};

@@ -14,6 +14,7 @@
 #include <apsis/scheme/formulas/weno5_z.hpp>
 #include <apsis/semidiscrete/formulas/centre.hpp>
 #include <apsis/semidiscrete/formulas/collision.hpp>
+#include <apsis/semidiscrete/formulas/cut_cell.hpp>
 #include <apsis/semidiscrete/formulas/face.hpp>
 #include <apsis/semidiscrete/formulas/lattice.hpp>
 #include <apsis/semidiscrete/formulas/upwind.hpp>
@@ -59,6 +60,13 @@ extern "C" void boundaries(const double* u, double* to) {
   to[3] = scalar::with_change(to[3], u[0], u[1]);
   to[4] =
       scalar::limited_edge(u[0], u[1], scalar::limited_fraction(u[0], u[1], u[2], u[3], u[4], u[5]), u[6]);
+}
+
+extern "C" void cut_cells(const double* u, double* to) {
+  scalar::cut_demand<double> demand{u[0], u[1], u[2], u[3]};
+  demand.add(u[4], u[5], u[6]);
+  to[0] = demand.factor(u[7], u[8]);
+  to[1] = scalar::leaving_value(u[7], to[0] * u[5]);
 }
 
 extern "C" void collisions(const double* u, double* to) {

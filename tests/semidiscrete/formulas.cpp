@@ -3,9 +3,11 @@
 #include <apsis/scheme/formulas/quartic.hpp>
 #include <apsis/semidiscrete/centre_rows.hpp>
 #include <apsis/semidiscrete/collision_rows.hpp>
+#include <apsis/semidiscrete/cut_rows.hpp>
 #include <apsis/semidiscrete/face_rows.hpp>
 #include <apsis/semidiscrete/formulas/centre.hpp>
 #include <apsis/semidiscrete/formulas/collision.hpp>
+#include <apsis/semidiscrete/formulas/cut_cell.hpp>
 #include <apsis/semidiscrete/formulas/face.hpp>
 #include <apsis/semidiscrete/formulas/lattice.hpp>
 #include <apsis/semidiscrete/formulas/upwind.hpp>
@@ -14,6 +16,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -370,6 +373,38 @@ TEST(formulas, values_at_centres_are_those_of_single_numbers) {
         }
       });
   });
+}
+
+TEST(cut_rows, limit_lines_as_the_formula_does) {
+  random_source random(11);
+  for (int k = 0; k < 200; ++k) {
+    const auto n = static_cast<std::size_t>(1 + k % 19);
+    const rows u(1, n, random, any_size), outward(2, n, random, any_sign);
+    rows slopes(2, n, random, any_sign);
+    std::vector<double> lowest(n), size(n), outflow(n), increase(n), values(n, 7.0);
+    const std::vector<double> x = slopes.all;
+    const apsis::cut_rows::gradient gradient = {slopes.all.data(), slopes.all.data() + n, nullptr};
+    const apsis::cut_rows::demand_rows demand{lowest.data(), size.data(), outflow.data(), increase.data()};
+    const std::array<std::array<double, 3>, 2> at = {{{0.3, -0.2, 0.0}, {-0.4, 0.1, 0.0}}};
+    constexpr double step = 0.01, kept = 0.95;
+    const int width = static_cast<int>(n);
+    for (std::size_t f = 0; f < 2; ++f)
+      apsis::cut_rows::add_demand(outward.at[f], step, gradient, at[f], 2, width, demand);
+    apsis::cut_rows::limit(u.at[0], demand, kept, 2, width, gradient);
+    apsis::cut_rows::leave(u.at[0], outward.at[0], gradient, at[0], 2, width, values.data());
+    for (std::size_t j = 0; j < n; ++j) {
+      scalar::cut_demand<double> sums{0.0, 0.0, 0.0, 0.0};
+      for (std::size_t f = 0; f < 2; ++f) {
+        const double first = x[j] * at[f][0], second = x[n + j] * at[f][1];
+        sums.add(step * outward.at[f][j], first + second, std::abs(first) + std::abs(second));
+      }
+      const double factor = sums.factor(u.at[0][j], kept);
+      ASSERT_EQ(slopes.all[j], factor * x[j]);
+      ASSERT_EQ(slopes.all[n + j], factor * x[n + j]);
+      const double correction = scalar::fma(slopes.all[n + j], at[0][1], slopes.all[j] * at[0][0]);
+      ASSERT_EQ(values[j], outward.at[0][j] > 0.0 ? scalar::leaving_value(u.at[0][j], correction) : 7.0);
+    }
+  }
 }
 
 }  // namespace semidiscrete_formulas_test

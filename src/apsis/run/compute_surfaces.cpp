@@ -183,9 +183,11 @@ class surface_writer {
       table.numbers.rows.push_back(row_of_cut_face(number, one, first));
       first += invariants_.size();
     }
+    std::shared_ptr<const oblique_wall> wall;
+    if (!one.walls.empty()) wall = space_.solid_boundary(one.solid)->oblique(space_.space().velocities);
     for (const int number : one.walls) {
       table.faces.emplace_back("wall");
-      table.numbers.rows.push_back(row_of_wall(number, first));
+      table.numbers.rows.push_back(row_of_wall(number, *wall, first));
       first += invariants_.size();
     }
     if (one.solid >= 0 && in_plane()) sort_along(table);
@@ -239,14 +241,11 @@ class surface_writer {
   }
 
   /// The first column is the angle around the middle of the body, until measure_around().
-  std::vector<double> row_of_wall(int number, std::size_t first) const {
+  std::vector<double> row_of_wall(int number, const oblique_wall& wall, std::size_t first) const {
     const wall_segment& one = space_.mesh().cut()->walls()[at(number)];
     const auto given = fluxes_at(first, one.area);
     std::vector<double> row = place_and_fluxes(angle_around(one), one.middle, one.area, given);
-    const boundary& wall = *space_.solid_boundary(one.solid);
-    const auto oblique = wall.oblique(space_.space().velocities);
-    derived_.add_values(row, given, one.normal,
-                        oblique->velocity({one.normal, one.middle, middle_of_step()}));
+    derived_.add_values(row, given, one.normal, wall.velocity({one.normal, one.middle, middle_of_step()}));
     gas_.add_values(row, densities_at(first));
     return row;
   }

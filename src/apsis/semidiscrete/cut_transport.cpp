@@ -159,7 +159,10 @@ cut_rows::gradient cut_transport::lines_of(int number) {
 
 void cut_transport::make_scratch() {
   scratch_.prepare([&](scratch& own) {
-    if (own.rows.cells() == 0) own.rows = field(ghost_rows + ghosts_, equation_.components());
+    if (own.rows.cells() > 0) return;
+    own.rows = field(ghost_rows + ghosts_, equation_.components());
+    for (int g = 0; g < ghosts_; ++g) own.ghosts.push_back(own.rows.row(ghost_rows + g));
+    own.seen.assign(own.ghosts.begin(), own.ghosts.end());
   });
 }
 
@@ -280,19 +283,15 @@ void cut_transport::domain_values(double t, const way& one, double* values, scra
   const boundary& side = *space_->side(one.surface);
   const int n = equation_.components();
   const double* inside = values;
-  std::vector<double*> ghosts;
-  std::vector<const double*> seen;
-  for (int g = 0; g < ghosts_; ++g) ghosts.push_back(own.rows.row(ghost_rows + g));
-  seen.assign(ghosts.begin(), ghosts.end());
   const position x = cut().faces()[at(one.number)].middle;
-  side.fill(where, t, {{&inside, 1}, ghosts, space_->space().velocities, n, x});
-  const double* entering = ghosts.front();
+  side.fill(where, t, {{&inside, 1}, own.ghosts, space_->space().velocities, n, x});
+  const double* entering = own.ghosts.front();
   double* outgoing = own.rows.row(inward_row);
   if (side.prescribes_incoming()) {
     std::copy_n(values, n, outgoing);
     face_rows::keep_leaving(inward_[where.index()].data(), n, outgoing);
     double* made = own.rows.row(lowest_row);
-    side.incoming_given_outgoing(where, t, x, outgoing, seen, made);
+    side.incoming_given_outgoing(where, t, x, outgoing, own.seen, made);
     entering = made;
   }
   face_rows::take_entering(inward_[where.index()].data(), entering, n, values);

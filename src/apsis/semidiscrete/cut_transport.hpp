@@ -54,7 +54,7 @@ class cut_transport {
     int number;                    ///< of the group, end of the border, open face or wall
     std::array<double, 3> normal,  ///< unit vector out of the gas at a face, into it at a wall
         from_centre,               ///< vector to its middle
-        from_other = {};           ///< the same from the centroid of the other group
+        from_other = {};           ///< vector to it from the centroid of the other group
     double rate = 0.0;             ///< area / volume; negative at a wall, so that both have the sign of v·n
     int surface = -1;              ///< of the border, or the face of the domain
   };
@@ -70,6 +70,8 @@ class cut_transport {
   struct scratch {
     field rows;
     std::vector<cut_rows::neighbour> around;
+    std::vector<double*> ghosts;      ///< rows beyond a face of the domain
+    std::vector<const double*> seen;  ///< constant pointers to these rows
   };
 
   void add_ways(int number);

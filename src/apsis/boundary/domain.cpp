@@ -31,8 +31,8 @@ std::array<bool, 3> periodic_directions(const grid& mesh, const std::vector<doma
   return periodic;
 }
 
-/// The border of whole cells to cut ones: ghost rows continue the state inside. The values that enter are those of
-/// the cut cells, which the transport has.
+/// The border of whole cells to cut ones: ghost rows continue the state inside. The values that enter are
+/// those of the cut cells, which the transport has.
 class border_of_cut_cells final : public incoming_boundary {};
 
 }  // namespace

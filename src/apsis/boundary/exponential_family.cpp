@@ -95,7 +95,7 @@ newton_step step_from(const exponential_family::sums& at, const family_vector& w
 
 }  // namespace
 
-exponential_family::exponential_family(const velocity_axes& axes, const std::array<double, 3>& origin,
+exponential_family::exponential_family(const tensor_axes& axes, const std::array<double, 3>& origin,
                                        double unit)
     : axes_(axes) {
   for (std::size_t k = 0; k < axes.dimensions(); ++k) {

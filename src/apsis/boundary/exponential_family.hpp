@@ -1,6 +1,6 @@
 #pragma once
 
-#include <apsis/boundary/velocity_axes.hpp>
+#include <apsis/boundary/tensor_axes.hpp>
 
 #include <array>
 #include <cstddef>
@@ -21,19 +21,19 @@ class exponential_family {
 
   /// Σ_j F_j exp(ν·φ_j) φ_j and Σ_j F_j exp(ν·φ_j) φ_j φ_jᵀ.
   struct sums {
-    vector first{};
-    std::array<vector, 5> second{};
+    vector first{};                  ///< with one factor φ
+    std::array<vector, 5> second{};  ///< with two
   };
   /// Multipliers of given sums.
   struct match {
-    vector multipliers{};
+    vector multipliers{};    ///< ν
     double total = 0.0;      ///< first of the sums
     bool is_solved = false;  ///< whether the sums are those that were wanted, to rounding
     int passes = 0;          ///< over the fluxes
   };
 
   /// Of velocities on `axes`, which must outlive the object, with the origin ū and the unit σ > 0.
-  exponential_family(const velocity_axes& axes, const std::array<double, 3>& origin, double unit);
+  exponential_family(const tensor_axes& axes, const std::array<double, 3>& origin, double unit);
 
   /// factors ← the factors of every axis: exp(ν·φ) is their product. Returns whether all are moderate:
   /// finite, and more than 0 unless it is natural that they are 0.
@@ -53,7 +53,7 @@ class exponential_family {
               const vector& start) const;
 
  private:
-  const velocity_axes& axes_;
+  const tensor_axes& axes_;
   std::array<std::size_t, 3> offsets_{};
   table c_;  ///< (v − ū)/σ of every axis
 };

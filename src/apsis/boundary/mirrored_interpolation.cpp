@@ -15,7 +15,7 @@ struct cell_corners {
   std::array<std::size_t, count> component{};
   std::array<double, count> weight{};
 
-  cell_corners(const velocity_axes& axes, const std::array<double, D>& v) {
+  cell_corners(const tensor_axes& axes, const std::array<double, D>& v) {
     weight[0] = 1.0;
     for (std::size_t k = 0, made = 1; k < D; ++k, made *= 2) {
       const auto [below, share] = axes.find(k, v[k]);
@@ -32,7 +32,7 @@ struct cell_corners {
 
 /// Calls act(j, v'_j) for all velocities whose v·n has a sign.
 template <std::size_t D, class Act>
-void for_mirrored(const velocity_axes& axes, const std::array<double, 3>& normal, const double* inward,
+void for_mirrored(const tensor_axes& axes, const std::array<double, 3>& normal, const double* inward,
                   double sign, const Act& act) {
   const std::vector<double>& last = axes.last();
   for (std::size_t line = 0; line < axes.lines(); ++line) {
@@ -59,7 +59,7 @@ void for_mirrored(const velocity_axes& axes, const std::array<double, 3>& normal
 }
 
 /// Returns v·n below which all corners of the cell around a velocity have v·n < 0.
-double depth_of_cells(const velocity_axes& axes, const std::array<double, 3>& normal) {
+double depth_of_cells(const tensor_axes& axes, const std::array<double, 3>& normal) {
   double depth = 0.0;
   for (std::size_t k = 0; k < axes.dimensions(); ++k) {
     const std::vector<double>& v = axes.points(k);
@@ -71,7 +71,7 @@ double depth_of_cells(const velocity_axes& axes, const std::array<double, 3>& no
 }
 
 template <std::size_t D>
-void gather_in(const velocity_axes& axes, const std::array<double, 3>& normal, const double* inward,
+void gather_in(const tensor_axes& axes, const std::array<double, 3>& normal, const double* inward,
                std::size_t sets, const double* from, double* values) {
   const std::size_t n = axes.size();
   const double depth = depth_of_cells(axes, normal);
@@ -95,7 +95,7 @@ void gather_in(const velocity_axes& axes, const std::array<double, 3>& normal, c
 }
 
 template <std::size_t D>
-void deposit_in(const velocity_axes& axes, const std::array<double, 3>& normal, const double* inward,
+void deposit_in(const tensor_axes& axes, const std::array<double, 3>& normal, const double* inward,
                 const double* weights, const double* arriving, double* values) {
   const auto flux = [&](std::size_t j) { return weights[j] * inward[j]; };
   std::size_t fastest = 0;
@@ -119,7 +119,7 @@ void deposit_in(const velocity_axes& axes, const std::array<double, 3>& normal, 
 
 }  // namespace
 
-void mirrored_interpolation::gather(const velocity_axes& axes, const std::array<double, 3>& normal,
+void mirrored_interpolation::gather(const tensor_axes& axes, const std::array<double, 3>& normal,
                                     const double* inward, std::size_t sets, const double* from,
                                     double* values) {
   switch (axes.dimensions()) {
@@ -132,7 +132,7 @@ void mirrored_interpolation::gather(const velocity_axes& axes, const std::array<
   }
 }
 
-void mirrored_interpolation::deposit(const velocity_axes& axes, const std::array<double, 3>& normal,
+void mirrored_interpolation::deposit(const tensor_axes& axes, const std::array<double, 3>& normal,
                                      const double* inward, const double* weights, const double* arriving,
                                      double* values) {
   switch (axes.dimensions()) {

@@ -1,7 +1,7 @@
 #pragma once
 
 #include <apsis/boundary/exponential_family.hpp>
-#include <apsis/boundary/velocity_axes.hpp>
+#include <apsis/boundary/tensor_axes.hpp>
 #include <apsis/velocity/velocity_set.hpp>
 
 #include <array>
@@ -64,7 +64,7 @@ class oblique_reflection {
                  double* flux) const;
 
   velocity_set velocities_;
-  velocity_axes axes_;
+  tensor_axes axes_;
 };
 
 }  // namespace apsis

@@ -19,8 +19,8 @@ void project(const std::array<double, 3>& vector, double rate, const std::array<
 
 /// A neighbour in a least-squares gradient.
 struct neighbour {
-  const double* row;
-  std::array<double, 3> weight;
+  const double* row;             ///< its values
+  std::array<double, 3> weight;  ///< of the difference to it, for each direction
 };
 
 /// slopes[d] ← Σ weight[d] (row − u) over the neighbours.
@@ -28,7 +28,10 @@ void fit(const double* u, std::span<const neighbour> around, int directions, int
 
 /// Sums over the faces and walls of a cell for its limiter, a row each.
 struct demand_rows {
-  double *lowest, *size, *outflow, *increase;
+  double *lowest,  ///< correction
+      *size,       ///< largest sum of the sizes of terms of a correction
+      *outflow,    ///< of a step, as a share of the gas
+      *increase;   ///< of the outflow by corrections
 };
 
 /// Adds a face or wall at a vector from the centroid, for a step of length `step`.

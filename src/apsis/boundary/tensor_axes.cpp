@@ -1,4 +1,4 @@
-#include <apsis/boundary/velocity_axes.hpp>
+#include <apsis/boundary/tensor_axes.hpp>
 
 #include <apsis/core/errors.hpp>
 #include <apsis/core/index.hpp>
@@ -26,7 +26,7 @@ std::vector<double> numbers_of(std::span<const double> speeds) {
 
 }  // namespace
 
-velocity_axes::velocity_axes(const velocity_set& velocities) {
+tensor_axes::tensor_axes(const velocity_set& velocities) {
   const auto d = at(velocities.dimensions()), n = at(velocities.size());
   for (std::size_t k = 0; k < d; ++k)
     points_.push_back(numbers_of(velocities.speeds(static_cast<int>(k)).first(n)));
@@ -40,7 +40,7 @@ velocity_axes::velocity_axes(const velocity_set& velocities) {
   for (std::size_t k = 0; k < d; ++k) add_axis(velocities, k);
 }
 
-void velocity_axes::add_axis(const velocity_set& velocities, std::size_t k) {
+void tensor_axes::add_axis(const velocity_set& velocities, std::size_t k) {
   constexpr std::size_t bins_per_point = 4;
   const std::vector<double>& v = points_[k];
   const auto speeds = velocities.speeds(static_cast<int>(k));
@@ -65,7 +65,7 @@ void velocity_axes::add_axis(const velocity_set& velocities, std::size_t k) {
   bins_.push_back(std::move(made));
 }
 
-std::array<std::size_t, 3> velocity_axes::indices_of_line(std::size_t line) const {
+std::array<std::size_t, 3> tensor_axes::indices_of_line(std::size_t line) const {
   std::array<std::size_t, 3> indices{};
   for (std::size_t k = points_.size() - 1; k-- > 0;) {
     indices[k] = line % points_[k].size();

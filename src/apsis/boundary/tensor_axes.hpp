@@ -10,7 +10,7 @@ namespace apsis {
 
 /// The axes of velocities that are all combinations of numbers in each of d directions, the last fastest.
 /// Dimensionless.
-class velocity_axes {
+class tensor_axes {
  public:
   /// An interval of an axis, and where a number lies in it.
   struct place {
@@ -20,7 +20,7 @@ class velocity_axes {
 
   /// Throws input_error if the velocities are not such combinations, with at least two numbers in each
   /// direction.
-  explicit velocity_axes(const velocity_set& velocities);
+  explicit tensor_axes(const velocity_set& velocities);
 
   /// Returns d.
   std::size_t dimensions() const { return points_.size(); }

@@ -12,8 +12,8 @@
 namespace apsis {
 namespace {
 
-/// Shares of an edge below it count as 0, and those above 1 − it as 1: the surface goes through the corner. The
-/// zero of a surface that touches an edge has half of the digits of other zeros.
+/// Shares of an edge below it count as 0, and those above 1 − it as 1: the surface goes through the corner.
+/// The zero of a surface that touches an edge has half of the digits of other zeros.
 constexpr double at_corner = 1e-6;
 /// Halvings of an edge. The rest is below the rounding of coordinates.
 constexpr int halvings = 52;

@@ -29,6 +29,12 @@ for name in [key for key in ENVIRONMENT if key.startswith(("PMI", "SLURM"))]:
     del ENVIRONMENT[name]
 
 
+def one_of(choices, number):
+    """All choices in a run of the slow tests, else one of them, in turn: each of them occurs in a loop over `number`."""
+    choices = list(choices)
+    return choices if os.environ.get("APSIS_SLOW") else [choices[number % len(choices)]]
+
+
 def slow(test):
     """A test of `make test-all` alone."""
     return unittest.skipUnless(os.environ.get("APSIS_SLOW"), "part of make test-all")(test)

@@ -82,11 +82,13 @@ class reader_of_bodies {
     body.name = text_at(path + ".name").value_or(fmt::format("body-{}", number + 1));
     body.kind = text_at(path + ".kind").value_or(body.kind);
     const auto variables = boundary_variables(body.kind, equation_, place_of_emitter(config_, path));
-    for (const std::string& name : variables)
-      if (const raw_value* raw = text_.find(path + "." + name)) {
-        body.values[name] = formula_texts(*raw, path + "." + name);
-        taken_.insert(path + "." + name);
+    for (const std::string& name : variables) {
+      const std::string key = fmt::format("{}.{}", path, name);
+      if (const raw_value* raw = text_.find(key)) {
+        body.values[name] = formula_texts(*raw, key);
+        taken_.insert(key);
       }
+    }
     body.shape = read_shape(path, dimensions());
     std::vector<std::string> names = {"name", "kind", "shape"};
     names.insert(names.end(), variables.begin(), variables.end());

@@ -13,7 +13,7 @@ namespace apsis {
 namespace mirrored_interpolation {
 
 /// values[j] ← Σ ω_p from[p] / Σ ω_p for every velocity with v_j·n > 0, with the weights ω of the corners p
-/// of the cell around v'_j that have v_p·n < 0; 0 if there is none. from[] is 0 where v·n ≥ 0, and
+/// of the cell around v'_j that have v_p·n < 0. It is 0 without such corners. from[] is 0 where v·n ≥ 0, and
 /// does not overlap values[]. Results are ≥ 0 if from[] is.
 void gather(const tensor_axes& axes, const std::array<double, 3>& normal, const double* inward,
             std::size_t sets, const double* from, double* values);

@@ -21,8 +21,7 @@ class oblique_wall {
   /// values[k] ← what leaves the wall in component k, for every component with v·n > 0. `inward`: v·n of
   /// every component; `arriving`: the distribution at the wall, of components with v·n < 0, ≥ 0 if that is
   /// promised. Other components of values[], which does not overlap arriving[], are free for scratch. Called
-  /// concurrently. Throws input_error for values of the wall that are not possible, and numerical_error if
-  /// there is none.
+  /// concurrently. Throws input_error for values of the wall that are not possible.
   virtual void emit(const wall_point& where, const double* inward, const double* arriving,
                     double* values) const = 0;
   /// Returns the velocity of the wall along itself at a point.

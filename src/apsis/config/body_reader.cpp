@@ -2,6 +2,7 @@
 
 #include <apsis/body/shape_registry.hpp>
 #include <apsis/boundary/boundary_registry.hpp>
+#include <apsis/config/at_place.hpp>
 #include <apsis/config/boundary_reader.hpp>
 #include <apsis/config/case_value.hpp>
 #include <apsis/config/solid_reader.hpp>
@@ -29,16 +30,6 @@ std::vector<shape_key> keys_of(const shape_entry& entry, int dimensions) {
   std::vector<shape_key> keys = entry.keys;
   for (shape_key& one : common_shape_keys(dimensions)) keys.push_back(std::move(one));
   return keys;
-}
-
-/// Calls body() and adds a place to its input errors.
-template <class Body>
-auto with_place(const source_place& place, const Body& body) {
-  try {
-    return body();
-  } catch (const input_error& problem) {
-    throw input_error(place, problem.what());
-  }
 }
 
 class reader_of_bodies {
@@ -124,7 +115,7 @@ class reader_of_bodies {
                                     "shape = \"{}\"",
                                     path, dimensions == 2 ? "circle" : "sphere"));
     table.shape = *kind;
-    const shape_entry& entry = with_place(
+    const shape_entry& entry = at_place(
         place_of_shape(path), [&]() -> decltype(auto) { return std::cref(find_shape(table.shape)); });
     for (const shape_key& key : keys_of(entry, dimensions)) {
       const std::string of_key = path + "." + key.name;
@@ -239,7 +230,7 @@ std::shared_ptr<const shape> made_shape(const case_config& config, const shape_t
   }
   source_place place = place_of(config, path + ".shape");
   if (place.file.empty()) place = place_of(config, path);
-  return with_place(place, [&] { return make_shape(table.shape, values, dimensions); });
+  return at_place(place, [&] { return make_shape(table.shape, values, dimensions); });
 }
 
 std::array<bool, 3> periodic_directions_of(const case_config& config) {
@@ -265,8 +256,8 @@ std::shared_ptr<const cut_cells> cut_cells_of(const case_config& config, const g
       const auto made = made_shape(config, config.bodies[k].shape, path_of_body(k), mesh.dimensions());
       bodies.emplace_back([made](const position& x) { return made->outside(x); });
     }
-    return with_place(place_of_emitter(config, path_of_body(0)),
-                      [&] { return std::make_shared<const cut_cells>(mesh, bodies, periodic); });
+    return at_place(place_of_emitter(config, path_of_body(0)),
+                    [&] { return std::make_shared<const cut_cells>(mesh, bodies, periodic); });
   };
   return config.parts->cut.get(
       {config.space.cells, config.space.domain, config.solids, config.bodies, periodic, config.constants},

@@ -1,5 +1,6 @@
 #include <apsis/config/case_checks.hpp>
 
+#include <apsis/config/at_place.hpp>
 #include <apsis/config/boundary_reader.hpp>
 #include <apsis/config/case_value.hpp>
 #include <apsis/config/checked_model.hpp>
@@ -150,12 +151,7 @@ void case_checks::check_solids() const {
 void case_checks::check_body(std::size_t k, const boundary& wall) const {
   const std::string path = fmt::format("space.body.{}", k + 1);
   const source_place place = place_of_emitter(config_, path);
-  std::shared_ptr<const oblique_wall> made;
-  try {
-    made = wall.oblique(checked_model(config_)->velocities());
-  } catch (const input_error& problem) {
-    throw input_error(place, problem.what());
-  }
+  const auto made = at_place(place, [&] { return wall.oblique(checked_model(config_)->velocities()); });
   if (!made)
     throw input_error(place,
                       fmt::format("a body cannot have the wall '{}' (its normal may have any direction); "

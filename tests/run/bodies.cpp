@@ -109,6 +109,8 @@ TEST(runs_past_bodies, have_free_molecular_pressure_and_heat_at_every_piece_of_w
     EXPECT_NEAR(q[k], exact.heat, 0.02 * 7.8) << x[k];
     if (k > 0) {
       EXPECT_GT(s[k], s[k - 1]);
+      // From the right end of the half cylinder to its left one.
+      EXPECT_LT(x[k], x[k - 1]);
     }
   }
 }

@@ -288,10 +288,29 @@ class surface_writer {
     return angle < 0.0 ? angle + 2.0 * std::numbers::pi : angle;
   }
 
+  /// Begins with the first piece counter-clockwise of an opening of the wall, where it ends at a face of the
+  /// domain.
+  static void begin_after_gap(surface_table& table) {
+    constexpr double least_gap = std::numbers::pi / 3.0;
+    auto& rows = table.numbers.rows;
+    std::size_t first = 0;
+    double widest = rows.front().front() + 2.0 * std::numbers::pi - rows.back().front();
+    for (std::size_t k = 1; k < rows.size(); ++k)
+      if (const double gap = rows[k].front() - rows[k - 1].front(); gap > widest) {
+        widest = gap;
+        first = k;
+      }
+    if (widest < least_gap) return;
+    const auto from = static_cast<std::ptrdiff_t>(first);
+    std::rotate(rows.begin(), rows.begin() + from, rows.end());
+    std::rotate(table.faces.begin(), table.faces.begin() + from, table.faces.end());
+  }
+
   /// Replaces the angles of sorted rows by lengths along the wall, to the middle of each piece.
   void measure_around(surface_table& table) const {
     const auto column = std::find(table.numbers.columns.begin(), table.numbers.columns.end(), "area");
     const auto area = static_cast<std::size_t>(column - table.numbers.columns.begin());
+    begin_after_gap(table);
     double length = 0.0;
     for (auto& row : table.numbers.rows) {
       row.front() = length + 0.5 * row[area];

@@ -2,7 +2,7 @@
 import json
 import unittest
 
-from processes import Folder, main, slow
+from processes import Folder, main, one_of, slow
 
 # A gas of three dimensions between moving, heated walls of all kinds, around two solid boxes, with a force; near walls it is
 # so thin in places that the limiter works there.
@@ -67,6 +67,59 @@ normal = "y"
 at = 1.0
 """
 
+# Bodies that overlap and touch the solid boxes and the faces of the domain: small cells join across the borders of blocks.
+BODIES = STEP.replace("[force]", '''[[space.body]]
+name = "disc"
+shape = "circle"
+centre = [0.86, 0.61]
+radius = 0.23
+T = "1 + 0.3*x"
+accommodation = 0.6
+velocity = ["0.61 - y", "x - 0.86"]
+[[space.body]]
+name = "wedge"
+shape = "polygon"
+points = [[0.6, 0.7], [1.01, 0.63], [0.83, 1.1]]
+kind = "symmetry"
+[[space.body]]
+name = "floor"
+shape = "half_space"
+point = [0, 0.14]
+normal = [0.1, 1]
+T = 0.9
+[force]''').replace('"bgk"', '"shakhov"')
+
+IN_SPACE = """
+title = "A ball in space"
+[model]
+name = "es-bgk"
+epsilon = 0.1
+[initial]
+rho = "1 + 0.2*sin(pi*x)"
+u = [1, 0.2, 0]
+T = 1
+[space]
+limiter = "positivity"
+cells = [9, 8, 8]
+domain = [[-1, 1], [-1, 1], [-1, 1]]
+boundary = "outflow"
+[[space.body]]
+name = "ball"
+shape = "sphere"
+centre = [0.1, 0.05, 0]
+radius = 0.6
+T = 1.2
+[velocity]
+max = 6
+points = 8
+[time]
+method = "md-imex-3-2"
+end = 0.05
+safety = 1
+[output]
+surfaces = ["ball"]
+"""
+
 PERIODIC = """
 title = "Waves in a periodic box"
 [model]
@@ -121,6 +174,27 @@ class SameResults(Folder):
     def test_walls_boxes_and_a_force_in_the_plane(self):
         self.write("step.toml", STEP)
         self.expect_same("step.toml")
+
+    def test_bodies_in_the_plane_across_all_borders(self):
+        self.write("bodies.toml", BODIES)
+        self.expect_same("bodies.toml", counts=one_of((5, 3, 2), 0))
+        self.completed(3, "run", "bodies.toml", "time.end=0.01", "--out", "half")
+        self.completed(2, "run", "bodies.toml", "--restart", "half/checkpoint.h5", "--out", "rest")
+        for name in ("fields.csv", "history.csv", "surfaces/disc.csv", "surfaces/wedge.csv"):
+            self.assertEqual((self.folder / "one" / name).read_text(), (self.folder / "rest" / name).read_text())
+
+    @slow
+    def test_bodies_in_blocks_of_two_cells(self):
+        # The rows that a process needs are not those of its neighbours alone.
+        self.write("bodies.toml", BODIES)
+        self.completed(1, "run", "bodies.toml", "--out", "one")
+        for count, blocks in ((7, "[7,1]"), (6, "[1,6]"), (9, "[3,3]")):
+            self.completed(count, "run", "bodies.toml", f"space.blocks={blocks}", "--out", f"on-{count}")
+            self.assert_same_results("one", f"on-{count}")
+
+    def test_a_body_in_space(self):
+        self.write("ball.toml", IN_SPACE)
+        self.expect_same("ball.toml", counts=one_of((5, 2, 3, 8), 0))
 
     @slow
     def test_blocks_of_a_chosen_shape(self):

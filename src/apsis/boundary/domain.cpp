@@ -87,14 +87,17 @@ void domain::set_sides(const std::vector<faces>& sides,
 void domain::add_cut_ends() {
   if (mesh().cut() == nullptr) return;
   const cut_cells& cut = *mesh().cut();
+  const auto is_here = [&](int cell) { return !distribution_ || distribution_->number_in_block(cell) >= 0; };
   for (budget_surface& one : budget_surfaces_) {
     for (std::size_t f = 0; f < cut.faces().size() && one.solid < 0; ++f)
       if (const open_face& at_domain = cut.faces()[f];
           at_domain.direction == one.where.direction &&
-          (one.where.upper ? at_domain.above : at_domain.below) < 0)
+          (one.where.upper ? at_domain.above : at_domain.below) < 0 &&
+          is_here(one.where.upper ? at_domain.below : at_domain.above))
         one.cut_faces.push_back(static_cast<int>(f));
     for (std::size_t w = 0; w < cut.walls().size() && one.solid >= 0; ++w)
-      if (cut.walls()[w].solid == one.solid) one.walls.push_back(static_cast<int>(w));
+      if (cut.walls()[w].solid == one.solid && is_here(cut.walls()[w].cell))
+        one.walls.push_back(static_cast<int>(w));
   }
 }
 

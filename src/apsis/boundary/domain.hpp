@@ -24,8 +24,8 @@ struct budget_surface {
   std::vector<int> surfaces;        ///< numbers of its surfaces
   face where;                       ///< the face of the domain
   int solid = -1;                   ///< or the number of the solid box or body
-  std::vector<int> cut_faces = {},  ///< open faces of cut cells at a face of the domain
-      walls = {};                   ///< wall segments of a solid box or body, by their numbers in cut_cells
+  std::vector<int> cut_faces = {},  ///< open faces of cut cells of this process, at a face of the domain
+      walls = {};  ///< wall segments in these cells of a solid box or body, as numbers in cut_cells
 };
 
 /// A phase space with the boundary conditions of its faces, of its solid boxes and bodies. The domain owns
@@ -91,6 +91,8 @@ class domain : public construction_count<domain> {
   long number_in_whole_mesh(long cell) const;
   /// Whether other processes hold cells of the mesh.
   bool shared() const { return distribution_.has_value(); }
+  /// Returns the mesh that several processes share; null for a single process.
+  const distribution* shared_mesh() const { return distribution_ ? &*distribution_ : nullptr; }
   /// Whether other processes continue the pencils along a direction.
   bool splits(int direction) const { return halo_ && halo_->splits(direction); }
 

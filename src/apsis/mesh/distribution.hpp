@@ -19,6 +19,10 @@ struct distribution {
     const cell_box box = blocks.box(processes->rank());
     return whole.block(box.first, box.cells);
   }
+  /// Returns the process that holds a cell of the mesh.
+  int holder(int cell) const;
+  /// Returns the number in its block of a cell of the mesh that this process holds; −1 for others.
+  int number_in_block(int cell) const;
 };
 
 }  // namespace apsis

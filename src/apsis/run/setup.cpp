@@ -99,10 +99,6 @@ void run_setup::build_space(std::shared_ptr<communicator> processes) {
   if (space.collisions) builder_.with_collisions_at(*space.collisions);
   at_key(config_, space.blocks ? "space.blocks" : "space.cells",
          [&] { builder_.shared_by(std::move(processes), given_blocks(space.blocks)); });
-  if (!config_.bodies.empty() && !builder_.processes().is_single())
-    refuse(
-        config_, "space.body.1",
-        "bodies on several processes (a cut cell and its neighbours must belong to one); start one process");
   const auto sides = make_boundaries(config_, equation);
   for (int direction = 0; direction < static_cast<int>(sides.size()); ++direction)
     for (const bool upper : {false, true})

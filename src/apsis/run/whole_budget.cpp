@@ -11,16 +11,23 @@
 namespace apsis {
 namespace {
 
-/// An end of a segment: its surface, and the cell in front of it in the whole mesh.
+/// Stand for the surface of an end in a cut cell.
+constexpr int cut_face = -1, wall = -2;
+
+/// An end of a segment: its surface, and the cell in front of it in the whole mesh. An end in a cut cell:
+/// what it is, and its number.
 using end_key = std::pair<int, int>;
 
 /// The ends of a domain in the order of the budget.
 std::vector<end_key> ends_of(const domain& space, const grid& whole) {
   std::vector<end_key> ends;
-  for (const budget_surface& one : space.budget_surfaces())
+  for (const budget_surface& one : space.budget_surfaces()) {
     for (const int surface : one.surfaces)
       for (int place = 0; place < space.surfaces()[static_cast<std::size_t>(surface)].own; ++place)
         ends.emplace_back(surface, whole.cell_of(space.mesh(), space.cell_at(surface, place)));
+    for (const int number : one.cut_faces) ends.emplace_back(cut_face, number);
+    for (const int number : one.walls) ends.emplace_back(wall, number);
+  }
   return ends;
 }
 

@@ -1,17 +1,11 @@
 #include <apsis/semidiscrete/cut_transport.hpp>
 
-#include <apsis/core/errors.hpp>
 #include <apsis/core/index.hpp>
 #include <apsis/exec/profile.hpp>
 #include <apsis/semidiscrete/block_sweep.hpp>
 #include <apsis/semidiscrete/face_rows.hpp>
 
 #include <algorithm>
-#include <map>
-#include <utility>
-
-#include <Eigen/Eigenvalues>
-#include <fmt/format.h>
 
 namespace apsis {
 namespace {
@@ -31,120 +25,7 @@ enum scratch_row : int {
 
 constexpr int groups_of_task = 4;
 
-/// Directions in which neighbours lie less than this share apart, of the most, have no slope.
-constexpr double least_spread = 1e-3;
-
-/// Returns the pseudoinverse of a symmetric matrix of least squares.
-Eigen::Matrix3d pseudo_inverse(const Eigen::Matrix3d& m) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> of(m);
-  Eigen::Matrix3d inverse = Eigen::Matrix3d::Zero();
-  for (int k = 0; k < 3; ++k)
-    if (of.eigenvalues()[k] > least_spread * of.eigenvalues()[2])
-      inverse += of.eigenvectors().col(k) * of.eigenvectors().col(k).transpose() / of.eigenvalues()[k];
-  return inverse;
-}
-
 }  // namespace
-
-cut_transport::cut_transport(const model& equation, std::shared_ptr<domain> space,
-                             const limited_reconstruction& edges, face_fluxes& faces)
-    : equation_(equation),
-      space_(std::move(space)),
-      faces_(faces),
-      flat_(edges.scheme->order() == 1),
-      limited_(edges.keeps_sign()),
-      ghosts_(edges.ghosts()) {
-  for (int d = 0; d < directions(); ++d) {
-    speeds_[at(d)] = equation.speeds(d).data();
-    for (const bool upper : {false, true})
-      for (const double v : equation.speeds(d)) inward_[face{d, upper}.index()].push_back(upper ? -v : v);
-  }
-  const velocity_set velocities = space_->space().velocities;
-  for (int solid = 0; solid < space_->mesh().obstacles(); ++solid) {
-    const bool is_needed = std::any_of(cut().walls().begin(), cut().walls().end(),
-                                       [&](const wall_segment& one) { return one.solid == solid; });
-    walls_.push_back(is_needed ? space_->solid_boundary(solid)->oblique(velocities) : nullptr);
-    if (is_needed && !walls_.back())
-      throw input_error(
-          "a boundary of a body that serves faces of cells alone (a curved body has any normal); use a "
-          "diffuse wall, or symmetry");
-  }
-  ends_.resize(space_->surfaces().size());
-  groups_.resize(cut().groups().size());
-  for (int number = 0; number < static_cast<int>(groups_.size()); ++number) {
-    add_ways(number);
-    add_neighbours(number);
-  }
-  slopes_ = field(static_cast<int>(groups_.size()) * directions(), equation_.components());
-}
-
-/// Finds where the gas of a group may go.
-void cut_transport::add_ways(int number) {
-  const cut_group& from = cut().groups()[at(number)];
-  group& to = groups_[at(number)];
-  to.cell = from.cells.front();
-  const auto add = [&](way one) { to.ways.push_back(one); };
-  for (const int f : from.faces) {
-    const open_face& one = cut().faces()[at(f)];
-    const bool is_below = one.below >= 0 && cut().group_of(one.below) == number;
-    const int other = is_below ? one.above : one.below;
-    way made{way::kind::domain,
-             f,
-             {},
-             is_below ? one.from_below : one.from_above,
-             is_below ? one.from_above : one.from_below};
-    made.normal[at(one.direction)] = is_below ? 1.0 : -1.0;
-    made.rate = one.area / from.volume;
-    made.surface = static_cast<int>(face{one.direction, is_below}.index());
-    if (other >= 0 && cut().group_of(other) >= 0) {
-      made.to = way::kind::group;
-      made.number = cut().group_of(other);
-    } else if (other >= 0) {
-      // A segment of whole cells begins or ends here.
-      made.to = way::kind::whole;
-      made.surface += 2 * directions() * (space_->mesh().obstacles() + 1);
-      const surface& border = space_->surfaces()[at(made.surface)];
-      auto& ends = ends_[at(made.surface)];
-      ends.resize(border.segments.size());
-      for (int place = 0; place < static_cast<int>(border.segments.size()); ++place)
-        if (space_->cell_at(made.surface, place) == other) made.number = place;
-      ends[at(made.number)] = {number, static_cast<int>(to.ways.size())};
-    }
-    add(made);
-  }
-  for (const int w : from.walls) {
-    const wall_segment& one = cut().walls()[at(w)];
-    way made{way::kind::wall, w, {}, one.from_centre};
-    made.normal = one.normal;
-    made.rate = -one.area / from.volume;
-    add(made);
-  }
-}
-
-/// Finds the weights of the neighbours in the slopes of a group.
-void cut_transport::add_neighbours(int number) {
-  const cut_group& from = cut().groups()[at(number)];
-  std::map<int, Eigen::Vector3d> around;  // vectors to their centroids, by their first cells
-  for (const int f : from.faces) {
-    const open_face& one = cut().faces()[at(f)];
-    const bool is_below = one.below >= 0 && cut().group_of(one.below) == number;
-    const int other = is_below ? one.above : one.below;
-    if (other < 0) continue;
-    const int group_of = cut().group_of(other);
-    Eigen::Vector3d apart;
-    for (int k = 0; k < 3; ++k)
-      apart[k] = (is_below ? 1.0 : -1.0) * (one.from_below[at(k)] - one.from_above[at(k)]);
-    around.emplace(group_of < 0 ? other : cut().groups()[at(group_of)].cells.front(), apart);
-  }
-  Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
-  for (const auto& [cell, apart] : around) squares += apart * apart.transpose() / apart.squaredNorm();
-  if (around.empty()) return;
-  const Eigen::Matrix3d inverse = pseudo_inverse(squares);
-  for (const auto& [cell, apart] : around) {
-    const Eigen::Vector3d weight = inverse * apart / apart.squaredNorm();
-    groups_[at(number)].around.push_back({cell, {weight[0], weight[1], weight[2]}});
-  }
-}
 
 void cut_transport::limit_for_steps(double step, double kept) {
   step_ = step;
@@ -168,6 +49,7 @@ void cut_transport::make_scratch() {
 
 void cut_transport::prepare(const field& u) {
   make_scratch();
+  here_.exchange(u);
   if (flat_) return;
   parallel_blocks(static_cast<int>(groups_.size()), groups_of_task, [&](int begin, int end) {
     const profile::section timed(kernel::edges, static_cast<double>(end - begin) * u.stride(), {});
@@ -178,10 +60,10 @@ void cut_transport::prepare(const field& u) {
 void cut_transport::fit_group(const field& u, int number, scratch& own) {
   const group& of = groups_[at(number)];
   const int n = equation_.components();
-  const double* here = u.row(of.cell);
+  const double* here = here_.row(u, of.place);
   const cut_rows::gradient slopes = lines_of(number);
   own.around.clear();
-  for (const neighbour& one : of.around) own.around.push_back({u.row(one.cell), one.weight});
+  for (const neighbour& one : of.around) own.around.push_back({here_.row(u, one.place), one.weight});
   cut_rows::fit(here, own.around, directions(), n, slopes);
   if (!limited_) return;
   const cut_rows::demand_rows demand{own.rows.row(lowest_row), own.rows.row(size_row),
@@ -205,7 +87,8 @@ void cut_transport::complete(int surface, int place, const field& u,
   double *outward = own.rows.row(outward_row), *values = own.rows.row(values_row);
   std::fill_n(values, n, 0.0);
   cut_rows::project(one.normal, one.rate, speeds_, directions(), n, outward);
-  cut_rows::leave(u.row(of.cell), outward, lines_of(number), one.from_centre, directions(), n, values);
+  cut_rows::leave(here_.row(u, of.place), outward, lines_of(number), one.from_centre, directions(), n,
+                  values);
   const face where = space_->surfaces()[at(surface)].where;
   const int cell = space_->cell_at(surface, place);
   for (const auto& to : targets)
@@ -213,17 +96,28 @@ void cut_transport::complete(int surface, int place, const field& u,
                             space_->mesh().spacing(where.direction), n, to.acc->row(cell));
 }
 
+/// Returns the upwind values at the end of a segment at an open face.
+const double* cut_transport::recorded_at(int f) {
+  const open_face& one = cut().faces()[at(f)];
+  const bool is_above = cut().group_of(one.below) < 0;  // the group
+  const int surface = border_at(one.direction, !is_above);
+  const int cell = here_.number_here(is_above ? one.below : one.above);
+  return faces_.recorded(surface, places_.at({surface, cell}));
+}
+
 void cut_transport::add(double t, const field& u, std::span<const target<field, double>> targets,
                         const cells_job& then) {
   make_scratch();
+  here_.exchange_at_faces(equation_.components(), [&](int f) { return recorded_at(f); });
   parallel_blocks(static_cast<int>(groups_.size()), groups_of_task, [&](int begin, int end) {
     const profile::section timed(kernel::walls, static_cast<double>(end - begin) * u.stride(),
                                  traffic(targets));
     for (int number = begin; number < end; ++number) {
+      if (groups_[at(number)].cells.empty()) continue;
       scratch& own = scratch_.here();
       double* rate = own.rows.row(rate_row);
       add_group(t, u, number, rate, own);
-      for (const int cell : cut().groups()[at(number)].cells) {
+      for (const int cell : groups_[at(number)].cells) {
         for (const auto& to : targets)
           cut_rows::add(u.row(cell), rate, to.alpha, to.beta, to.fresh, equation_.components(),
                         to.acc->row(cell));
@@ -245,16 +139,18 @@ void cut_transport::add_way(double t, const field& u, const group& of, int numbe
   double *outward = own.rows.row(outward_row), *values = own.rows.row(values_row),
          *inward = own.rows.row(inward_row);
   cut_rows::project(one.normal, one.rate, speeds_, directions(), n, outward);
-  const double* here = u.row(of.cell);
+  const double* here = here_.row(u, of.place);
   std::copy_n(here, n, values);
   switch (one.to) {
     case way::kind::whole:
-      std::copy_n(faces_.recorded(one.surface, one.number), n, values);
+      std::copy_n(
+          one.surface >= 0 ? faces_.recorded(one.surface, one.number) : here_.values_at_face(one.number), n,
+          values);
       break;
     case way::kind::group: {
       for (int k = 0; k < n; ++k) inward[k] = -outward[k];
-      cut_rows::leave(u.row(groups_[at(one.number)].cell), inward, lines_of(one.number), one.from_other,
-                      directions(), n, values);
+      cut_rows::leave(here_.row(u, groups_[at(one.number)].place), inward, lines_of(one.number),
+                      one.from_other, directions(), n, values);
       break;
     }
     default:

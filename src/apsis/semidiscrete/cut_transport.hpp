@@ -10,11 +10,14 @@
 #include <apsis/semidiscrete/cut_rows.hpp>
 #include <apsis/semidiscrete/face_fluxes.hpp>
 #include <apsis/semidiscrete/limited_reconstruction.hpp>
+#include <apsis/semidiscrete/local_groups.hpp>
 #include <apsis/semidiscrete/transport.hpp>
 
 #include <array>
+#include <map>
 #include <memory>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace apsis {
@@ -39,31 +42,33 @@ class cut_transport {
 
   /// For steps of at most this length, in which transport may take the share `kept` of a value.
   void limit_for_steps(double step, double kept);
-  /// Computes the lines of u.
+  /// Computes the lines of u. Collective.
   void prepare(const field& u);
   /// Adds what enters a whole cell from a cut one, at an end of a segment. Concurrent calls must differ in
   /// the cell at the end.
   void complete(int surface, int place, const field& u, std::span<const target<field, double>> targets);
   /// Adds T(t, u) to the cut cells, after the whole cells are complete, and then calls `then` for each.
+  /// Collective.
   void add(double t, const field& u, std::span<const target<field, double>> targets, const cells_job& then);
 
  private:
   /// An open face of a group, or a piece of wall.
   struct way {
     enum class kind { group, whole, domain, wall } to;
-    int number;                    ///< of the group, end of the border, open face or wall
+    int number;                    ///< of the group, end of the border, open face or wall; < 0: not here
     std::array<double, 3> normal,  ///< unit vector out of the gas at a face, into it at a wall
         from_centre,               ///< vector to its middle
         from_other = {};           ///< vector to it from the centroid of the other group
     double rate = 0.0;             ///< area / volume; negative at a wall, so that both have the sign of v·n
-    int surface = -1;              ///< of the border, or the face of the domain
+    int surface = -1;              ///< of the border, or the face of the domain; −1: of another process
   };
   struct neighbour {
-    int cell;
+    int place;  ///< of its row, as in local_groups
     std::array<double, 3> weight;
   };
   struct group {
-    int cell;  ///< the first of its cells
+    int place;               ///< of its row, as in local_groups
+    std::vector<int> cells;  ///< of this process; none if its lines alone are needed
     std::vector<way> ways;
     std::vector<neighbour> around;
   };
@@ -74,7 +79,11 @@ class cut_transport {
     std::vector<const double*> seen;  ///< constant pointers to these rows
   };
 
+  void find_walls();
+  void find_places_at_border();
   void add_ways(int number);
+  way way_through(int number, int face) const;
+  int border_at(int direction, bool cut_is_below) const;
   void add_neighbours(int number);
   cut_rows::gradient lines_of(int group);
   void fit_group(const field& u, int number, scratch& own);
@@ -82,6 +91,7 @@ class cut_transport {
   void add_way(double t, const field& u, const group& of, int number, const way& one, double* rate,
                scratch& own);
   void domain_values(double t, const way& one, double* values, scratch& own);
+  const double* recorded_at(int face);
   void make_scratch();
 
   const cut_cells& cut() const { return *space_->mesh().cut(); }
@@ -90,13 +100,17 @@ class cut_transport {
   const model& equation_;
   std::shared_ptr<domain> space_;
   face_fluxes& faces_;
+  local_groups here_;
   bool flat_, limited_;
   int ghosts_;
   double step_ = 0.0, kept_ = 1.0;
   std::array<const double*, 3> speeds_ = {};
   std::array<std::vector<double>, 6> inward_;               ///< speed away from each face of a cell
   std::vector<std::shared_ptr<const oblique_wall>> walls_;  ///< of boxes and bodies
-  std::vector<group> groups_;
+  std::vector<group> groups_;                               ///< those of local_groups::fitted()
+  std::vector<int> number_of_;  ///< of groups of the mesh among these; −1 for others
+  /// Ends of segments at cut cells, by surface and cell.
+  std::map<std::pair<int, int>, int> places_;
   /// The group and the way beyond each end at the border: [surface][place].
   struct border_end {
     int group = -1, way = -1;

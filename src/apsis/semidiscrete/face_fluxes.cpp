@@ -10,6 +10,9 @@
 namespace apsis {
 namespace {
 
+/// The end of an open face or wall whose cell another process holds.
+constexpr std::size_t of_others = static_cast<std::size_t>(-1);
+
 std::size_t index(int k) {
   return static_cast<std::size_t>(k);
 }
@@ -20,8 +23,8 @@ face_fluxes::face_fluxes(const model& equation, std::shared_ptr<domain> space)
     : equation_(equation), space_(std::move(space)), invariants_(equation.invariants().size()) {
   sides_.resize(space_->surfaces().size());
   if (const cut_cells* cut = space_->mesh().cut()) {
-    open_faces_.resize(cut->faces().size());
-    walls_.resize(cut->walls().size());
+    open_faces_.assign(cut->faces().size(), of_others);
+    walls_.assign(cut->walls().size(), of_others);
   }
   for (const budget_surface& one : space_->budget_surfaces()) {
     for (const int surface : one.surfaces) {
@@ -91,6 +94,7 @@ void face_fluxes::compute_densities(int surface, int place) {
 
 void face_fluxes::receive(std::size_t end, double area, std::span<const double> inward, const double* values,
                           double* flux) {
+  if (end == of_others) return;
   if (observed_) equation_.invariant_densities(values, densities_.data() + end * invariants_);
   std::copy_n(values, inward.size(), flux);
   face_rows::multiply(inward.data(), static_cast<int>(inward.size()), flux);

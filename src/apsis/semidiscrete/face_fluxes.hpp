@@ -32,7 +32,8 @@ class face_fluxes {
   void complete(int surface, int place, double t, std::span<const target<field, double>> targets);
 
   /// Takes the values at an open face of a cut cell at a face of the domain, or at a wall segment, by its
-  /// number in cut_cells. `inward`: v·n of every component, n into the gas; `flux`: scratch of one row.
+  /// number in cut_cells; without effect in cells of other processes. `inward`: v·n of every component, n
+  /// into the gas; `flux`: scratch of one row.
   void receive_through(int open_face, std::span<const double> inward, const double* values, double* flux);
   /// The same at a wall.
   void receive_at_wall(int wall, std::span<const double> inward, const double* values, double* flux);

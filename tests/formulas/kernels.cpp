@@ -63,10 +63,10 @@ extern "C" void boundaries(const double* u, double* to) {
 }
 
 extern "C" void cut_cells(const double* u, double* to) {
-  scalar::cut_demand<double> demand{u[0], u[1], u[2], u[3]};
+  scalar::cut_demand<double> demand{u[0], u[1], u[2]};
   demand.add(u[4], u[5], u[6]);
   to[0] = demand.factor(u[7], u[8]);
-  to[1] = scalar::leaving_value(u[7], to[0] * u[5]);
+  to[1] = scalar::leaving_value(u[7], to[0] * u[5]) + scalar::nonnegative_leaving_value(u[6], to[0] * u[5]);
 }
 
 extern "C" void collisions(const double* u, double* to) {

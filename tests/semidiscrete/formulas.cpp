@@ -381,19 +381,19 @@ TEST(cut_rows, limit_lines_as_the_formula_does) {
     const auto n = static_cast<std::size_t>(1 + k % 19);
     const rows u(1, n, random, any_size), outward(2, n, random, any_sign);
     rows slopes(2, n, random, any_sign);
-    std::vector<double> lowest(n), size(n), outflow(n), increase(n), values(n, 7.0);
+    std::vector<double> size(n), outflow(n), increase(n), values(n, 7.0);
     const std::vector<double> x = slopes.all;
     const apsis::cut_rows::gradient gradient = {slopes.all.data(), slopes.all.data() + n, nullptr};
-    const apsis::cut_rows::demand_rows demand{lowest.data(), size.data(), outflow.data(), increase.data()};
+    const apsis::cut_rows::demand_rows demand{size.data(), outflow.data(), increase.data()};
     const std::array<std::array<double, 3>, 2> at = {{{0.3, -0.2, 0.0}, {-0.4, 0.1, 0.0}}};
     constexpr double step = 0.01, kept = 0.95;
     const int width = static_cast<int>(n);
     for (std::size_t f = 0; f < 2; ++f)
       apsis::cut_rows::add_demand(outward.at[f], step, gradient, at[f], 2, width, demand);
     apsis::cut_rows::limit(u.at[0], demand, kept, 2, width, gradient);
-    apsis::cut_rows::leave(u.at[0], outward.at[0], gradient, at[0], 2, width, values.data());
+    apsis::cut_rows::leave(u.at[0], outward.at[0], gradient, at[0], k % 2 == 0, 2, width, values.data());
     for (std::size_t j = 0; j < n; ++j) {
-      scalar::cut_demand<double> sums{0.0, 0.0, 0.0, 0.0};
+      scalar::cut_demand<double> sums{0.0, 0.0, 0.0};
       for (std::size_t f = 0; f < 2; ++f) {
         const double first = x[j] * at[f][0], second = x[n + j] * at[f][1];
         sums.add(step * outward.at[f][j], first + second, std::abs(first) + std::abs(second));
@@ -402,7 +402,9 @@ TEST(cut_rows, limit_lines_as_the_formula_does) {
       ASSERT_EQ(slopes.all[j], factor * x[j]);
       ASSERT_EQ(slopes.all[n + j], factor * x[n + j]);
       const double correction = scalar::fma(slopes.all[n + j], at[0][1], slopes.all[j] * at[0][0]);
-      ASSERT_EQ(values[j], outward.at[0][j] > 0.0 ? scalar::leaving_value(u.at[0][j], correction) : 7.0);
+      const double leaving = k % 2 == 0 ? scalar::nonnegative_leaving_value(u.at[0][j], correction)
+                                        : scalar::leaving_value(u.at[0][j], correction);
+      ASSERT_EQ(values[j], outward.at[0][j] > 0.0 ? leaving : 7.0);
     }
   }
 }

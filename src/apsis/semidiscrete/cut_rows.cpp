@@ -24,8 +24,7 @@ HWY_INLINE N along(const gradient& slopes, const std::array<double, 3>& vector, 
 
 template <class N>
 HWY_INLINE cut_demand<N> demand_at(const demand_rows& demand, int k) {
-  return {N::load(demand.lowest + k), N::load(demand.size + k), N::load(demand.outflow + k),
-          N::load(demand.increase + k)};
+  return {N::load(demand.size + k), N::load(demand.outflow + k), N::load(demand.increase + k)};
 }
 
 void project(const std::array<double, 3>& vector, double rate, const std::array<const double*, 3>& speeds,
@@ -64,7 +63,6 @@ void add_demand(const double* outward, double step, const gradient& slopes,
       size = size + absolute(term);
     }
     sums.add(N(step) * N::load(outward + k), sum, size);
-    sums.lowest.store(demand.lowest + k);
     sums.size.store(demand.size + k);
     sums.outflow.store(demand.outflow + k);
     sums.increase.store(demand.increase + k);
@@ -82,10 +80,11 @@ void limit(const double* u, const demand_rows& demand, double kept, int directio
 }
 
 void leave(const double* u, const double* outward, const gradient& slopes,
-           const std::array<double, 3>& vector, int directions, int n, double* values) {
+           const std::array<double, 3>& vector, bool limited, int directions, int n, double* values) {
   for_packs(n, [&](auto lanes, int k) APSIS_PACKED {
     using N = pack<decltype(lanes)>;
-    const N leaving = leaving_value(N::load(u + k), along<N>(slopes, vector, directions, k));
+    const N here = N::load(u + k), correction = along<N>(slopes, vector, directions, k);
+    const N leaving = limited ? nonnegative_leaving_value(here, correction) : leaving_value(here, correction);
     select(N::load(outward + k) > N(0.0), leaving, N::load(values + k)).store(values + k);
   });
 }
@@ -142,8 +141,8 @@ void limit(const double* u, const demand_rows& demand, double kept, int directio
 }
 
 void leave(const double* u, const double* outward, const gradient& slopes,
-           const std::array<double, 3>& vector, int directions, int n, double* values) {
-  HWY_DYNAMIC_DISPATCH(leave)(u, outward, slopes, vector, directions, n, values);
+           const std::array<double, 3>& vector, bool limited, int directions, int n, double* values) {
+  HWY_DYNAMIC_DISPATCH(leave)(u, outward, slopes, vector, limited, directions, n, values);
 }
 
 void take(const double* outward, const double* values, int n, double* rate) {

@@ -28,10 +28,9 @@ void fit(const double* u, std::span<const neighbour> around, int directions, int
 
 /// Sums over the faces and walls of a cell for its limiter, a row each.
 struct demand_rows {
-  double *lowest,  ///< correction
-      *size,       ///< largest sum of the sizes of terms of a correction
-      *outflow,    ///< of a step, as a share of the gas
-      *increase;   ///< of the outflow by corrections
+  double *size,   ///< largest sum of the sizes of terms of a correction
+      *outflow,   ///< of a step, as a share of the gas
+      *increase;  ///< of the outflow by corrections
 };
 
 /// Adds a face or wall at a vector from the centroid, for a step of length `step`.
@@ -43,8 +42,9 @@ void limit(const double* u, const demand_rows& demand, double kept, int directio
            const gradient& slopes);
 
 /// values ← u + slopes·vector where outward > 0, and 0 for negligible u; elsewhere they stay as they are.
+/// `limited`: no value is negative where u is not.
 void leave(const double* u, const double* outward, const gradient& slopes,
-           const std::array<double, 3>& vector, int directions, int n, double* values);
+           const std::array<double, 3>& vector, bool limited, int directions, int n, double* values);
 
 /// rate ← rate − outward values.
 void take(const double* outward, const double* values, int n, double* rate);

@@ -16,7 +16,7 @@ enum scratch_row : int {
   values_row,
   rate_row,
   inward_row,
-  lowest_row,
+  made_row,
   size_row,
   outflow_row,
   increase_row,
@@ -66,9 +66,9 @@ void cut_transport::fit_group(const field& u, int number, scratch& own) {
   for (const neighbour& one : of.around) own.around.push_back({here_.row(u, one.place), one.weight});
   cut_rows::fit(here, own.around, directions(), n, slopes);
   if (!limited_) return;
-  const cut_rows::demand_rows demand{own.rows.row(lowest_row), own.rows.row(size_row),
-                                     own.rows.row(outflow_row), own.rows.row(increase_row)};
-  for (double* row : {demand.lowest, demand.size, demand.outflow, demand.increase}) std::fill_n(row, n, 0.0);
+  const cut_rows::demand_rows demand{own.rows.row(size_row), own.rows.row(outflow_row),
+                                     own.rows.row(increase_row)};
+  for (double* row : {demand.size, demand.outflow, demand.increase}) std::fill_n(row, n, 0.0);
   double* outward = own.rows.row(outward_row);
   for (const way& one : of.ways) {
     cut_rows::project(one.normal, one.rate, speeds_, directions(), n, outward);
@@ -87,8 +87,8 @@ void cut_transport::complete(int surface, int place, const field& u,
   double *outward = own.rows.row(outward_row), *values = own.rows.row(values_row);
   std::fill_n(values, n, 0.0);
   cut_rows::project(one.normal, one.rate, speeds_, directions(), n, outward);
-  cut_rows::leave(here_.row(u, of.place), outward, lines_of(number), one.from_centre, directions(), n,
-                  values);
+  cut_rows::leave(here_.row(u, of.place), outward, lines_of(number), one.from_centre, limited_, directions(),
+                  n, values);
   const face where = space_->surfaces()[at(surface)].where;
   const int cell = space_->cell_at(surface, place);
   for (const auto& to : targets)
@@ -150,13 +150,13 @@ void cut_transport::add_way(double t, const field& u, const group& of, int numbe
     case way::kind::group: {
       for (int k = 0; k < n; ++k) inward[k] = -outward[k];
       cut_rows::leave(here_.row(u, groups_[at(one.number)].place), inward, lines_of(one.number),
-                      one.from_other, directions(), n, values);
+                      one.from_other, limited_, directions(), n, values);
       break;
     }
     default:
       break;
   }
-  cut_rows::leave(here, outward, lines_of(number), one.from_centre, directions(), n, values);
+  cut_rows::leave(here, outward, lines_of(number), one.from_centre, limited_, directions(), n, values);
   if (one.to == way::kind::domain) {
     domain_values(t, one, values, own);
     faces_.receive_through(one.number, inward_[at(one.surface)], values, own.rows.row(inward_row));
@@ -186,7 +186,7 @@ void cut_transport::domain_values(double t, const way& one, double* values, scra
   if (side.prescribes_incoming()) {
     std::copy_n(values, n, outgoing);
     face_rows::keep_leaving(inward_[where.index()].data(), n, outgoing);
-    double* made = own.rows.row(lowest_row);
+    double* made = own.rows.row(made_row);
     side.incoming_given_outgoing(where, t, x, outgoing, own.seen, made);
     entering = made;
   }

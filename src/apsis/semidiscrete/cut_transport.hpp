@@ -25,8 +25,8 @@ namespace apsis {
 /// Transport in cut cells, by fluxes between straight lines. A cut cell i with the volume V_i of gas and the
 /// centroid x_i has the line
 ///     f_i + ϑ g·(x − x_i),   g by least squares from the neighbours behind open faces (weights 1/distance²),
-/// with ϑ ≤ 1 of each velocity such that all values that leave are nonnegative, and a step lets out no more
-/// than f_i. Then
+/// with ϑ ≤ 1 of each velocity such that a step lets out no more than f_i. With a limiter, values that leave
+/// are cut at 0. Then
 ///     T_i = (1/V_i) (Σ_faces |v·e| a (f_up) in − out + Σ_walls A v·n f_w),
 /// where f_up is the line of the donor at the middle of the open face, or the limited edge value of a whole
 /// cell. At a wall with the normal n into the gas, f_w is the line for v·n < 0 and what the wall emits for

@@ -4,7 +4,8 @@ PYTHON ?= /usr/bin/python3
 CORES  := $(shell nproc)
 APSIS  := build/release/app/apsis
 export CMAKE_CXX_COMPILER_LAUNCHER ?= $(shell command -v ccache)
-export CTEST_PARALLEL_LEVEL ?= $(CORES)
+# One more test than processors: some wait for other processes or for time.
+export CTEST_PARALLEL_LEVEL ?= $(shell echo $$(($(CORES) + 1)))
 
 # For whole builds: several files are compiled as one, with precompiled headers.
 WHOLE := -DAPSIS_PCH=ON -DCMAKE_UNITY_BUILD=ON

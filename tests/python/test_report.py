@@ -51,11 +51,17 @@ def run(tmp_path_factory):
     return folder
 
 
+@pytest.fixture(scope="module")
+def page_of_run(run):
+    """Its page, made once for all tests that read it."""
+    return page_of(run)
+
+
 # --- a run -----------------------------------------------------------------------------------------------------------------------
 
 
-def test_a_run_has_summary_promises_pictures_case_and_manifest(run):
-    page = page_of(run)
+def test_a_run_has_summary_promises_pictures_case_and_manifest(run, page_of_run):
+    page = page_of_run
     manifest = json.loads((run / "manifest.json").read_text())
     assert f"after {manifest['result']['steps']} steps of <code>md-imex-6-3</code>" in page
     assert page.count("kept at every step") == 2 and page.count("not promised for this case") == 1
@@ -67,8 +73,8 @@ def test_a_run_has_summary_promises_pictures_case_and_manifest(run):
         assert (run / "pictures" / f"{name}.png").read_bytes().startswith(b"\x89PNG")
 
 
-def test_text_is_escaped(run):
-    page = page_of(run)
+def test_text_is_escaped(page_of_run):
+    page = page_of_run
     assert "<h1>a &lt;b&gt; &amp; &quot;c&quot;</h1>" in page
     assert "<b>" not in page.replace("<figcaption><b>", "")
 
@@ -114,8 +120,8 @@ def test_a_run_without_space_shows_its_numbers(tmp_path):
     assert all(repr(float(x)) in page for x in result.f[0])
 
 
-def test_equal_results_make_equal_pages(run):
-    assert page_of(run) == page_of(run)
+def test_equal_results_make_equal_pages(run, page_of_run):
+    assert page_of(run) == page_of_run
 
 
 # --- a reproduction ---------------------------------------------------------------------------------------------------------------
@@ -163,10 +169,10 @@ def test_a_validation_shows_every_value_with_its_verdict(tmp_path):
 # --- every page ------------------------------------------------------------------------------------------------------------------
 
 
-def test_no_external_resource_is_loaded(run, tmp_path):
+def test_no_external_resource_is_loaded(page_of_run, tmp_path):
     claims = claim(pictures=[picture(panel(curves=[curve("a", [1, 2], [1, 4])]))])
     (tmp_path / "claims").mkdir()
-    for page in (page_of(run), page_of_claims(tmp_path / "claims", claims), page_of_validation(tmp_path)):
+    for page in (page_of_run, page_of_claims(tmp_path / "claims", claims), page_of_validation(tmp_path)):
         targets = re.findall(r'(?:src|href)="([^"]*)"', page)
         assert targets and all(re.match(r"data:|#", target) for target in targets)
         inside = [base64.b64decode(data).decode() for data in re.findall(r"data:image/svg\+xml;base64,([^\"]+)", page)]
@@ -198,9 +204,9 @@ def chromium():
 
 @pytest.mark.parametrize("width", [400, 1600])
 @pytest.mark.parametrize("kind", ["run", "study", "claims"])
-def test_a_browser_shows_it_legibly_without_requests(chromium, run, tmp_path, kind, width):
+def test_a_browser_shows_it_legibly_without_requests(chromium, run, page_of_run, tmp_path, kind, width):
     if kind == "run":
-        page = make_report(run)
+        page = run / "report.html"
     elif kind == "study":
         data = {"apsis": "0", "state": "complete", "study": {"case": "paper/ode", "measure": "l2 norm", "runs": 2}, **document()}
         (tmp_path / "manifest.json").write_text(json.dumps(data))

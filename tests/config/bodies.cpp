@@ -157,10 +157,10 @@ TEST(bodies, are_refused_where_they_cannot_be) {
                  "20\n[[space.body]]\nshape = \"box\"\nfrom = [0]\nto = [1]\n[velocity]\nmax = 5\npoints = "
                  "6\n[time]\nend = 1\nsafety = 1\n"),
               testing::ThrowsMessage<apsis::input_error>(testing::HasSubstr("a body on a line")));
-  std::string steady = with(circle);
+  std::string steady = with(circle + "T = \"1 + 0.1*t\"\n");
   steady.replace(steady.find("[time]"), std::string::npos, "[steady]\ntolerance = 1e-6\n");
   EXPECT_THAT(of(steady),
-              testing::ThrowsMessage<apsis::input_error>(testing::HasSubstr("a steady run has no bodies")));
+              testing::ThrowsMessage<apsis::input_error>(testing::HasSubstr("space.body.1.T depends on t")));
 }
 
 }  // namespace bodies_test

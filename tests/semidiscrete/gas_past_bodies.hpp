@@ -74,6 +74,7 @@ struct choices {
   std::vector<apsis::face_quantity> wall_velocity = {};
   std::string wall = "diffuse";
   apsis::face_quantity accommodation = 1.0;
+  double epsilon = 1.0;
 };
 
 /// `processes` share the mesh, or a single one has it.
@@ -96,7 +97,7 @@ inline gas_past_bodies make(const choices& of,
   gas.builder->on(mesh)
       .with_discretization("finite-difference")
       .with_reconstruction(apsis::find_reconstruction(of.scheme).make())
-      .with_epsilon([](const position&) { return 1.0; });
+      .with_epsilon([epsilon = of.epsilon](const position&) { return epsilon; });
   if (processes) gas.builder->shared_by(processes, blocks);
   if (of.limited) gas.builder->with_positivity_limiter();
   for (std::size_t k = 0; !is_periodic && k < 2 * static_cast<std::size_t>(d); ++k)

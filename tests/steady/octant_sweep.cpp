@@ -59,7 +59,8 @@ TEST_P(sweeps, solve_the_implicit_step_exactly) {
       gas.space->with_boundary({d, upper}, apsis::make_boundary("vacuum", *equation, {}));
   const apsis::domain& space = gas.space->space();
   const apsis::cell_links links(space);
-  apsis::octant_sweep sweep(*equation, space, links, slope);
+  const apsis::cut_links cut(space);
+  apsis::octant_sweep sweep(*equation, space, links, cut, slope);
   check_property("rounding", [&] {
     field r(space.mesh().size(), equation->components());
     std::vector<double> rates;
@@ -93,7 +94,8 @@ TEST(octant_sweep, walls_return_in_later_octants_what_left_in_earlier_ones) {
   for (const bool upper : {false, true}) gas.space->with_boundary({0, upper}, diffuse_wall(*equation, 1.0));
   const apsis::domain& space = gas.space->space();
   const apsis::cell_links links(space);
-  apsis::octant_sweep sweep(*equation, space, links, slope);
+  const apsis::cut_links cut(space);
+  apsis::octant_sweep sweep(*equation, space, links, cut, slope);
   field d(6, equation->components());
   for (int k = 0; k < d.components(); ++k)
     d.row(3)[k] = equation->speeds(0)[static_cast<std::size_t>(k)] < 0.0;

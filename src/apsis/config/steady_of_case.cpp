@@ -50,10 +50,8 @@ void check_steady(const case_config& config, const model& equation) {
     check_values(config, "boundary." + face_names[k], config.faces[k].values);
   for (std::size_t k = 0; k < config.solids.size(); ++k)
     check_values(config, fmt::format("space.solid.{}", k + 1), config.solids[k].values);
-  if (!config.bodies.empty())
-    throw input_error(place_of(config, "space.body.1"),
-                      "a steady run has no bodies (its sweeps need whole cells); march in time with a table "
-                      "[time] and time.steady");
+  for (std::size_t k = 0; k < config.bodies.size(); ++k)
+    check_values(config, fmt::format("space.body.{}", k + 1), config.bodies[k].values);
   if (config.force.acceleration) check_formulas(config, "force.acceleration", *config.force.acceleration);
   check_values(config, "source", config.source_term);
 }

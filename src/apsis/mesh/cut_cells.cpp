@@ -14,4 +14,9 @@ double cut_cells::volume_of(int cell) const {
   return volumes_.at(cell);
 }
 
+bool has_unknown(const grid& mesh, int cell) {
+  const int group = mesh.cut_group(cell);
+  return mesh.solid(cell) < 0 && (group < 0 || mesh.cut()->groups()[at(group)].cells.front() == cell);
+}
+
 }  // namespace apsis

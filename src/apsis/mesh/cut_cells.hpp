@@ -101,4 +101,8 @@ class cut_cells {
   int thin_cells_ = 0, bodies_ = 0;
 };
 
+/// Whether a cell of a whole mesh has an unknown of its own: not if it is solid, or if another cell of its
+/// group comes first.
+bool has_unknown(const grid& mesh, int cell);
+
 }  // namespace apsis

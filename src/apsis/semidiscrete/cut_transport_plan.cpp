@@ -1,31 +1,12 @@
 #include <apsis/core/errors.hpp>
 #include <apsis/core/index.hpp>
+#include <apsis/semidiscrete/cut_gradient.hpp>
 #include <apsis/semidiscrete/cut_transport.hpp>
 
 #include <algorithm>
-#include <map>
 #include <utility>
 
-#include <Eigen/Eigenvalues>
-
 namespace apsis {
-namespace {
-
-/// Directions in which neighbours lie less than this share apart, of the most, have no slope.
-constexpr double least_spread = 1e-3;
-
-/// Returns the pseudoinverse of a symmetric matrix of least squares.
-Eigen::Matrix3d pseudo_inverse(const Eigen::Matrix3d& m) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> of(m);
-  Eigen::Matrix3d inverse = Eigen::Matrix3d::Zero();
-  for (int k = 0; k < 3; ++k)
-    if (of.eigenvalues()[k] > least_spread * of.eigenvalues()[2])
-      inverse += of.eigenvectors().col(k) * of.eigenvectors().col(k).transpose() / of.eigenvalues()[k];
-  return inverse;
-}
-
-}  // namespace
-
 cut_transport::cut_transport(const model& equation, std::shared_ptr<domain> space,
                              const limited_reconstruction& edges, face_fluxes& faces)
     : equation_(equation),
@@ -139,28 +120,8 @@ cut_transport::way cut_transport::way_through(int number, int f) const {
 
 /// Finds the weights of the neighbours in the slopes of a group.
 void cut_transport::add_neighbours(int number) {
-  const cut_group& from = cut().groups()[at(number)];
-  std::map<int, Eigen::Vector3d> around;  // vectors to their centroids, by their first cells
-  for (const int f : from.faces) {
-    const open_face& one = cut().faces()[at(f)];
-    const bool is_below = one.below >= 0 && cut().group_of(one.below) == number;
-    const int other = is_below ? one.above : one.below;
-    if (other < 0) continue;
-    const int group_of = cut().group_of(other);
-    Eigen::Vector3d apart;
-    for (int k = 0; k < 3; ++k)
-      apart[k] = (is_below ? 1.0 : -1.0) * (one.from_below[at(k)] - one.from_above[at(k)]);
-    around.emplace(group_of < 0 ? other : cut().groups()[at(group_of)].cells.front(), apart);
-  }
-  Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
-  for (const auto& [cell, apart] : around) squares += apart * apart.transpose() / apart.squaredNorm();
-  if (around.empty()) return;
-  const Eigen::Matrix3d inverse = pseudo_inverse(squares);
-  for (const auto& [cell, apart] : around) {
-    const Eigen::Vector3d weight = inverse * apart / apart.squaredNorm();
-    groups_[at(number_of_[at(number)])].around.push_back(
-        {here_.place_of(cell), {weight[0], weight[1], weight[2]}});
-  }
+  for (const auto& [cell, weight] : gradient_weights(cut(), number))
+    groups_[at(number_of_[at(number)])].around.push_back({here_.place_of(cell), weight});
 }
 
 }  // namespace apsis

@@ -29,12 +29,14 @@ struct half_speeds {
 struct scratch_of_cells {
   tangent_rows tangents;
   end_response response;
+  wall_response wall;
   aligned_vector<double> base, changed;
   std::vector<double> flux;
 
   scratch_of_cells(const relaxation_model& equation, const domain& space)
       : tangents(equation),
-        response(space.space(), field(1, equation.components()).stride()),
+        response(space.space(), field::padded(equation.components())),
+        wall(space.space().velocities, field::padded(equation.components())),
         base(at(equation.components())),
         changed(at(equation.components())),
         flux(at(equation.moment_count())) {}
@@ -56,13 +58,40 @@ void differentiate_end(const relaxation_model& equation, const gas_end_of_segmen
   }
 }
 
+/// Adds the derivative by ω of the flux out of a cut cell at a wall or end, per volume of its gas.
+void differentiate_way(const relaxation_model& equation, const way_out_of_cut& way,
+                       const jacobian_layout& layout, scratch_of_cells& with, double* blocks) {
+  const int count = equation.moment_count(), directions = layout.directions;
+  const auto values = [&](const double* inside, double* row) {
+    if (way.wall != nullptr)
+      with.wall.values_at(way, inside, row);
+    else
+      with.response.values_at(*way.end, inside, row);
+  };
+  values(with.tangents.equilibrium(), with.base.data());
+  for (int j = 0; j < count; ++j) {
+    values(with.tangents.changed(j), with.changed.data());
+    for (std::size_t k = 0; k < with.base.size(); ++k) {
+      double outward = 0.0;
+      for (int d = 0; d < directions; ++d) outward += way.normal[at(d)] * equation.speeds(d)[k];
+      with.changed[k] = way.rate * outward * ((with.changed[k] - with.base[k]) / with.tangents.step(j));
+    }
+    equation.moments(with.changed.data(), with.flux.data());
+    for (int weight = 0; weight <= directions; ++weight)
+      for (int i = 0; i < count; ++i)
+        blocks[layout.walls(weight) + at(i * count + j)] +=
+            (weight == 0 ? 1.0 : way.from_centre[at(weight - 1)]) * with.flux[at(i)];
+  }
+}
+
 }  // namespace
 
 cell_jacobian::cell_jacobian(const relaxation_model& equation, const domain& space, const cell_links& links,
-                             const inside_domain& acts)
+                             const cut_links& cut, const inside_domain& acts)
     : equation_(equation),
       space_(space),
       links_(links),
+      cut_(cut),
       acts_(acts),
       layout_{links.directions(), equation.moment_count(),
               equation.has_source() || (acts.source && acts.source->growth)} {}
@@ -93,6 +122,9 @@ std::vector<double> cell_jacobian::compute(const std::vector<double>& omega,
           if (const int number = links_.end_next_to(d, upper, cell); number >= 0)
             differentiate_end(equation_, links_.ends()[at(number)], own, to + layout_.end({d, upper}));
       }
+      if (const int group = cut_.group_of(cell); group >= 0)
+        for (const way_out_of_cut& way : cut_.groups()[at(group)].ways)
+          if (way.other < 0) differentiate_way(equation_, way, layout_, own, to);
     }
   });
   return all;

@@ -5,6 +5,7 @@
 #include <apsis/model/model.hpp>
 #include <apsis/model/source_rate.hpp>
 #include <apsis/steady/cell_links.hpp>
+#include <apsis/steady/cut_links.hpp>
 
 #include <cstddef>
 #include <optional>
@@ -37,6 +38,9 @@ struct jacobian_layout {
   std::size_t deviation(int direction) const { return block(5 * direction + 2); }
   /// The derivative of the flux to larger coordinates where the gas ends next to the cell; 0 elsewhere.
   std::size_t end(const face& where) const { return block(5 * where.direction + (where.upper ? 4 : 3)); }
+  /// Of a group of cut cells, the derivative of what leaves at its walls and ends, divided by its volume. 0:
+  /// the sum of them; 1 … directions: weighted with that component of the vectors from the centroid.
+  std::size_t walls(int weight) const { return end(face_of(at(weight))); }
   /// ℛ ∂S/∂ω.
   std::size_t of_source() const { return block(5 * directions); }
 
@@ -49,7 +53,7 @@ class cell_jacobian {
  public:
   /// All references must outlive the object.
   cell_jacobian(const relaxation_model& equation, const domain& space, const cell_links& links,
-                const inside_domain& acts);
+                const cut_links& cut, const inside_domain& acts);
 
   /// Returns the places of blocks in compute().
   const jacobian_layout& layout() const { return layout_; }
@@ -63,6 +67,7 @@ class cell_jacobian {
   const relaxation_model& equation_;
   const domain& space_;
   const cell_links& links_;
+  const cut_links& cut_;
   const inside_domain& acts_;
   jacobian_layout layout_;
 };

@@ -1,15 +1,30 @@
 #include <apsis/steady/cell_links.hpp>
 
+#include <apsis/mesh/cut_cells.hpp>
+
 #include <algorithm>
 
 namespace apsis {
 
 cell_links::cell_links(const domain& space) : directions_(space.mesh().dimensions()) {
-  for (int cell = 0; cell < space.mesh().size(); ++cell)
-    if (space.mesh().solid(cell) < 0) cells_.push_back(cell);
+  add_cut_cells(space.mesh());
   for (auto* links : {&next_, &image_, &end_at_})
     for (auto& of_face : *links) of_face.assign(at(space.mesh().size()), -1);
   for (int direction = 0; direction < directions_; ++direction) link(space, direction);
+}
+
+void cell_links::add_cut_cells(const grid& mesh) {
+  const cut_cells* cut = mesh.cut();
+  if (cut != nullptr) {
+    cut_at_.assign(6, std::vector<int>(at(mesh.size()), -1));
+    volumes_.assign(at(mesh.size()), 1.0);
+  }
+  for (int cell = 0; cell < mesh.size(); ++cell) {
+    const int group = mesh.cut_group(cell);
+    if (!has_unknown(mesh, cell)) continue;
+    cells_.push_back(cell);
+    if (group >= 0) volumes_[at(cell)] = cut->groups()[at(group)].volume / mesh.cell_volume();
+  }
 }
 
 void cell_links::link(const domain& space, int direction) {
@@ -24,6 +39,10 @@ void cell_links::link(const domain& space, int direction) {
     for (const bool upper : {false, true}) {
       if (!one.ends_here(upper)) continue;
       const segment_end& end = one.ends[upper ? 1 : 0];
+      if (end.surface >= 0 && space.is_border_of_cut_cells(end.surface)) {
+        note_cut_cell(space.mesh(), direction, upper, one.first + (upper ? (one.cells - 1) * apart : 0));
+        continue;
+      }
       if (end.surface >= 0) {
         add_end(space, direction, one, upper);
         continue;
@@ -33,6 +52,14 @@ void cell_links::link(const domain& space, int direction) {
       image_[index(direction, upper)][at(last)] = image.first + (upper ? 0 : (image.cells - 1) * apart);
     }
   }
+}
+
+/// The cell next to the last one of a segment is cut.
+void cell_links::note_cut_cell(const grid& mesh, int direction, bool upper, int last) {
+  const int along = last / mesh.stride(direction) % mesh.cells(direction) + (upper ? 1 : -1);
+  if (along < 0 || along >= mesh.cells(direction)) return;  // across a periodic face
+  const int group = mesh.cut_group(last + (upper ? 1 : -1) * mesh.stride(direction));
+  cut_at_[index(direction, upper)][at(last)] = mesh.cut()->groups()[at(group)].cells.front();
 }
 
 void cell_links::add_end(const domain& space, int direction, const segment& one, bool upper) {

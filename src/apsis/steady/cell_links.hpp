@@ -22,7 +22,8 @@ struct gas_end_of_segment {
   bool copies = false;         ///< whether what enters is the row of the first cell
 };
 
-/// Neighbours of the cells of a domain, along every direction. Cells of other processes do not count.
+/// Neighbours of the cells of a domain, along every direction. Cells of other processes do not count. The
+/// first cell of a group of cut cells stands for the group (cut_links); no segment contains it.
 class cell_links {
  public:
   /// Looks at all segments of the domain once.
@@ -38,18 +39,30 @@ class cell_links {
   int end_next_to(int direction, bool upper, int cell) const {
     return end_at_[index(direction, upper)][at(cell)];
   }
-  const std::vector<gas_end_of_segment>& ends() const { return ends_; }  ///< all ends at surfaces
-  const std::vector<int>& cells() const { return cells_; }               ///< the cells of the gas, in order
-  int directions() const { return directions_; }                         ///< of the mesh
+  /// Returns the first cell of the group of cut cells behind the end of a segment at a cell; −1 at other
+  /// ends, and across periodic faces.
+  int cut_beyond(int direction, bool upper, int cell) const {
+    return cut_at_.empty() ? -1 : cut_at_[index(direction, upper)][at(cell)];
+  }
+  /// Returns the volume of the gas of a cell or its group, relative to that of a whole cell.
+  double volume(int cell) const { return volumes_.empty() ? 1.0 : volumes_[at(cell)]; }
+  const std::vector<gas_end_of_segment>& ends() const { return ends_; }  ///< those at walls and boundaries
+  /// Returns the cells of the gas in order; of a group of cut cells the first one.
+  const std::vector<int>& cells() const { return cells_; }
+  int directions() const { return directions_; }  ///< of the mesh
 
  private:
   static std::size_t index(int direction, bool upper) { return face{direction, upper}.index(); }
   void link(const domain& space, int direction);
   void add_end(const domain& space, int direction, const segment& one, bool upper);
+  void add_cut_cells(const grid& mesh);
+  void note_cut_cell(const grid& mesh, int direction, bool upper, int last);
 
   int directions_;
   std::vector<int> cells_;
   std::array<std::vector<int>, 6> next_, image_, end_at_;
+  std::vector<std::vector<int>> cut_at_;  ///< empty without bodies
+  std::vector<double> volumes_;           ///< empty without bodies
   std::vector<gas_end_of_segment> ends_;
 };
 

@@ -1,6 +1,7 @@
 #include <apsis/steady/dissection.hpp>
 
 #include <apsis/core/index.hpp>
+#include <apsis/mesh/cut_cells.hpp>
 
 #include <utility>
 
@@ -37,7 +38,7 @@ class dissection {
       for (int y = begin[1]; y < end[1]; ++y)
         for (int z = begin[2]; z < end[2]; ++z) {
           const int cell = x * mesh_.stride(0) + y * mesh_.stride(1) + z * mesh_.stride(2);
-          if (mesh_.solid(cell) < 0) found_.cells.push_back(cell);
+          if (has_unknown(mesh_, cell)) found_.cells.push_back(cell);
         }
     if (found_.cells.size() > before) found_.parts.push_back(static_cast<int>(found_.cells.size() - before));
   }

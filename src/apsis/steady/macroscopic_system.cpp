@@ -76,7 +76,8 @@ macroscopic_system::macroscopic_system(const relaxation_model& equation, const p
                                        const cell_links& links, bool first_order)
     : space_(space),
       acts_{space.force(), space.source()},
-      jacobian_(equation, space.space(), links, acts_),
+      cut_(space.space()),
+      jacobian_(equation, space.space(), links, cut_, acts_),
       count_(equation.moment_count()),
       conserved_(at(count_), false) {
   if (space.processes().is_root())

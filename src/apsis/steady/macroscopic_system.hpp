@@ -55,6 +55,7 @@ class macroscopic_system {
 
   const problem_builder& space_;
   inside_domain acts_;
+  cut_links cut_;
   cell_jacobian jacobian_;
   int count_;
   std::vector<bool> conserved_;

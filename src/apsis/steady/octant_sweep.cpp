@@ -23,19 +23,30 @@ int share_of(int n, int number, int parts) {
 struct octant_sweep::scratch {
   struct rows {
     std::unique_ptr<end_response> response;
+    std::unique_ptr<wall_response> wall;
     aligned_vector<double> state, base, changed;
   };
   per_thread<rows> of_threads;
 };
 
 octant_sweep::octant_sweep(const relaxation_model& equation, const domain& space, const cell_links& links,
-                           double slope)
+                           const cut_links& cut, double slope)
     : equation_(equation),
       space_(space),
       links_(links),
+      cut_(cut),
       slope_(slope),
       entering_(static_cast<int>(links.ends().size()), equation.components()),
       scratch_(std::make_unique<scratch>()) {
+  for (int group = 0; group < static_cast<int>(cut.groups().size()); ++group) {
+    std::vector<int>& ends = end_of_way_.emplace_back();
+    const auto& ways = cut.groups()[at(group)].ways;
+    for (int way = 0; way < static_cast<int>(ways.size()); ++way) {
+      ends.push_back(ways[at(way)].other < 0 ? static_cast<int>(cut_ends_.size()) : -1);
+      if (ends.back() >= 0) cut_ends_.push_back({group, way});
+    }
+  }
+  entering_cut_ = field(static_cast<int>(cut_ends_.size()), equation.components());
   const int components = equation.components(), directions = links.directions();
   std::map<std::array<bool, 3>, octant> found;
   std::array<bool, 3> last{};
@@ -74,6 +85,7 @@ void octant_sweep::set_order(octant& of) const {
   };
   of.order = links_.cells();
   std::sort(of.order.begin(), of.order.end(), [&](int a, int b) { return key(a) < key(b); });
+  if (!cut_.groups().empty()) wait_for_cut_cells(of);
 }
 
 void octant_sweep::solve(const field& f, const std::vector<double>& rates, field& r) {
@@ -81,19 +93,34 @@ void octant_sweep::solve(const field& f, const std::vector<double>& rates, field
   scratch_->of_threads.prepare([&](scratch::rows& own) {
     if (own.response) return;
     own.response = std::make_unique<end_response>(space_.space(), stride);
+    own.wall = std::make_unique<wall_response>(space_.space().velocities, stride);
     for (auto* row : {&own.state, &own.base, &own.changed}) row->assign(at(stride), 0.0);
   });
   for (const octant& of : octants_) {
     respond(of, f, r);
+    respond_at_walls(of, f, r);
     const int threads = threads_here();
     parallel_for(threads, [&](int k) { pass(of, of.part(k, threads), rates, r); });
   }
 }
 
+/// Adds the changes of the octants before one that arrive somewhere to a row. Returns whether there are any.
+template <class Arrives>
+bool octant_sweep::add_changes_before(const octant& one, const Arrives& arrives, const double* changes,
+                                      double* row) const {
+  bool any = false;
+  for (const octant* before = octants_.data(); before != &one; ++before) {
+    if (!arrives(*before)) continue;
+    for (const sweep_rows::strip& some : before->strips)
+      for (int k = some.begin; k < some.end; ++k) row[k] += changes[k];
+    any = true;
+  }
+  return any;
+}
+
 /// Sets the changes that enter at the ends where this octant begins, from those that arrived there in the
 /// octants before it.
 void octant_sweep::respond(const octant& of, const field& f, const field& delta) {
-  const auto begun = static_cast<std::size_t>(&of - octants_.data());
   constexpr int ends_at_once = 4;
   parallel_blocks(static_cast<int>(links_.ends().size()), ends_at_once, [&](int begin, int end) {
     scratch::rows& own = scratch_->of_threads.here();
@@ -104,18 +131,44 @@ void octant_sweep::respond(const octant& of, const field& f, const field& delta)
       std::fill_n(row, equation_.components(), 0.0);
       const double *state = f.row(here.cells[0]), *changes = delta.row(here.cells[0]);
       std::copy_n(state, equation_.components(), own.state.begin());
-      bool any = false;
-      for (std::size_t before = 0; before < begun; ++before) {
-        const octant& other = octants_[before];
-        if (here.where.upper != other.up[at(here.where.direction)]) continue;
-        for (const sweep_rows::strip& some : other.strips)
-          for (int k = some.begin; k < some.end; ++k) own.state[at(k)] += changes[k];
-        any = true;
-      }
-      if (!any) continue;
+      const auto arrives = [&](const octant& other) {
+        return here.where.upper == other.up[at(here.where.direction)];
+      };
+      if (!add_changes_before(of, arrives, changes, own.state.data())) continue;
       own.response->values_at(here, state, own.base.data());
       own.response->values_at(here, own.state.data(), own.changed.data());
       for (int k = 0; k < equation_.components(); ++k) row[k] = own.changed[at(k)] - own.base[at(k)];
+    }
+  });
+}
+
+/// Sets what enters cut cells at walls and ends, from what arrived there in the octants before this one.
+void octant_sweep::respond_at_walls(const octant& of, const field& f, const field& delta) {
+  const int components = equation_.components();
+  constexpr int ends_at_once = 4;
+  parallel_blocks(static_cast<int>(cut_ends_.size()), ends_at_once, [&](int begin, int end) {
+    scratch::rows& own = scratch_->of_threads.here();
+    for (int n = begin; n < end; ++n) {
+      const group_of_cut& group = cut_.groups()[at(cut_ends_[at(n)].group)];
+      const way_out_of_cut& way = group.ways[at(cut_ends_[at(n)].way)];
+      double* row = entering_cut_.row(n);
+      std::fill_n(row, components, 0.0);
+      const double *state = f.row(group.cell), *changes = delta.row(group.cell);
+      std::copy_n(state, components, own.state.begin());
+      // At a wall any octant may arrive.
+      const auto arrives = [&](const octant& other) {
+        return !way.end || way.end->where.upper == other.up[at(way.end->where.direction)];
+      };
+      if (!add_changes_before(of, arrives, changes, own.state.data())) continue;
+      const auto values = [&](const double* inside, double* to) {
+        if (way.wall != nullptr)
+          own.wall->values_at(way, inside, to);
+        else
+          own.response->values_at(*way.end, inside, to);
+      };
+      values(state, own.base.data());
+      values(own.state.data(), own.changed.data());
+      for (int k = 0; k < components; ++k) row[k] = own.changed[at(k)] - own.base[at(k)];
     }
   });
 }
@@ -145,15 +198,23 @@ void octant_sweep::pass(const octant& of, std::span<const sweep_rows::strip> str
   for (const int cell : of.order) {
     std::array<sweep_rows::upstream, 3> terms;
     double* row = r.row(cell);
-    for (int d = 0; d < directions; ++d) terms[at(d)] = terms_of(cell, d, of.up[at(d)], r);
+    if (const int group = cut_.group_of(cell); group >= 0) {
+      pass_cut(of, group, strips, rates[at(cell)], r);
+      continue;
+    }
+    for (int d = 0; d < directions; ++d) terms[at(d)] = terms_of(of, cell, d, r);
     sweep_rows::solve({terms.data(), at(directions)}, lambda, rates[at(cell)], strips, row);
   }
 }
 
 /// The terms of a cell along one direction, for velocities that are positive or negative.
-sweep_rows::upstream octant_sweep::terms_of(int cell, int direction, bool up, const field& r) const {
+sweep_rows::upstream octant_sweep::terms_of(const octant& of, int cell, int direction, const field& r) const {
   sweep_rows::upstream from;
-  const int one = links_.next(direction, !up, cell);
+  const bool up = of.up[at(direction)];
+  int one = links_.next(direction, !up, cell);
+  // Slopes are those of whole cells: behind a cut one the gas begins.
+  const int cut = one < 0 ? links_.cut_beyond(direction, !up, cell) : -1;
+  if (cut >= 0 && of.place[at(cut)] < of.place[at(cell)]) one = cut;
   if (one < 0) {
     const int end = links_.end_next_to(direction, !up, cell);
     // A copy of this row changes with it: no difference enters. A change of 0 would hold the row where few
@@ -164,7 +225,7 @@ sweep_rows::upstream octant_sweep::terms_of(int cell, int direction, bool up, co
     from.first = end < 0 || copies ? 0.0 : 1.0;
     return from;
   }
-  const int two = links_.next(direction, !up, one);
+  const int two = one == cut ? -1 : links_.next(direction, !up, one);
   from.here = 1.0 + slope_;
   from.one = r.row(one);
   from.first = two < 0 ? 1.0 + slope_ : 1.0 + 2.0 * slope_;

@@ -3,6 +3,7 @@
 #include <apsis/boundary/domain.hpp>
 #include <apsis/model/model.hpp>
 #include <apsis/steady/cell_links.hpp>
+#include <apsis/steady/cut_links.hpp>
 #include <apsis/steady/sweep_rows.hpp>
 
 #include <array>
@@ -17,10 +18,14 @@ namespace apsis {
 /// is δ_i + s (δ_i − δ_{i−1}), δ_i itself next to where the gas begins. Components whose velocities have
 /// equal signs form an octant; one octant follows another, and what leaves at an end of the gas in one of
 /// them enters, by the boundary condition, in those that follow. Across periodic faces nothing enters.
+///
+/// In cut cells L is of first order: (Σ_out w + σ) δ_i = r_i + Σ_in w δ_up, w = |v·n| area/volume of the open
+/// faces and walls of a group. Where groups and cells wait for each other, what comes later does not enter.
 class octant_sweep {
  public:
   /// All references must outlive the object. `slope`: s, from 0 of first order to ½ of second order.
-  octant_sweep(const relaxation_model& equation, const domain& space, const cell_links& links, double slope);
+  octant_sweep(const relaxation_model& equation, const domain& space, const cell_links& links,
+               const cut_links& cut, double slope);
   ~octant_sweep();
   octant_sweep(const octant_sweep&) = delete;
   octant_sweep& operator=(const octant_sweep&) = delete;
@@ -34,24 +39,40 @@ class octant_sweep {
     std::array<bool, 3> up{};  ///< whether the velocity is positive along each direction
     std::vector<sweep_rows::strip> strips;
     std::vector<int> order;  ///< of the cells
+    std::vector<int> place;  ///< of a cell in this order; empty without cut cells
 
     std::vector<sweep_rows::strip> part(int number, int parts) const;
   };
   struct scratch;
 
   void set_order(octant& of) const;
+  void wait_for_cut_cells(octant& of) const;
+  std::vector<int> upstream_of(const octant& of, int cell) const;
   void respond(const octant& of, const field& f, const field& delta);
   void pass(const octant& of, std::span<const sweep_rows::strip> strips, const std::vector<double>& rates,
             field& r) const;
-  sweep_rows::upstream terms_of(int cell, int direction, bool up, const field& r) const;
+  void pass_cut(const octant& of, int group, std::span<const sweep_rows::strip> strips, double rate,
+                field& r) const;
+  void respond_at_walls(const octant& of, const field& f, const field& delta);
+  template <class Arrives>
+  bool add_changes_before(const octant& one, const Arrives& arrives, const double* changes,
+                          double* row) const;
+  sweep_rows::upstream terms_of(const octant& of, int cell, int direction, const field& r) const;
 
   const relaxation_model& equation_;
   const domain& space_;
   const cell_links& links_;
+  const cut_links& cut_;
   double slope_;
   std::vector<octant> octants_;
   std::array<aligned_vector<double>, 3> per_cell_;  ///< |v_k|/Δx_k of every component
-  field entering_;                                  ///< [end], δ of the components that enter
+  field entering_,                                  ///< [end], δ of the components that enter
+      entering_cut_;                                ///< the same at the ends of cut cells
+  struct cut_end {
+    int group, way;
+  };
+  std::vector<cut_end> cut_ends_;             ///< ends of cut cells
+  std::vector<std::vector<int>> end_of_way_;  ///< [group][way], its number among them; −1 for others
   std::unique_ptr<scratch> scratch_;
 };
 

@@ -9,6 +9,7 @@
 #include <apsis/semidiscrete/gathered_cells.hpp>
 #include <apsis/steady/anderson.hpp>
 #include <apsis/steady/cell_links.hpp>
+#include <apsis/steady/cut_links.hpp>
 #include <apsis/steady/damping.hpp>
 #include <apsis/steady/internal/cell_measures.hpp>
 #include <apsis/steady/macroscopic_system.hpp>
@@ -58,6 +59,11 @@ constexpr double hopeless = 1e6;
 std::vector<double> checked_epsilon(const problem_builder& space) {
   if (!space.has_space())
     throw input_error("the model has no space, so that its steady state is an equilibrium; run it in time");
+  if (space.whole_mesh().cut() != nullptr && !space.processes().is_single())
+    throw input_error(
+        "bodies on several processes (sweeps would begin anew within groups of cut cells); use one process, "
+        "or "
+        "march in time");
   std::vector<double> found;
   run_collectively(space.processes(), [&] {
     found = space.epsilon_at_centres();
@@ -91,11 +97,12 @@ struct steady_solver::impl {
         epsilon(checked_epsilon(space)),
         problem(operators),
         links(builder.space()),
+        cut(builder.space()),
         count(equation.moment_count()),
         cells(equation, builder, links),
         is_thin(has_thin_cells(start)),
         system(equation, builder, links, is_thin),
-        sweep(equation, builder.space(), links, is_thin ? slope_in_thin_cells : usual_slope),
+        sweep(equation, builder.space(), links, cut, is_thin ? slope_in_thin_cells : usual_slope),
         mixture(given.depth),
         r(start.cells(), start.components()),
         omega(at(start.cells() * count)),
@@ -263,7 +270,10 @@ struct steady_solver::impl {
   void remove_negatives(field& f, steady_iteration& now) {
     if (!is_nonnegative(equation, builder)) return;
     removed_values& removed = now.removed;
-    run_collectively(processes, [&] { removed = remove_negative_values(equation, links.cells(), f); });
+    run_collectively(processes, [&] {
+      removed = remove_negative_values(equation, links.cells(), f);
+      cut.copy_rows(f);
+    });
     removed.count = global_count(processes, removed.count);
     removed.lowest = global_lowest(processes, removed.lowest);
     if (removed.count == 0) return;
@@ -320,6 +330,7 @@ struct steady_solver::impl {
       add_correction(share);
       for (double& rate : rates) rate += pseudo_rate;
       sweep.solve(f, rates, r);
+      cut.copy_rows(r);
     });
     update(f, mixes_at_once || now.residual < share_to_mix);
     return now;
@@ -332,6 +343,7 @@ struct steady_solver::impl {
   std::vector<double> epsilon;
   semidiscrete_problem& problem;
   cell_links links;
+  cut_links cut;
   int count;
   cell_measures cells;
   bool is_thin;  ///< every cell

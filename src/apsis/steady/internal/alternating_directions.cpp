@@ -90,7 +90,8 @@ alternating_directions::alternating_directions(const moment_mesh& mesh, const mo
 
 Eigen::RowVectorXd alternating_directions::sums_of(const Eigen::MatrixXd& x, int moment) const {
   Eigen::RowVectorXd sum = Eigen::RowVectorXd::Zero(x.cols());
-  for (int cell = 0; cell < mesh_.cells; ++cell) sum += x.row(cell * mesh_.moments + moment);
+  for (int cell = 0; cell < mesh_.cells; ++cell)
+    sum += mesh_.volume(cell) * x.row(cell * mesh_.moments + moment);
   return sum / mesh_.cells;
 }
 
@@ -121,6 +122,7 @@ std::vector<alternating_directions::lines> alternating_directions::factorized_li
   }
   std::vector<std::vector<Eigen::Triplet<double>>> terms(groups.size());
   const auto add = [&](int row, int column, double value) {
+    if (place[at(row)].first != place[at(column)].first) return;  // beside the line, as cut cells have
     terms[at(place[at(row)].first)].emplace_back(place[at(row)].second, place[at(column)].second, value);
   };
   const auto add_blocks = [&](const block_matrix& some, double factor) {

@@ -45,7 +45,7 @@ class alternating_directions {
   std::vector<lines> factorized_lines(const moment_equations& equations, int direction,
                                       const std::vector<double>& scale) const;
   Eigen::VectorXd without_sums(const Eigen::VectorXd& r) const;
-  /// Sums of a moment over the cells, divided by their number, of each column.
+  /// Sums of a moment over the volumes of cells, divided by their number, of each column.
   Eigen::RowVectorXd sums_of(const Eigen::MatrixXd& x, int moment) const;
 
   const moment_mesh& mesh_;

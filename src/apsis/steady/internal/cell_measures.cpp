@@ -63,7 +63,7 @@ std::vector<double> cell_measures::scales_of(const double* moments) const {
 std::vector<double> cell_measures::sums(const std::vector<double>& omega) const {
   std::vector<exact_sum> all(count_);
   for (const int cell : links_.cells())
-    for (std::size_t i = 0; i < count_; ++i) all[i].add(omega[at(cell) * count_ + i]);
+    for (std::size_t i = 0; i < count_; ++i) all[i].add(links_.volume(cell) * omega[at(cell) * count_ + i]);
   return global_values(processes_, all);
 }
 

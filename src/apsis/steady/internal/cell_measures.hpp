@@ -24,7 +24,7 @@ class cell_measures {
   /// invariants.
   std::vector<double> scales_of(const double* moments) const;
 
-  /// Returns the sum of each moment.
+  /// Returns the sum of each moment, times the volumes of cells relative to that of a whole one.
   std::vector<double> sums(const std::vector<double>& omega) const;
   /// Returns the largest scale of each moment.
   std::vector<double> largest_scales(const std::vector<double>& omega) const;

@@ -3,6 +3,7 @@
 #include <apsis/core/index.hpp>
 #include <apsis/model/gas_model.hpp>
 #include <apsis/steady/dissection.hpp>
+#include <apsis/steady/internal/flux_derivative.hpp>
 
 #include <algorithm>
 #include <array>
@@ -15,80 +16,6 @@ namespace {
 
 /// Fluxes along a direction reach two cells on both sides.
 constexpr std::size_t blocks_of_row = 5;
-
-/// Cells and their weights in the value at an edge.
-struct weighted_cells {
-  std::array<std::pair<int, double>, 5> terms{};
-  int count = 0;
-
-  void add(int cell, double weight) {
-    for (int k = 0; k < count; ++k)
-      if (terms[at(k)].first == cell) {
-        terms[at(k)].second += weight;
-        return;
-      }
-    terms[at(count++)] = {cell, weight};
-  }
-  const auto* begin() const { return terms.data(); }
-  const auto* end() const { return terms.data() + count; }
-};
-
-/// Adds the cell next to `cell`, or beyond the gas its value on the parabola through three cells inside, or
-/// the line or the constant where there are fewer.
-void add_neighbour(const cell_links& links, int direction, bool upper, int cell, double weight,
-                   weighted_cells& to) {
-  if (const int other = links.next_or_image(direction, upper, cell); other >= 0) return to.add(other, weight);
-  const int second = links.next(direction, !upper, cell),
-            third = second < 0 ? -1 : links.next(direction, !upper, second);
-  if (third >= 0) {
-    to.add(cell, 3.0 * weight);
-    to.add(second, -3.0 * weight);
-    to.add(third, weight);
-  } else if (second >= 0) {
-    to.add(cell, 2.0 * weight);
-    to.add(second, -weight);
-  } else {
-    to.add(cell, weight);
-  }
-}
-
-/// The value at the upper or lower edge of a cell, of what moves towards it.
-weighted_cells edge_of(const cell_links& links, int direction, bool upper, int cell, bool first_order) {
-  weighted_cells found;
-  if (first_order) {
-    found.add(cell, 1.0);
-    return found;
-  }
-  found.add(cell, 5.0 / 6.0);
-  add_neighbour(links, direction, upper, cell, 1.0 / 3.0, found);
-  add_neighbour(links, direction, !upper, cell, -1.0 / 6.0, found);
-  return found;
-}
-
-/// The derivatives of a flux by the moments of the cells around its face.
-class flux_derivative {
- public:
-  explicit flux_derivative(std::size_t square) : square_(square) {}
-
-  void add(int cell, double factor, const double* block) {
-    std::size_t k = 0;
-    while (k < cells_.size() && cells_[k].first != cell) ++k;
-    if (k == cells_.size()) {
-      if (blocks_.size() == k) blocks_.emplace_back(square_);
-      std::fill(blocks_[k].begin(), blocks_[k].end(), 0.0);
-      cells_.emplace_back(cell, blocks_[k].data());
-    }
-    for (std::size_t i = 0; i < square_; ++i) blocks_[k][i] += factor * block[i];
-  }
-  void clear() { cells_.clear(); }
-  auto begin() const { return cells_.begin(); }
-  auto end() const { return cells_.end(); }
-
- private:
-  std::size_t square_;
-  std::vector<std::pair<int, const double*>> cells_;
-  std::vector<std::vector<double>> blocks_;  ///< kept for the next face
-};
 
 dissected_mesh dissected(const domain& space, bool first_order) {
   std::array<bool, 3> periodic{};
@@ -105,6 +32,7 @@ moment_assembly::moment_assembly(const relaxation_model& equation, const domain&
       acts_(acts),
       layout_(layout),
       links_(space),
+      cut_(space),
       first_order_(first_order),
       count_(layout.moments),
       number_(at(space.mesh().size()), -1),
@@ -122,6 +50,8 @@ moment_mesh moment_assembly::number_cells() {
                     .extent = 0.0,
                     .spacing = mesh.spacing(0),
                     .first_order = first_order_};
+  found.volumes.resize(links_.cells().size());
+  for (const int cell : links_.cells()) found.volumes[at(number_[at(cell)])] = links_.volume(cell);
   for (int d = 0; d < mesh.dimensions(); ++d) {
     found.lines[at(d)] = lines_along(links_, d, number_);
     found.extent = std::max(found.extent, mesh.spacing(d) * mesh.cells(d));
@@ -133,6 +63,7 @@ moment_mesh moment_assembly::number_cells() {
 moment_equations moment_assembly::assemble(std::span<const double> blocks, double pseudo_rate) const {
   moment_equations all(mesh_);
   for (int d = 0; d < layout_.directions; ++d) add_faces(blocks, d, all.along[at(d)]);
+  add_cut_cells(blocks, all.inside);
   add_forces(all.inside);
   for (const int cell : links_.cells())
     if (layout_.source)
@@ -231,7 +162,7 @@ void moment_assembly::find_conserved(moment_equations& all) const {
       some.visit_row(row, [&](int column, const double* block) {
         for (int i = 0; i < count_; ++i)
           for (int j = 0; j < count_; ++j) {
-            const double value = block[i * count_ + j];
+            const double value = mesh_.volume(row) * block[i * count_ + j];
             sums[at(i) * at(unknowns) + at(column * count_ + j)] += value;
             sizes[at(i)] = std::max(sizes[at(i)], std::abs(value));
           }

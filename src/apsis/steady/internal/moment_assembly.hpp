@@ -5,10 +5,12 @@
 #include <apsis/model/model.hpp>
 #include <apsis/steady/cell_jacobian.hpp>
 #include <apsis/steady/cell_links.hpp>
+#include <apsis/steady/cut_links.hpp>
 #include <apsis/steady/internal/moment_equations.hpp>
 
 #include <cstddef>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace apsis {
@@ -31,6 +33,10 @@ class moment_assembly {
   /// Adds factor · block to the block at a row and a column of cells of the gas.
   void add_block(int row, int column, double factor, const double* block, block_matrix& to) const;
   void add_faces(std::span<const double> blocks, int direction, block_matrix& to) const;
+  void add_cut_cells(std::span<const double> blocks, block_matrix& to) const;
+  void add_face_of_cut(std::span<const double> blocks, int face, block_matrix& to) const;
+  void add_walls(std::span<const double> blocks, const group_of_cut& of, block_matrix& to) const;
+  std::vector<std::pair<int, double>> line_of_cut(int group, const std::array<double, 3>& to) const;
   void add_forces(block_matrix& to) const;
   void find_conserved(moment_equations& all) const;
   void add_scales(std::span<const double> blocks, moment_equations& all) const;
@@ -45,6 +51,7 @@ class moment_assembly {
   const inside_domain& acts_;
   jacobian_layout layout_;
   cell_links links_;
+  cut_links cut_;
   bool first_order_;
   int count_;
   std::vector<int> number_;

@@ -64,7 +64,7 @@ row_matrix with_sums(const moment_mesh& mesh, const moment_equations& equations,
     matrix.startVec(unknowns + k);
     for (int cell = 0; cell < mesh.cells; ++cell)
       matrix.insertBackByOuterInnerUnordered(unknowns + k, cell * moments + conserved[at(k)]) =
-          1.0 / mesh.cells;
+          mesh.volume(cell) / mesh.cells;
   }
   matrix.finalize();
   return matrix;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <apsis/core/index.hpp>
 #include <apsis/steady/cell_links.hpp>
 #include <apsis/steady/internal/block_matrix.hpp>
 
@@ -27,10 +28,13 @@ struct moment_mesh {
   /// Numbers of cells that are eliminated together, one after the other; all of them where it is empty.
   std::vector<int> parts = {};
   std::array<std::vector<line_of_cells>, 3> lines = {};
-  double extent = 1.0,       ///< the longest side of the domain
-      spacing = 1.0;         ///< the shortest side of a cell
-  bool first_order = false;  ///< whether fluxes between cells are
+  std::vector<double> volumes = {};  ///< of cells relative to whole ones; all are whole where it is empty
+  double extent = 1.0,               ///< the longest side of the domain
+      spacing = 1.0;                 ///< the shortest side of a cell
+  bool first_order = false;          ///< whether fluxes between cells are
 
+  /// Returns the volume of a cell relative to a whole one.
+  double volume(int number) const { return volumes.empty() ? 1.0 : volumes[at(number)]; }
   /// Returns the number of rows that cells have.
   int unknowns() const { return moments * cells; }
 };
@@ -54,8 +58,8 @@ struct moment_equations {
 /// Returns J without the equations of sums.
 row_matrix bare_matrix(const moment_mesh& mesh, const moment_equations& equations);
 
-/// Returns J with a row and a column for each moment that is conserved: its sum divided by the number of
-/// cells, and a source of it that is the same in all cells.
+/// Returns J with a row and a column for each moment that is conserved: its sum over the volumes, divided by
+/// the number of cells, and a source of it that is the same in all cells.
 row_matrix bordered_matrix(const moment_mesh& mesh, const moment_equations& equations);
 
 }  // namespace apsis

@@ -1,0 +1,74 @@
+#pragma once
+
+#include <apsis/boundary/domain.hpp>
+#include <apsis/boundary/oblique_wall.hpp>
+#include <apsis/mesh/cut_cells.hpp>
+#include <apsis/steady/cell_links.hpp>
+
+#include <array>
+#include <memory>
+#include <optional>
+#include <vector>
+
+namespace apsis {
+
+/// A face or a piece of wall through which the gas of a group of cut cells leaves.
+struct way_out_of_cut {
+  int other = -1;                          ///< whole cell, or first cell of the group, behind it; −1 at ends
+  bool is_image = false;                   ///< whether that lies across a periodic face
+  std::array<double, 3> normal = {};       ///< unit vector out of the gas
+  double rate = 0.0;                       ///< its area over the volume of the group
+  std::array<double, 3> from_centre = {};  ///< vector to it from the centroid of the group
+  int face = -1;                           ///< number of the open face in cut_cells; −1 at a wall
+  /// At an end: where it is, for a boundary of the domain,
+  std::optional<gas_end_of_segment> end = {};
+  const oblique_wall* wall = nullptr;  ///< or the wall,
+  wall_point at = {};                  ///< at this point
+};
+
+/// A group of cut cells with its ways out.
+struct group_of_cut {
+  int cell = -1;            ///< the first one, which stands for the group
+  std::vector<int> others;  ///< whose rows are copies of its row
+  double volume = 0.0;      ///< of the gas, over that of a whole cell
+  std::vector<way_out_of_cut> ways;
+};
+
+/// The groups of cut cells of a mesh of one process, for the sweeps and moment equations of steady states.
+class cut_links {
+ public:
+  /// `space` must outlive the object. Without bodies there is no group.
+  explicit cut_links(const domain& space);
+
+  const std::vector<group_of_cut>& groups() const { return groups_; }  ///< in the order of cut_cells
+  /// Returns the number of the group of a cut cell; −1 for others.
+  int group_of(int cell) const { return group_of_.empty() ? -1 : group_of_[at(cell)]; }
+  /// Returns the cell whose row a cell has: the first one of its group.
+  int first_of(int cell) const { return group_of(cell) < 0 ? cell : groups_[at(group_of(cell))].cell; }
+  /// Copies the rows of groups to all of their cells.
+  void copy_rows(field& u) const;
+
+ private:
+  way_out_of_cut way_through(const domain& space, int group, int face) const;
+
+  std::vector<std::shared_ptr<const oblique_wall>> walls_;  ///< of boxes and bodies
+  std::vector<int> group_of_;
+  std::vector<group_of_cut> groups_;
+};
+
+/// The components that leave a wall into the gas, as a map of rows. Has scratch memory: one object per
+/// thread.
+class wall_response {
+ public:
+  /// `velocities` must outlive the object.
+  wall_response(const velocity_set& velocities, int stride);
+
+  /// row ← `inside`, with what the wall emits for the components that leave it.
+  void values_at(const way_out_of_cut& way, const double* inside, double* row);
+
+ private:
+  const velocity_set& velocities_;
+  aligned_vector<double> inward_, emitted_;
+};
+
+}  // namespace apsis

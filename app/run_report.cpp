@@ -3,6 +3,7 @@
 
 #include <apsis/model/model_registry.hpp>
 #include <apsis/model/velocity_support.hpp>
+#include <apsis/run/body_loads.hpp>
 #include <apsis/run/result_units.hpp>
 #include <apsis/run/setup.hpp>
 
@@ -86,6 +87,14 @@ std::string summary_text(const simulation& run, run_end end, const run_records& 
                                                      : fmt::format("flux through {}", faces[f]),
          fmt::format("{}", fmt::join(amounts, ", ")));
   }
+  if (const auto& reference = c.output.reference)
+    for (const body_load& body : body_loads(run.setup(), run.last())) {
+      std::vector<std::string> coefficients;
+      for (const load_value& one : loads_in_stream(body, *reference))
+        if (one.dims == dimensions::none)
+          coefficients.push_back(fmt::format("{} {:.6g}", one.name, one.value));
+      line(fmt::format("coefficients of {}", body.name), fmt::format("{}", fmt::join(coefficients, ", ")));
+    }
   if (!iterates && !std::isnan(run.initial_record().entropy))
     line("max entropy increase", fmt::format("{:.2e}", s.max_entropy_increase));
   if (std::isfinite(s.velocity_room)) line("velocities", velocities_text(s, c));

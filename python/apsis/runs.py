@@ -28,7 +28,8 @@ class Result:
     f[cell, component] is the state at the end, x the cell centres, v[component] the speeds of the components, epsilon the Knudsen
     number at the centres (empty where the model has none). In two and three space dimensions y and z are the centres in the other
     directions, and [cell] stands for [i, j] or [i, j, k], the numbers of the cell along x, y and z: a field has the shape (nt, nx, ny).
-    probes[name] has the columns of probes/NAME.csv, surfaces[name] those of surfaces/NAME.csv. With two or three velocity dimensions v[component, dimension] are
+    probes[name] has the columns of probes/NAME.csv, surfaces[name] those of surfaces/NAME.csv. walls[name][piece, end] are the ends (x, y)
+    of the pieces of wall of a body in the plane, which is on their left. With two or three velocity dimensions v[component, dimension] are
     the velocities, v_weights[component] their quadrature weights, so that f @ v_weights is the density; where they are a tensor
     product, axes["v_x"], … are its nodes and marginals["v_x"][cell, node], … f integrated over the other components. fields[name][k, cell] are the macroscopic fields at the times t[k], ending with
     the final time, and labels[name] is what an axis says of one. history[name][n] is what was checked after step n. summary has the keys of `apsis run --json`, state how
@@ -51,6 +52,7 @@ class Result:
     z: Array = field(default_factory=lambda: np.zeros(0))
     probes: dict[str, dict[str, Array]] = field(default_factory=dict)
     surfaces: dict[str, dict[str, NDArray[Any]]] = field(default_factory=dict)
+    walls: dict[str, Array] = field(default_factory=dict)
 
     @property
     def title(self) -> str:
@@ -81,7 +83,7 @@ class Result:
         arrays = {name: value for name, value in every.items() if value.size}
         last = {name: values[-1] for name, values in self.fields.items()}
         stored = RunResult(Path("run"), {"case": self.summary.get("case", {})}, last, {**self.fields, "t": self.t}, arrays, self.history,
-                           self.labels, "", self.marginals, self.probes, self.surfaces)
+                           self.labels, "", self.marginals, self.probes, self.surfaces, self.walls)
         made = figures(stored)
         if kind not in made:
             raise InputError(f"unknown picture '{kind}' (this result has no such picture); valid: {', '.join(made) or 'none'}")
@@ -99,7 +101,7 @@ class Result:
         return (self.state == other.state and self.summary.get("case") == other.summary.get("case")
                 and same({name: getattr(self, name) for name in arrays}, {name: getattr(other, name) for name in arrays})
                 and same(self.fields, other.fields) and same(self.history, other.history)
-                and same(self.axes, other.axes) and same(self.marginals, other.marginals)
+                and same(self.axes, other.axes) and same(self.marginals, other.marginals) and same(self.walls, other.walls)
                 and same_tables(self.probes, other.probes) and same_tables(self.surfaces, other.surfaces))
 
 

@@ -33,4 +33,4 @@ def open(folder: str | Path) -> Result:  # noqa: A001, used as apsis.open
                   summary=summary, labels={name: stored.labels[name] for name in fields if name in stored.labels},
                   v_weights=arrays.get("v_weights", empty), axes={name: arrays[name] for name in ("v_x", "v_y", "v_z") if name in arrays},
                   marginals=stored.marginals, y=arrays.get("y", empty), z=arrays.get("z", empty), probes=stored.probes,
-                  surfaces=stored.surfaces)
+                  surfaces=stored.surfaces, walls=stored.walls)

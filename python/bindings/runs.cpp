@@ -16,6 +16,7 @@
 #include <apsis/run/result_units.hpp>
 #include <apsis/run/session.hpp>
 #include <apsis/run/setup.hpp>
+#include <apsis/run/wall_outlines.hpp>
 
 #include <atomic>
 #include <chrono>
@@ -179,7 +180,7 @@ py::dict result_of(const run_session& session, run_end end) {
   for (const auto& axis : fields.axes) out[py::str(axis.name)] = to_array(std::vector<double>(axis.centres));
   out["epsilon"] = epsilon.empty() ? to_array(std::move(epsilon))
                                    : to_array(std::move(epsilon), shape_of(fields.axes, {}));
-  out["history"] = columns_of(units.convert(session.records().history(), run));
+  out["history"] = columns_of(result_history(session.records().history(), run));
   std::vector<double> times;
   for (const auto& one : fields.snapshots) times.push_back(one.t);
   out["t"] = to_array(std::move(times));
@@ -197,6 +198,15 @@ py::dict result_of(const run_session& session, run_end end) {
   for (const surface_table& surface : walls)
     surfaces[py::str(surface.name)] = columns_of(units.convert(surface));
   out["surfaces"] = surfaces;
+  py::dict outlines;
+  for (const wall_outline& wall : wall_outlines(run.setup(), units.factor(dimensions::length))) {
+    std::vector<double> ends;
+    for (const auto& piece : wall.corners)
+      for (const position& end : piece) ends.insert(ends.end(), end.begin(), end.begin() + 2);
+    outlines[py::str(wall.name)] =
+        to_array(std::move(ends), {static_cast<py::ssize_t>(wall.corners.size()), 2, 2});
+  }
+  out["walls"] = outlines;
   return out;
 }
 

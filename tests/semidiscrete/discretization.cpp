@@ -185,7 +185,7 @@ class plain_upwind final : public apsis::transport {
     sum = total;
   }
   std::span<const double> budget_rates() const override { return {}; }
-  std::vector<double> densities_at_surfaces(double, const field&) const override { return {}; }
+  std::vector<double> observe_surfaces(double, const field&) const override { return {}; }
   void set_force(apsis::acceleration) override {
     throw apsis::input_error("a force (no such term); leave it out");
   }

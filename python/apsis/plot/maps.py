@@ -10,6 +10,7 @@ import numpy as np
 
 from .run_result import Array, RunResult
 from .style import BLACK, PictureError, plt
+from .walls import SOLID, draw_walls
 
 AXES = ("x", "y", "z")
 VECTORS = {"u": "speed", "m": "momentum"}  # fields u_x, u_y, … and the name of their length
@@ -141,7 +142,8 @@ def sizes_of(result: RunResult, planes: Sequence[Plane]) -> list[tuple[float, fl
 
 def draw_map(panel: Any, result: RunResult, name: str, values: Array, plane: Plane, colours: Colours, size: tuple[float, float],
              title: str = "") -> None:
-    """Draws values[x, y(, z)] on a plane, with contours and a colour bar; cells without a value, those of solid boxes, are grey."""
+    """Draws values[x, y(, z)] on a plane, with contours and a colour bar; cells without a value, those of solids, are grey, and so
+    are the parts of cells that lie in bodies."""
     across, up = result.arrays[plane.across], result.arrays[plane.up]
     shown = without_solids(plane.cut(values))
     low, high, name_of_map = colours
@@ -151,7 +153,7 @@ def draw_map(panel: Any, result: RunResult, name: str, values: Array, plane: Pla
     panel.set_aspect("equal" if equal else "auto")
     panel.locator_params(axis="x", nbins=max(2, int(1.7 * width)))
     panel.locator_params(axis="y", nbins=max(2, int(2.0 * height)))
-    panel.set_facecolor("#D9D9D9")
+    panel.set_facecolor(SOLID)
     image = panel.pcolormesh(borders(across), borders(up), shown, cmap=name_of_map, vmin=low, vmax=high, rasterized=True)
     beside = panel.inset_axes([1.0 + 0.1 / width, 0.0, 0.13 / width, 1.0], label="<colorbar>")
     beside.grid(False)
@@ -159,6 +161,8 @@ def draw_map(panel: Any, result: RunResult, name: str, values: Array, plane: Pla
     levels = np.linspace(low, high, 12)[1:-1]
     if min(shown.shape) > 1 and ((levels > shown.min()) & (levels < shown.max())).any():
         panel.contour(across, up, shown, levels=levels, colors=BLACK, linewidths=0.4, alpha=0.6, linestyles="solid")
+    if not plane.normal:
+        draw_walls(panel, result.walls, borders(across), borders(up))
     panel.set_xlabel(f"{plane.across} ({result.unit('x')})")
     panel.set_ylabel(f"{plane.up} ({result.unit('x')})")
     panel.set_title("\n".join(filter(None, [label_of(result, name), plane.title(), title])), fontsize=9)

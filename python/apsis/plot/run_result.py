@@ -26,7 +26,7 @@ class RunResult:
     arrays has those of f[cell, component], x, v, epsilon that the model has, and with several velocity dimensions v_weights and
     the nodes v_x, v_y, v_z; history[column][step] the checks of every step; labels the axis labels; case the case file;
     marginals[axis][cell, node] f integrated over the other velocity components; probes[name][column] the fields along lines; surfaces[name][column] what the gas
-    gives to faces and solid boxes. In several space dimensions [cell] stands for [x, y(, z)]."""
+    gives to faces, solid boxes and bodies; walls[name][piece, end] the ends (x, y) of the pieces of a body in the plane. In several space dimensions [cell] stands for [x, y(, z)]."""
 
     folder: Path
     manifest: dict[str, Any]
@@ -39,6 +39,7 @@ class RunResult:
     marginals: dict[str, Array] = field(default_factory=dict)
     probes: dict[str, dict[str, Array]] = field(default_factory=dict)
     surfaces: dict[str, dict[str, NDArray[Any]]] = field(default_factory=dict)
+    walls: dict[str, Array] = field(default_factory=dict)
 
     @property
     def t(self) -> Array:
@@ -136,6 +137,7 @@ def read_result(folder: str | Path) -> RunResult:
                 for name, item in number_sets(file.get(group)):
                     found[name] = np.asarray(item, dtype=float)
                     labels[name] = words(item.attrs.get("long_name", f"{name} (dimensionless)"))
+            walls = {name: np.asarray(item, dtype=float) for name, item in number_sets(file.get("walls")) if item.shape[1:] == (2, 2)}
             case = words(file.attrs.get("case", ""))
     except (OSError, MemoryError) as problem:
         raise PictureError(f"cannot read '{path}' ({problem}); run the case again with --out") from problem
@@ -143,7 +145,7 @@ def read_result(folder: str | Path) -> RunResult:
     in_order = {name: fields[name] for name in (*columns_of(folder / "fields.csv"), *fields) if name in fields}
     return RunResult(folder, manifest, in_order, groups["snapshots"], arrays, history, labels, case, groups["marginals"],
                      {table.stem: read_history(table) for table in sorted((folder / "probes").glob("*.csv"))},
-                     {table.stem: read_surface(table) for table in sorted((folder / "surfaces").glob("*.csv"))})
+                     {table.stem: read_surface(table) for table in sorted((folder / "surfaces").glob("*.csv"))}, walls)
 
 
 def number_sets(group: Any) -> Iterator[tuple[str, Any]]:

@@ -13,17 +13,21 @@ from .style import BLUE, GREY, plt
 
 Columns = dict[str, NDArray[Any]]
 DERIVED = ("pressure", "shear_stress", "heat_flux")
+COEFFICIENTS = ("C_p", "C_f", "C_h")  # with reference values
 NORMALS = {"left": "x", "right": "x", "bottom": "y", "top": "y", "back": "z", "front": "z"}
 
 
 def quantities(columns: Columns) -> list[str]:
-    """The columns to draw: pressure, shear stress and heat flux, or without them every invariant."""
+    """The columns to draw: pressure, shear stress and heat flux, or with reference values their coefficients; without them every
+    invariant."""
     names = list(columns)
-    derived = [name for name in DERIVED if name in columns]
+    derived = [name for name in (COEFFICIENTS if "C_p" in columns else DERIVED) if name in columns]
     return derived or names[names.index("area") + 1:]
 
 
 def label(result: RunResult, name: str) -> str:
+    if name in COEFFICIENTS:
+        return f"${name}$"
     return f"{name.replace('_', ' ')} ({result.unit(name)})"
 
 

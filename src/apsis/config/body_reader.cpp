@@ -166,13 +166,7 @@ class reader_of_bodies {
 
   /// Numbers, or formulas of constants.
   std::vector<double> numbers_of(const raw_value& raw, const std::string& path) const {
-    std::vector<double> numbers;
-    for (const auto& text : formula_texts(raw, path)) {
-      const expression value(text, raw.value_place, formula_of_position(0, false, config_.constants));
-      if (!value.is_constant()) refuse(raw, path, "it depends on x", "give numbers");
-      numbers.push_back(value.evaluate(position{}));
-    }
-    return numbers;
+    return constant_numbers(raw, path, config_.constants);
   }
 
   void check_all_taken(const std::string& path, const shape_table& shape,

@@ -29,9 +29,10 @@ bool is_list(const std::string& path) {
   return false;
 }
 
-/// Whether the key is one of a table [[output.probe]] or [[output.slice]].
+/// Whether the key is one of a table [[output.probe]], [[output.slice]] or [output.reference].
 bool is_output_table(const std::string& path) {
-  return path.rfind("output.probe.", 0) == 0 || path.rfind("output.slice.", 0) == 0;
+  return path.rfind("output.probe.", 0) == 0 || path.rfind("output.slice.", 0) == 0 ||
+         path.rfind("output.reference.", 0) == 0;
 }
 
 /// Returns the syntax of a key on the command line. Quotes are optional for unknown keys, so that the key is

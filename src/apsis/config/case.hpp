@@ -5,6 +5,7 @@
 #include <apsis/config/choices.hpp>
 #include <apsis/config/epsilon_formula.hpp>
 #include <apsis/config/initial_table.hpp>
+#include <apsis/config/reference_values.hpp>
 #include <apsis/config/surface_tables.hpp>
 #include <apsis/core/errors.hpp>
 #include <apsis/core/graded_start.hpp>
@@ -114,7 +115,8 @@ struct case_config {
     int history_rows = 100000;                                        ///< most rows of the history
     std::vector<line_probe> probes;                                   ///< tables [[output.probe]]
     std::vector<plane_slice> slices;                                  ///< tables [[output.slice]]
-    std::vector<std::string> surfaces;  ///< names of faces and solid boxes, or all_surfaces
+    std::vector<std::string> surfaces;          ///< names of faces and solid boxes, or all_surfaces
+    std::optional<reference_values> reference;  ///< table [output.reference]
   } output;
   std::shared_ptr<case_parts> parts = std::make_shared<case_parts>();  ///< objects made from the keys
 };

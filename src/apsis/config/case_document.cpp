@@ -207,6 +207,13 @@ std::string schema_text() {
       "\n[[output.slice]], in two and three space dimensions\n"
       "  name (text, default \"slice-1\", ...), normal (\"x\", \"y\" or \"z\"), at (number)\n"
       "      The fields on a plane, in slices/NAME.h5 and slices/NAME.xdmf.\n"
+      "\n[output.reference], of gases in two and three space dimensions\n"
+      "      The stream and the size to which coefficients of bodies and walls refer (docs/bodies.md).\n";
+  for (const reference_key& key : reference_keys())
+    out += fmt::format("  {} ({}, {}{})\n      {}.\n", key.name, key.vector != nullptr ? "vector" : "number",
+                       key.required ? "required" : "optional",
+                       key.only_in == 0 ? "" : fmt::format("; in {} dimensions", key.only_in), key.doc);
+  out +=
       "\n[source], of models with space\n"
       "  rho, u, T, … (number or formula in t and x; a list for a vector)\n"
       "      Variables of the model per unit of time: rho is the mass that enters with the velocity u and "
@@ -302,6 +309,15 @@ void add_output_tables(std::string& out, const case_config& config) {
   for (const auto& slice : config.output.slices)
     out += fmt::format("\n[[output.slice]]\nname = {}\nnormal = \"{}\"\nat = {}\n", quoted(slice.name),
                        "xyz"[slice.direction], number_text(slice.at));
+  if (const auto& reference = config.output.reference) {
+    out += "\n[output.reference]\n";
+    for (const reference_key& key : reference_keys()) {
+      if (key.vector != nullptr && !((*reference).*key.vector).empty())
+        out += fmt::format("{} = {}\n", key.name, text((*reference).*key.vector));
+      if (key.number != nullptr && (*reference).*key.number != 0.0)
+        out += fmt::format("{} = {}\n", key.name, number_text((*reference).*key.number));
+    }
+  }
 }
 
 }  // namespace

@@ -107,6 +107,13 @@ nlohmann::ordered_json to_json(const case_config& config) {
   for (const auto& slice : config.output.slices)
     out["output"]["slice"].push_back(
         {{"name", slice.name}, {"normal", std::string(1, "xyz"[slice.direction])}, {"at", slice.at}});
+  if (const auto& reference = config.output.reference)
+    for (const reference_key& key : reference_keys()) {
+      auto& to = out["output"]["reference"];
+      if (key.vector != nullptr && !((*reference).*key.vector).empty())
+        to[key.name] = (*reference).*key.vector;
+      if (key.number != nullptr && (*reference).*key.number != 0.0) to[key.name] = (*reference).*key.number;
+    }
   return out;
 }
 

@@ -14,6 +14,7 @@
 #include <apsis/config/method_of_case.hpp>
 #include <apsis/config/output_reader.hpp>
 #include <apsis/config/prescribed_data.hpp>
+#include <apsis/config/reference_reader.hpp>
 #include <apsis/config/solid_reader.hpp>
 #include <apsis/config/source_reader.hpp>
 #include <apsis/core/suggest.hpp>
@@ -59,6 +60,7 @@ class resolver {
     read_source_values(text_, *checked_model(), config_);
     checks.check_together();
     read_output_tables(text_, *model_, config_);
+    if (has_space(*model_)) read_reference_values(text_, *checked_model(), config_);
     choose_parameters();
     config_ = with_chosen_method(std::move(config_));
     if (find("space.limiter") == nullptr) config_.space.limiter = default_limiter(config_);
@@ -152,6 +154,7 @@ class resolver {
       if (std::find(valid.begin(), valid.end(), path) != valid.end() || is_in(path, "parameters") ||
           is_in(path, "initial") || path == "output.probe" || is_in(path, "output.probe") ||
           path == "output.slice" || is_in(path, "output.slice") ||
+          ((path == reference_table || is_in(path, reference_table)) && has_space(*model_)) ||
           ((is_in(path, "boundary") || is_in(path, "source") || is_in(path, "space.solid") ||
             is_in(path, "space.body")) &&
            has_space(*model_)))

@@ -157,7 +157,7 @@ case_text read_case_text(std::string_view text, const std::string& file) {
         const std::string path = fmt::format("{}.{}", name, inner.str());
         const bool nested = name == "boundary" || name == "initial" || path == "model.knudsen" ||
                             path == "space.solid" || path == "space.body" || path == "output.probe" ||
-                            path == "output.slice";
+                            path == "output.slice" || path == "output.reference";
         add_nested(out, path, inner, value, file, nested ? most_levels : 0);
       }
     }

@@ -313,4 +313,15 @@ std::vector<std::string> formula_texts(const raw_value& raw, const std::string& 
   return formulas;
 }
 
+std::vector<double> constant_numbers(const raw_value& raw, const std::string& path,
+                                     const formula_constants& constants) {
+  std::vector<double> numbers;
+  for (const auto& text : formula_texts(raw, path)) {
+    const expression value(text, raw.value_place, formula_of_position(0, false, constants));
+    if (!value.is_constant()) refuse(raw, path, "it depends on x", "give numbers");
+    numbers.push_back(value.evaluate(position{}));
+  }
+  return numbers;
+}
+
 }  // namespace apsis

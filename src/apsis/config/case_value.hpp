@@ -36,6 +36,11 @@ double finite_number(const raw_value& raw, const std::string& path, const std::s
 /// input_error at the place of the key.
 std::vector<std::string> formula_texts(const raw_value& raw, const std::string& path);
 
+/// Returns numbers, or formulas of the constants: one, or a list of them. Throws input_error at the place of
+/// the key, or within a formula.
+std::vector<double> constant_numbers(const raw_value& raw, const std::string& path,
+                                     const formula_constants& constants);
+
 /// Throws input_error at the place of the key: "'path' is `raw.what` (why); advice".
 [[noreturn]] void refuse(const raw_value& raw, const std::string& path, const std::string& why,
                          const std::string& advice);

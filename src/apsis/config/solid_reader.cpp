@@ -26,18 +26,11 @@ std::string path_of(std::size_t box) {
 
 /// A corner of a box: one number, or constant formula, for each direction.
 std::vector<double> corner(const raw_value& raw, const std::string& path, const case_config& config) {
-  const auto texts = formula_texts(raw, path);
-  const std::size_t wanted = config.space.cells.size();
-  if (texts.size() != wanted)
-    refuse(raw, path, fmt::format("it has {} numbers, the space {} dimensions", texts.size(), wanted),
+  const std::size_t given = formula_texts(raw, path).size(), wanted = config.space.cells.size();
+  if (given != wanted)
+    refuse(raw, path, fmt::format("it has {} numbers, the space {} dimensions", given, wanted),
            fmt::format("give {}", wanted));
-  std::vector<double> numbers;
-  for (const auto& text : texts) {
-    const expression value(text, raw.value_place, formula_of_position(0, false, config.constants));
-    if (!value.is_constant()) refuse(raw, path, "it depends on x", "give numbers");
-    numbers.push_back(value.evaluate(position{}));
-  }
-  return numbers;
+  return constant_numbers(raw, path, config.constants);
 }
 
 /// The cell edge at a coordinate along a direction. Throws input_error if there is none.

@@ -60,6 +60,8 @@ class unit_remover {
       return path.ends_with(".from") || path.ends_with(".to") || path.ends_with(".at")
                  ? std::optional(dimensions::length)
                  : std::nullopt;
+    for (const reference_key& key : reference_keys())
+      if (path == std::string("output.reference.") + key.name) return key.dimension;
     if (path == "initial.time" && !variables_.contains("time")) return dimensions::time;
     const bool solid = begins_with(path, "space.solid.");
     if (solid && (path.ends_with(".from") || path.ends_with(".to"))) return dimensions::length;

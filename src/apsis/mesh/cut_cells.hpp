@@ -17,13 +17,14 @@ using outside_function = std::function<double(const position&)>;
 /// The open part of a face between two cells with different unknowns, or of a face of the domain. At least
 /// one of the cells is cut.
 struct open_face {
-  int below = -1,            ///< cell on the lower side; −1 beyond the domain
-      above = -1;            ///< cell on the upper side; −1 beyond the domain
-  int direction = 0;         ///< normal to it
-  double area = 0.0;         ///< of the open part; a length in two dimensions
-  position middle = {};      ///< centroid of the open part
-  position from_below = {},  ///< vector to it from the centroid of the gas below
-      from_above = {};       ///< vector to it from the centroid of the gas above
+  int below = -1,                      ///< cell on the lower side; −1 beyond the domain
+      above = -1;                      ///< cell on the upper side; −1 beyond the domain
+  int direction = 0;                   ///< normal to it
+  double area = 0.0;                   ///< of the open part; a length in two dimensions
+  position middle = {};                ///< centroid of the open part
+  position from_below = {},            ///< vector to it from the centroid of the gas below
+      from_above = {};                 ///< vector to it from the centroid of the gas above
+  std::vector<position> corners = {};  ///< at a face of the domain: as wall_segment::corners
 };
 
 /// A flat piece of wall in a cut cell.
@@ -34,6 +35,10 @@ struct wall_segment {
   std::array<double, 3> normal = {};  ///< unit vector into the gas
   position middle = {};               ///< point on the wall
   position from_centre = {};          ///< vector to it from the centroid of the gas
+  /// Corners of the piece: in two dimensions its ends, the solid on the left from the first to the second; in
+  /// three those of a polygon, counter-clockwise seen from the gas. Their vector area is area × normal to
+  /// rounding. Pieces of a body share corners bit by bit.
+  std::vector<position> corners = {};
 };
 
 /// Cut cells with one unknown in common: a cell, or a small one with its neighbours.

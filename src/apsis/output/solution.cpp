@@ -110,6 +110,16 @@ void write_series(hdf5_file& file, const field_series& fields) {
   }
 }
 
+void write_walls(hdf5_file& file, const solution& s) {
+  for (const wall_outline& one : s.walls) {
+    std::vector<double> ends;
+    for (const auto& piece : one.corners)
+      for (const position& end : piece) ends.insert(ends.end(), end.begin(), end.begin() + 2);
+    file.write("walls/" + one.name, ends, {one.corners.size(), 2, 2}, "ends of the pieces of a wall",
+               precision::float64, s.fields.unit_of_x);
+  }
+}
+
 void write_contents(hdf5_file& file, const solution& s) {
   file.write_attribute("title", s.title);
   file.write_attribute("case", s.case_text);
@@ -124,6 +134,7 @@ void write_contents(hdf5_file& file, const solution& s) {
   write_coordinates(file, "", axes, s.fields.unit_of_x);
   if (!s.epsilon.empty()) file.write("epsilon", s.epsilon, mesh_shape(axes), "Knudsen number");
   write_geometry(file, s.fields);
+  write_walls(file, s);
   write_series(file, s.fields);
 }
 

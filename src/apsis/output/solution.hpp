@@ -2,6 +2,7 @@
 
 #include <apsis/output/field_series.hpp>
 #include <apsis/output/hdf5_file.hpp>
+#include <apsis/velocity/position.hpp>
 #include <apsis/velocity/velocity_set.hpp>
 
 #include <cstdint>
@@ -16,6 +17,12 @@ namespace apsis {
 struct distribution_at_points {
   std::vector<mesh_axis> centres;  ///< coordinates x, y, z of the cell centres, [points] each
   std::vector<double> f;           ///< [points][components]; empty if no cells are chosen
+};
+
+/// The wall of a body in the plane.
+struct wall_outline {
+  std::string name;                            ///< of the body
+  std::vector<std::vector<position>> corners;  ///< [piece], the two ends, the body on their left
 };
 
 /// The content of solution.h5: the state at the end of a run. On one of several processes f has the cells of
@@ -33,6 +40,7 @@ struct solution {
   velocity_set velocities;                ///< of the components; none without space
   std::vector<double> epsilon;            ///< [cells]
   field_series fields;                    ///< the last snapshot is the final state
+  std::vector<wall_outline> walls = {};   ///< of bodies in the plane, in units of the axes of the fields
   std::optional<dataset_part> part = {};  ///< of the mesh, of one of several processes
 };
 
@@ -42,6 +50,7 @@ struct solution {
 /// With several axes geometry/centres [nx][ny][nz][3] are the points of the grids of solution.xdmf. With two
 /// or three velocity dimensions v is [points][dimensions], and v_weights [points] are added; where the
 /// velocities are a tensor product, also the nodes v_x, v_y, v_z and, with f, its marginals/v_x, … [nodes].
+/// Walls of bodies in the plane are in walls/NAME [pieces][ends][2].
 /// Chosen cells are in points/f [points][components], points/x, …. Every dataset has the attribute units; the
 /// file has title, case (TOML) and manifest (JSON). Throws io_error. `processes`: those that write the file
 /// together, each with its part; the texts are the same on all.

@@ -9,10 +9,10 @@ namespace apsis {
 
 /// The amounts of the invariants that the gas received in the last step, and its state after it.
 struct surface_values {
-  double t = 0.0,                 ///< time at its end
-      dt = 0.0;                   ///< its length
-  std::vector<double> received;   ///< a boundary_budget; empty before the first step
-  std::vector<double> densities;  ///< of the invariants at every end; empty if they are unknown
+  double t = 0.0,                ///< time at its end
+      dt = 0.0;                  ///< its length
+  std::vector<double> received;  ///< a boundary_budget; empty before the first step
+  std::vector<double> observed;  ///< face_fluxes::observed() after the step; empty if it is unknown
 };
 
 /// Returns the tables of the surfaces of output.surfaces, a row for each cell face, with the columns
@@ -20,6 +20,7 @@ struct surface_values {
 ///              counter-clockwise from its lower left corner, around a body from its rightmost side, in the
 ///              order of the angle around the middle of its wall
 ///   x, y, z    centre of the cell face
+///   n_x, n_y, n_z or n   unit normal into the gas
 ///   area       of the cell face: 1 on a line, a length in the plane
 ///   INVARIANT  what the gas gives to the surface per unit of time and area, in the mean over the step: minus
 ///              what it receives
@@ -29,9 +30,13 @@ struct surface_values {
 ///   with
 ///                  three velocity dimensions the norm of the part of m along the surface; none with one
 ///   heat_flux      energy − u_w·m with the velocity u_w of the wall in the middle of the step
+///   C_p, C_f, C_h  with output.reference: (pressure − ρT)/(ρU²/2), shear_stress/(ρU²/2), heat_flux/(ρU³/2)
 /// NaN before the first step; and, of a gas, the moments of the distribution at the face, of the molecules
 /// that arrive as of those that leave, after the step:
 ///   rho, u_x … or u, T   density, bulk velocity and temperature, NaN where they are unknown
+/// and of every model with these invariants
+///   mass_arriving, mass_leaving, energy_arriving, energy_leaving   face_fluxes::observed(), both ≥ 0
+/// In the plane and in space the table also has the corners of each row.
 /// Rows of a box or body in the plane are in the order of s, others in that of the ends.
 std::vector<surface_table> compute_surfaces(const run_setup& setup, const surface_values& last);
 

@@ -5,6 +5,7 @@
 #include <apsis/method/method_choice.hpp>
 #include <apsis/model/model_registry.hpp>
 #include <apsis/output/provenance.hpp>
+#include <apsis/run/body_loads.hpp>
 #include <apsis/run/result_units.hpp>
 
 #include <cmath>
@@ -68,6 +69,28 @@ void add_steady(json& out, const simulation& run, const steady_estimate& estimat
                    {"distance", number(estimate.distance)}};
 }
 
+/// Adds force, torque and heat of the bodies in the last step, and with reference values drag, lift, moment
+/// and the coefficients; in the units of the results.
+void add_bodies(json& out, const simulation& run) {
+  const result_units units(run.config());
+  const auto& reference = run.config().output.reference;
+  for (const body_load& body : body_loads(run.setup(), run.last())) {
+    dimension force = dimensions::pressure;
+    for (std::size_t k = 1; k < body.force.size(); ++k) force = force * dimensions::length;
+    const auto scaled = [&](std::vector<double> values, const dimension& dims) {
+      for (double& x : values) x *= units.factor(dims);
+      return values;
+    };
+    json one = {{"force", scaled(body.force, force)},
+                {"torque", scaled(body.torque, force * dimensions::length)},
+                {"heat", body.heat * units.factor(force * dimensions::velocity)}};
+    if (reference)
+      for (const load_value& value : loads_in_stream(body, *reference))
+        one[value.name] = value.value * units.factor(value.dims);
+    out["bodies"][body.name] = one;
+  }
+}
+
 /// Adds the scales of a gas, and the units of history and fields if they have any.
 void add_units(json& out, const simulation& run) {
   const auto& scales = run.config().scales;
@@ -118,6 +141,7 @@ json to_json(const simulation& run, const run_records& records) {
   out["expected_loss"] = run.expected_loss();
   add_iterations(out, run);
   add_steady(out, run, estimate_steady_state(records.history()));
+  add_bodies(out, run);
   json fields = json::object();
   const field_series series = result_units(run.config()).convert(records.fields());
   for (const auto& axis : series.axes) fields[axis.name] = axis.centres;
@@ -147,6 +171,7 @@ json manifest(const simulation& run, const session_record& session) {
   out["result"] = numbers(run);
   add_iterations(out["result"], run);
   add_steady(out["result"], run, session.steady);
+  add_bodies(out["result"], run);
   add_units(out, run);
   out["build"] = build_info();
   out["machine"] = machine_info();

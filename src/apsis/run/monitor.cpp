@@ -33,6 +33,7 @@ monitor::monitor(const run_setup& setup)
       volume_(setup.cell_volume()),
       ends_(setup.open_ends()),
       entropy_bounds_(setup.entropy_bounds().value_or(std::vector<double>{})),
+      torques_(setup),
       parts_(std::make_unique<per_thread<partial>>()),
       differences_(setup.mesh().size()),
       velocities_(setup) {}
@@ -153,6 +154,7 @@ step_record monitor::start(const field& u) {
   if (!equation_.cut_moment().empty()) record.cut = {0.0};
   record.received.assign(ends_.size() * invariants_.size(), 0.0);
   record.flux = record.received;
+  record.torque = torques_.of({});
   record.min_value = t.lowest;
   record.negative_values = t.negative;
   record.entropy = t.entropy;
@@ -186,6 +188,8 @@ step_record monitor::check(const budgeted_state& after, double dt, const step_re
   record.violation = violation_in(u, t);
   record.density_change = t.change;
   record.density_turn = t.turn;
+  record.torque = torques_.of(after.budget.amounts());
+  for (double& torque : record.torque) torque /= dt;
   std::vector<double> received = received_through_faces(after.budget.amounts());
   held_ = received.back();
   received.pop_back();

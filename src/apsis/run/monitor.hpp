@@ -2,6 +2,7 @@
 
 #include <apsis/exec/parallel.hpp>
 #include <apsis/mesh/field.hpp>
+#include <apsis/run/internal/torque_sum.hpp>
 #include <apsis/run/setup.hpp>
 #include <apsis/run/simulation.hpp>
 #include <apsis/run/step_differences.hpp>
@@ -67,6 +68,7 @@ class monitor {
   double volume_;                       ///< of a cell; 1 for an ordinary differential equation
   std::vector<std::size_t> ends_;       ///< number at each face
   std::vector<double> entropy_bounds_;  ///< of what is received, [face][invariant]
+  torque_sum torques_;
   std::unique_ptr<per_thread<partial>> parts_;
   mutable step_differences differences_;     ///< of the last invariant
   std::vector<double> invariants_, scales_;  ///< of the initial state

@@ -3,9 +3,11 @@
 #include <apsis/config/case_schema.hpp>
 #include <apsis/core/errors.hpp>
 #include <apsis/core/version.hpp>
+#include <apsis/run/body_loads.hpp>
 #include <apsis/run/distribution_rows.hpp>
 #include <apsis/run/result_units.hpp>
 #include <apsis/run/setup.hpp>
+#include <apsis/run/wall_outlines.hpp>
 
 #include <algorithm>
 
@@ -26,9 +28,9 @@ struct row_writer {
 };
 
 /// Appends the names of the columns of a record; those of a vector are NAME_INVARIANT, NAME_FACE_INVARIANT,
-/// or cut_MOMENT.
+/// cut_MOMENT, or those of torque_columns().
 struct column_writer {
-  const std::vector<std::string>&invariants, &faces;
+  const std::vector<std::string>&invariants, &faces, &torques;
   const std::string cut_moment;
   const bool steady;
   std::vector<std::string>& columns;
@@ -45,6 +47,10 @@ struct column_writer {
     }
     if (head == "residual") {
       if (steady) columns.emplace_back("residual_relative");
+      return;
+    }
+    if (head == "torque") {
+      columns.insert(columns.end(), torques.begin(), torques.end());
       return;
     }
     if (head == "conservation" || head == "total") return add(head);
@@ -129,10 +135,10 @@ struct number_reader {
 
 std::vector<std::string> history_columns(const simulation& run) {
   const std::vector<std::string> invariants = run.setup().equation->invariants(),
-                                 faces = run.setup().open_faces();
+                                 faces = run.setup().open_faces(), torques = torque_columns(run.setup());
   std::vector<std::string> columns;
   step_record::visit_members(run.initial_record(),
-                             column_writer{invariants, faces, run.setup().equation->cut_moment(),
+                             column_writer{invariants, faces, torques, run.setup().equation->cut_moment(),
                                            run.config().steady_state.tolerance.has_value(), columns});
   return columns;
 }
@@ -252,6 +258,7 @@ solution make_solution(const simulation& run, const run_records& records) {
   s.velocities = run.setup().equation->velocities();
   s.epsilon = run.epsilon();
   s.fields = units.convert(records.fields());
+  s.walls = wall_outlines(run.setup(), units.factor(dimensions::length));
   return s;
 }
 

@@ -1,8 +1,10 @@
 #include <apsis/run/result_units.hpp>
 
+#include <apsis/run/body_loads.hpp>
 #include <apsis/run/setup.hpp>
 
 #include <algorithm>
+#include <utility>
 
 namespace apsis {
 namespace {
@@ -48,6 +50,9 @@ surface_table result_units::convert(surface_table surface) const {
   if (!are_si()) return surface;
   for (auto& row : surface.numbers.rows)
     for (std::size_t k = 0; k < row.size(); ++k) row[k] *= factor(surface.dimensions[k]);
+  for (auto& piece : surface.corners)
+    for (position& corner : piece)
+      for (double& x : corner) x *= factor(dimensions::length);
   return surface;
 }
 
@@ -79,7 +84,12 @@ std::vector<std::pair<std::string, dimension>> history_dimensions(const simulati
       all.emplace_back("flux_" + face + "_" + names[k], amount / time);
     }
   }
+  for (auto& one : load_dimensions(run)) all.push_back(std::move(one));
   return all;
+}
+
+numeric_table result_history(const numeric_table& history, const simulation& run) {
+  return result_units(run.config()).convert(with_loads(history, run), run);
 }
 
 }  // namespace apsis

@@ -42,4 +42,7 @@ class result_units {
 /// in the domain and crosses its faces, on a line per area and in the plane per length.
 std::vector<std::pair<std::string, dimension>> history_dimensions(const simulation& run);
 
+/// Returns the history of a run as results have it: with_loads(), in the units of the case.
+numeric_table result_history(const numeric_table& history, const simulation& run);
+
 }  // namespace apsis

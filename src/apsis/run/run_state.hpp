@@ -47,7 +47,8 @@ struct step_record {
   /// Amounts of the invariants that the gas received through each face since the start, [face][invariant];
   /// on a line per area, in the plane per length.
   std::vector<double> received;
-  std::vector<double> flux;  ///< the same per unit of time, in the mean over the step
+  std::vector<double> flux;    ///< the same per unit of time, in the mean over the step
+  std::vector<double> torque;  ///< on the loaded_bodies(), body_load::torque of each; empty without
   /// |I − I₀ − received| of this step alone, relative to the same scales; not among the members that are
   /// kept.
   std::vector<double> defect_of_step = {};
@@ -75,6 +76,7 @@ struct step_record {
     visit("total", self.total);
     visit("received", self.received);
     visit("flux", self.flux);
+    visit("torque", self.torque);
   }
 };
 

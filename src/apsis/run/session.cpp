@@ -374,7 +374,7 @@ void run_session::write_tables(result_folder& folder, const solution& final_stat
                                const std::vector<surface_table>& walls) {
   const result_units units(simulation_.config());
   folder.prepare_text("history.csv",
-                      to_csv(units.convert(shown_->history(), simulation_), {"step", "negative_values"}));
+                      to_csv(result_history(shown_->history(), simulation_), {"step", "negative_values"}));
   folder.prepare_text("fields.csv", to_csv(to_table(final_state.fields)));
   write_probes(simulation_.config(), final_state.fields, units.factor(dimensions::length), folder);
   write_surfaces(walls, simulation_.config(), folder);

@@ -9,6 +9,7 @@
 #include <apsis/run/steady_iterations.hpp>
 #include <apsis/run/time_steps.hpp>
 #include <apsis/run/whole_budget.hpp>
+#include <apsis/semidiscrete/face_fluxes.hpp>
 #include <apsis/semidiscrete/gathered_cells.hpp>
 
 #include <array>
@@ -30,17 +31,18 @@ struct simulation::impl {
     progress->start();
   }
 
-  /// The densities of the invariants at the ends of the whole mesh; nothing where a step failed, or a
-  /// boundary has no condition for the state.
-  std::vector<double> densities_at_surfaces() {
+  /// face_fluxes::observed() at the ends of the whole mesh; nothing where a step failed, or a boundary has no
+  /// condition for the state.
+  std::vector<double> observe_surfaces() {
     if (inside_step) return {};
     std::vector<double> own;
     try {
-      own = run.problem->densities_at_surfaces(run.march.t(), run.state);
+      own = run.problem->observe_surfaces(run.march.t(), run.state);
     } catch (const error&) {
       return {};
     }
-    return whole_ends(run.setup, own);
+    return whole_ends(run.setup, own,
+                      face_fluxes::observed_moments * run.setup.equation->invariants().size());
   }
 
   running_case run;
@@ -156,9 +158,9 @@ field_table simulation::fields() const {
 std::vector<surface_table> simulation::surfaces() const {
   if (config().output.surfaces.empty()) return {};
   const std::vector<double> budget = whole_budget(impl_->run.setup, impl_->run.budget),
-                            densities = impl_->densities_at_surfaces();
+                            observed = impl_->observe_surfaces();
   if (!processes().is_root()) return {};
-  return compute_surfaces(impl_->run.setup, {t(), last().dt, budget, densities});
+  return compute_surfaces(impl_->run.setup, {t(), last().dt, budget, observed});
 }
 
 const grid& simulation::mesh() const {

@@ -58,9 +58,8 @@ std::size_t size_of_whole_budget(const run_setup& setup) {
          size_of_totals(setup);
 }
 
-std::vector<double> whole_ends(const run_setup& setup, const std::vector<double>& own) {
+std::vector<double> whole_ends(const run_setup& setup, const std::vector<double>& own, std::size_t count) {
   if (setup.processes().is_single()) return own;
-  const std::size_t count = setup.equation->invariants().size();
   const std::vector<std::size_t> mine = places_of(setup);
   std::vector<double> packed;  // place and values
   for (std::size_t k = 0; k < mine.size(); ++k) {
@@ -68,7 +67,7 @@ std::vector<double> whole_ends(const run_setup& setup, const std::vector<double>
     packed.insert(packed.end(), own.begin() + static_cast<std::ptrdiff_t>(k * count),
                   own.begin() + static_cast<std::ptrdiff_t>((k + 1) * count));
   }
-  std::vector<double> whole(size_of_whole_budget(setup) - size_of_totals(setup));
+  std::vector<double> whole(ends_of(setup.builder().whole_space(), setup.whole_mesh()).size() * count);
   const std::vector<double> all = gather_numbers(setup.processes(), packed);
   for (std::size_t from = 0; from < all.size(); from += 1 + count)
     std::copy_n(all.begin() + static_cast<std::ptrdiff_t>(from) + 1, count,
@@ -81,7 +80,7 @@ std::vector<double> whole_budget(const run_setup& setup, const std::vector<doubl
   if (setup.processes().is_single()) return own;
   // A process without ends has nothing, also where others have something.
   if (global_count(setup.processes(), own.empty() ? 0 : 1) == 0) return {};
-  std::vector<double> whole = whole_ends(setup, own);
+  std::vector<double> whole = whole_ends(setup, own, setup.equation->invariants().size());
   // Totals are those of the root.
   std::vector<double> totals(size_of_totals(setup));
   if (!own.empty()) std::copy_n(own.rbegin(), totals.size(), totals.rbegin());

@@ -2,6 +2,7 @@
 
 #include <apsis/run/setup.hpp>
 
+#include <cstddef>
 #include <vector>
 
 namespace apsis {
@@ -10,9 +11,9 @@ namespace apsis {
 /// from those of all processes; on all of them. Collective. Nothing where nothing was received.
 std::vector<double> whole_budget(const run_setup& setup, const std::vector<double>& own);
 
-/// Returns values of the invariants at the ends of the whole mesh, in the order of the budget, from those of
-/// all processes; on all of them. Collective.
-std::vector<double> whole_ends(const run_setup& setup, const std::vector<double>& own);
+/// Returns `count` numbers at each end of the whole mesh, in the order of the budget, from those of all
+/// processes; on all of them. Collective.
+std::vector<double> whole_ends(const run_setup& setup, const std::vector<double>& own, std::size_t count);
 
 /// Returns the amounts of this process among those of the whole mesh.
 std::vector<double> own_budget(const run_setup& setup, const std::vector<double>& whole);

@@ -46,7 +46,7 @@ face_fluxes::face_fluxes(const model& equation, std::shared_ptr<domain> space)
     if (space_->is_border_of_cut_cells(static_cast<int>(k)))
       sides_[k].values = field(space_->surfaces()[k].own, equation.components());
   rates_.resize(ends_ * invariants_);
-  densities_.resize(ends_ * invariants_);
+  observed_.resize(ends_ * observed_moments * invariants_);
 }
 
 double* face_fluxes::recorded(int surface, int place) {
@@ -70,7 +70,10 @@ void face_fluxes::complete(int surface, int place, double t, std::span<const tar
       face_rows::add_entering(here.inward.data(), values, to.beta, mesh.spacing(where.direction), width,
                               to.acc->row(cell));
   }
-  if (observed_) compute_densities(surface, place);
+  if (observes_) {
+    continue_along(surface, place);
+    observe_end(here.first + index(place), here.inward, values);
+  }
   // The row becomes that of the fluxes; invariants are linear functions of a row.
   face_rows::multiply(here.inward.data(), width, values);
   double* received = rates_.data() + (here.first + index(place)) * invariants_;
@@ -81,21 +84,29 @@ void face_fluxes::complete(int surface, int place, double t, std::span<const tar
 
 /// Components along a face have no flux through it: beyond a face that prescribes the others they are
 /// continued, and the mean of both sides is the value at the face.
-void face_fluxes::compute_densities(int surface, int place) {
+void face_fluxes::continue_along(int surface, int place) {
   side& here = at(surface);
   double* values = here.values.row(place);
-  if (prescribes(surface)) {
-    const double *cell = space_->row_at(surface, place), *ghost = space_->ghost_rows(surface, place)[0];
-    for (std::size_t k = 0; k < here.inward.size(); ++k)
-      if (here.inward[k] == 0.0) values[k] = 0.5 * (cell[k] + ghost[k]);
+  if (!prescribes(surface)) return;
+  const double *cell = space_->row_at(surface, place), *ghost = space_->ghost_rows(surface, place)[0];
+  for (std::size_t k = 0; k < here.inward.size(); ++k)
+    if (here.inward[k] == 0.0) values[k] = 0.5 * (cell[k] + ghost[k]);
+}
+
+void face_fluxes::observe_end(std::size_t end, std::span<const double> inward, const double* values) {
+  double* to = observed_.data() + end * observed_moments * invariants_;
+  equation_.invariant_densities(values, to);
+  std::vector<double> flux(inward.size());
+  for (const double sign : {-1.0, 1.0}) {
+    for (std::size_t k = 0; k < inward.size(); ++k) flux[k] = std::max(sign * inward[k], 0.0) * values[k];
+    equation_.invariant_densities(flux.data(), to += invariants_);
   }
-  equation_.invariant_densities(values, densities_.data() + (here.first + index(place)) * invariants_);
 }
 
 void face_fluxes::receive(std::size_t end, double area, std::span<const double> inward, const double* values,
                           double* flux) {
   if (end == of_others) return;
-  if (observed_) equation_.invariant_densities(values, densities_.data() + end * invariants_);
+  if (observes_) observe_end(end, inward, values);
   std::copy_n(values, inward.size(), flux);
   face_rows::multiply(inward.data(), static_cast<int>(inward.size()), flux);
   double* received = rates_.data() + end * invariants_;

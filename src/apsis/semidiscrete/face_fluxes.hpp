@@ -38,11 +38,15 @@ class face_fluxes {
   /// The same at a wall.
   void receive_at_wall(int wall, std::span<const double> inward, const double* values, double* flux);
 
-  /// Whether complete() also computes the densities of the invariants at the surfaces.
-  void observe_densities(bool observe) { observed_ = observe; }
-  /// Returns the densities of the last complete() of every end, in the order of a boundary_budget: those of
-  /// the distribution at the face, of the components that leave as of those that enter.
-  const std::vector<double>& densities() const { return densities_; }
+  /// Number of moments of each invariant that are observed: its density, what arrives and what leaves.
+  static constexpr std::size_t observed_moments = 3;
+  /// Whether complete() and the other members also compute the moments of the distribution at the surfaces.
+  void observe(bool wanted) { observes_ = wanted; }
+  /// Returns those of the last evaluation, [end][moment][invariant] with the ends in the order of a
+  /// boundary_budget, of the distribution f at the face:
+  ///     density ∫ψ f dv,  arriving ∫_{v·n<0} |v·n| ψ f dv,  leaving ∫_{v·n>0} v·n ψ f dv,
+  /// n being the normal into the gas: per area, that arrives at the surface and that leaves it.
+  const std::vector<double>& observed() const { return observed_; }
 
   /// Stores what a force and a source give per unit of time, after the rates of all ends.
   void set_inside(std::span<const double> inside);
@@ -58,7 +62,8 @@ class face_fluxes {
     std::size_t first = 0;       ///< of its ends among those of all budget surfaces
   };
   side& at(int surface) { return sides_[static_cast<std::size_t>(surface)]; }
-  void compute_densities(int surface, int place);
+  void continue_along(int surface, int place);
+  void observe_end(std::size_t end, std::span<const double> inward, const double* values);
   void receive(std::size_t end, double area, std::span<const double> inward, const double* values,
                double* flux);
 
@@ -69,8 +74,8 @@ class face_fluxes {
   std::size_t invariants_ = 0;
   std::size_t ends_ = 0;       ///< of all budget surfaces
   std::vector<double> rates_;  ///< what is received per unit of time, in the layout of a boundary_budget
-  bool observed_ = false;
-  std::vector<double> densities_;  ///< in this order too
+  bool observes_ = false;
+  std::vector<double> observed_;
 };
 
 }  // namespace apsis

@@ -94,11 +94,11 @@ class semidiscrete_problem {
   void throw_late_errors() {
     if (space_->shared()) agree_on_errors(space_->processes(), failure_.take());
   }
-  /// Returns the densities of the invariants of the gas at the ends of this process, in the order of
-  /// a boundary_budget. Throws what boundaries throw, and late errors.
-  std::vector<double> densities_at_surfaces(double t, const field& u) {
+  /// Returns face_fluxes::observed() at the ends of this process. Throws what boundaries throw, and late
+  /// errors.
+  std::vector<double> observe_surfaces(double t, const field& u) {
     std::vector<double> found;
-    guarded(u, [&] { found = transport_->densities_at_surfaces(t, u); });
+    guarded(u, [&] { found = transport_->observe_surfaces(t, u); });
     throw_late_errors();
     return found;
   }

@@ -52,9 +52,8 @@ class transport {
   /// boundary_budget. Empty without space.
   virtual std::span<const double> budget_rates() const = 0;
 
-  /// Returns the densities of the invariants at every surface, in the order of a boundary_budget, of the
-  /// state u at time t; nothing without space.
-  virtual std::vector<double> densities_at_surfaces(double t, const field& u) const = 0;
+  /// Returns face_fluxes::observed() of the state u at time t; nothing without space.
+  virtual std::vector<double> observe_surfaces(double t, const field& u) const = 0;
 
   /// Adds a force. Throws input_error as force does.
   virtual void set_force(acceleration of) = 0;

@@ -169,15 +169,15 @@ void upwind_transport::combine(std::span<const linear_term<field, double>> terms
   }
 }
 
-std::vector<double> upwind_transport::densities_at_surfaces(double t, const field& u) const {
+std::vector<double> upwind_transport::observe_surfaces(double t, const field& u) const {
   if (equation_.space_dimensions() == 0) return {};
   struct observation {
     face_fluxes& of;
-    explicit observation(face_fluxes& faces) : of(faces) { of.observe_densities(true); }
-    ~observation() { of.observe_densities(false); }
+    explicit observation(face_fluxes& faces) : of(faces) { of.observe(true); }
+    ~observation() { of.observe(false); }
   } const watched(*faces_);
   sweep(t, u, {}, {});
-  return faces_->densities();
+  return faces_->observed();
 }
 
 void upwind_transport::add_source(const field& u, targets_view targets) const {

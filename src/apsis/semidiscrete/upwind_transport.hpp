@@ -32,7 +32,7 @@ class upwind_transport final : public transport {
                      const cells_job& then = {}) const override;
   void combine(std::span<const linear_term<field, double>> terms, field& sum) const override;
   std::span<const double> budget_rates() const override { return faces_->rates(); }
-  std::vector<double> densities_at_surfaces(double t, const field& u) const override;
+  std::vector<double> observe_surfaces(double t, const field& u) const override;
 
   void set_force(acceleration of) override;
   void set_source(source_rate rate) override;

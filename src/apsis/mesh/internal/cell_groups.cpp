@@ -160,13 +160,14 @@ void mesh_cutter::add_faces(int number) {
                      .middle = one.middle};
       if (made.below >= 0) made.from_below = from_centre(made.below, one.upper ? one.middle : beyond);
       if (made.above >= 0) made.from_above = from_centre(made.above, one.upper ? beyond : one.middle);
+      if (one.neighbour < 0) made.corners = corners_of_closed(cell, one.direction, one.upper, true);
       const int index = static_cast<int>(result_.faces_.size());
       group.faces.push_back(index);
       if (other >= 0) result_.groups_[at(other)].faces.push_back(index);
       result_.faces_.push_back(made);
     }
     for (const piece& wall : gas_.at(cell).walls) {
-      wall_segment made{.cell = cell, .solid = wall.solid, .middle = wall.middle};
+      wall_segment made{.cell = cell, .solid = wall.solid, .middle = wall.middle, .corners = wall.corners};
       for (const double x : wall.vector) made.area += x * x;
       made.area = std::sqrt(made.area);
       for (std::size_t k = 0; k < 3; ++k) made.normal[k] = wall.vector[k] / made.area;

@@ -240,6 +240,53 @@ position mesh_cutter::on_surface(position from, const std::array<double, 3>& nor
   return moved(0.5 * (open + closed));
 }
 
+/// Returns the corners of the zeros of φ in a cell. Where they form several loops, or their loop has no area,
+/// those of a flat piece at `middle` with the area and the normal of the wall.
+std::vector<position> mesh_cutter::corners_of_wall(int cell, const position& middle,
+                                                   const std::array<double, 3>& vector) {
+  auto loops = parts_.wall_loops(lowest_corner(cell));
+  const bool in_plane = mesh_.dimensions() == 2;
+  if (loops.size() == 1 && loops.front().size() >= (in_plane ? 2U : 3U)) return loops.front();
+  const auto at_offset = [&](const std::array<double, 3>& offset) {
+    position x = middle;
+    for (std::size_t k = 0; k < 3; ++k) x[k] += 0.5 * offset[k];
+    return x;
+  };
+  if (in_plane) return {at_offset({vector[1], -vector[0], 0.0}), at_offset({-vector[1], vector[0], 0.0})};
+  const double area = std::hypot(vector[0], vector[1], vector[2]), side = std::sqrt(area);
+  std::array<double, 3> axis{}, first{}, second{};
+  std::size_t least = 0;
+  for (std::size_t k = 1; k < 3; ++k)
+    if (std::abs(vector[k]) < std::abs(vector[least])) least = k;
+  axis[least] = 1.0;
+  const auto cross = [](const std::array<double, 3>& a, const std::array<double, 3>& b) {
+    return std::array{a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+  };
+  first = cross(vector, axis);
+  const double length = std::hypot(first[0], first[1], first[2]);
+  for (double& x : first) x *= side / length;
+  second = cross(vector, first);
+  for (double& x : second) x /= area;
+  std::vector<position> square;
+  for (const auto& [a, b] : {std::pair{-1.0, -1.0}, {1.0, -1.0}, {1.0, 1.0}, {-1.0, 1.0}})
+    square.push_back(at_offset(
+        {a * first[0] + b * second[0], a * first[1] + b * second[1], a * first[2] + b * second[2]}));
+  return square;
+}
+
+/// Returns the corners of a face of a cell that is wall, or of its open part.
+std::vector<position> mesh_cutter::corners_of_closed(int cell, int direction, bool upper, bool open_part) {
+  open_parts::corner lowest = lowest_corner(cell);
+  lowest[at(direction)] += upper ? 1 : 0;
+  std::vector<position> corners =
+      open_part ? parts_.corners_of_face(direction, lowest) : parts_.corners_of_square(direction, lowest);
+  // In the plane these ends go upwards: the solid is on the left of the direction of x, and on the right of
+  // that of y.
+  if (mesh_.dimensions() == 2 ? upper == (direction == 0) : upper)
+    std::reverse(corners.begin(), corners.end());
+  return corners;
+}
+
 /// Adds the pieces of wall of a cell: what its open faces lack, and the faces of solid boxes.
 void mesh_cutter::add_walls(int cell, gas_of_cell& to) {
   const open_parts::corner corner = lowest_corner(cell);
@@ -254,7 +301,7 @@ void mesh_cutter::add_walls(int cell, gas_of_cell& to) {
       std::array<double, 3> of_closed{};
       if (beside >= 0 && kinds_[at(beside)] == kind::box && share > 0.0) {
         of_closed[at(k)] = inwards * share * area;
-        to.walls.push_back({mesh_.solid(beside), of_closed, middle});
+        to.walls.push_back({mesh_.solid(beside), of_closed, middle, corners_of_closed(cell, k, upper, true)});
       }
       vector[at(k)] -= inwards * share * area;
       if (!whole || share > 0.0) continue;
@@ -264,7 +311,7 @@ void mesh_cutter::add_walls(int cell, gas_of_cell& to) {
       const int solids = static_cast<int>(mesh_.solids().size());
       to.walls.push_back(
           {beside >= 0 && kinds_[at(beside)] == kind::box ? mesh_.solid(beside) : solids + body_at(x),
-           of_closed, x});
+           of_closed, x, corners_of_closed(cell, k, upper, false)});
     }
   if (whole) return;
   for (const double x : vector) size += x * x;
@@ -273,7 +320,8 @@ void mesh_cutter::add_walls(int cell, gas_of_cell& to) {
   std::array<double, 3> normal{};
   for (std::size_t k = 0; k < 3; ++k) normal[k] = vector[k] / size;
   const position x = on_surface(parts_.middle_of_zeros(corner), normal);
-  to.walls.push_back({static_cast<int>(mesh_.solids().size()) + body_at(x), vector, x});
+  to.walls.push_back(
+      {static_cast<int>(mesh_.solids().size()) + body_at(x), vector, x, corners_of_wall(cell, x, vector)});
 }
 
 /// Returns the open parts of the faces of a cell that is not solid.

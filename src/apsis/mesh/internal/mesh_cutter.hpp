@@ -24,6 +24,7 @@ class mesh_cutter {
     int solid;
     std::array<double, 3> vector;  ///< area × normal
     position middle;
+    std::vector<position> corners;
   };
   /// The gas of a cell that is cut, or that has joined one.
   struct gas_of_cell {
@@ -58,6 +59,9 @@ class mesh_cutter {
   void check_closed_faces(int cell);
   void make_cut(int cell);
   void add_walls(int cell, gas_of_cell& to);
+  std::vector<position> corners_of_wall(int cell, const position& middle,
+                                        const std::array<double, 3>& vector);
+  std::vector<position> corners_of_closed(int cell, int direction, bool upper, bool open_part);
   position on_surface(position from, const std::array<double, 3>& normal) const;
   std::vector<way_out> ways_out(int cell);
 

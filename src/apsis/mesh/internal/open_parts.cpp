@@ -104,24 +104,30 @@ open_parts::part open_parts::open_edge(int direction, const corner& lower) {
 }
 
 /// The polygon of the open corners of a square, and of the zeros on its sides.
-open_parts::part open_parts::open_polygon(const plane& of, const corner& lowest) {
+open_parts::polygon open_parts::open_vertices(const plane& of, const corner& lowest) {
   constexpr std::array<std::array<int, 2>, 4> around = {{{0, 0}, {1, 0}, {1, 1}, {0, 1}}};
-  std::array<std::array<double, 2>, 8> vertices{};
-  std::size_t count = 0;
+  polygon made;
+  const auto add = [&made](const vertex& one) { made.vertices[made.count++] = one; };
   for (std::size_t k = 0; k < 4; ++k) {
     const auto& [a, b] = around[k];
     const auto& [c, d] = around[(k + 1) % 4];
     const corner here = shifted(shifted(lowest, of.first, a), of.second, b),
                  next = shifted(shifted(lowest, of.first, c), of.second, d);
-    if (is_open(here)) vertices[count++] = {1.0 * a, 1.0 * b};
+    if (is_open(here)) add({{1.0 * a, 1.0 * b}, here, -1});
     if (is_open(here) == is_open(next)) continue;
     const int along = a != c ? of.first : of.second;
-    const double zero = zero_on_edge(along, std::min(here, next));
-    vertices[count++] = a != c ? std::array{zero, 1.0 * b} : std::array{1.0 * a, zero};
+    const corner lower = std::min(here, next);
+    const double zero = zero_on_edge(along, lower);
+    add({a != c ? std::array{zero, 1.0 * b} : std::array{1.0 * a, zero}, lower, along});
   }
+  return made;
+}
+
+open_parts::part open_parts::open_polygon(const plane& of, const corner& lowest) {
+  const auto [vertices, count] = open_vertices(of, lowest);
   double area = 0.0, first = 0.0, second = 0.0;
   for (std::size_t k = 0; k < count; ++k) {
-    const auto &p = vertices[k], &q = vertices[(k + 1) % count];
+    const auto &p = vertices[k].share, &q = vertices[(k + 1) % count].share;
     const double twice = p[0] * q[1] - q[0] * p[1];
     area += 0.5 * twice;
     first += twice * (p[0] + q[0]) / 6.0;
@@ -136,6 +142,84 @@ open_parts::part open_parts::open_polygon(const plane& of, const corner& lowest)
 open_parts::part open_parts::face(int direction, const corner& lowest) {
   if (mesh_.dimensions() == 2) return open_edge(1 - direction, lowest);
   return open_polygon({(direction + 1) % 3, (direction + 2) % 3}, lowest);
+}
+
+/// A zero at a corner has the bits of the corner.
+position open_parts::point_of(const vertex& of) {
+  if (of.edge < 0) return point(of.lower);
+  const double zero = zero_on_edge(of.edge, of.lower);
+  if (zero == 0.0) return point(of.lower);
+  if (zero == 1.0) return point(shifted(of.lower, of.edge));
+  std::array<double, 3> shift{};
+  shift[at(of.edge)] = zero;
+  return point(of.lower, shift);
+}
+
+std::vector<position> open_parts::corners_of_face(int direction, const corner& lowest) {
+  std::vector<position> corners;
+  if (mesh_.dimensions() == 2) {
+    const int along = 1 - direction;
+    const corner last = shifted(lowest, along);
+    for (const corner& end : {lowest, last})
+      corners.push_back(point_of(is_open(end) ? vertex{{}, end, -1} : vertex{{}, lowest, along}));
+    return corners;
+  }
+  const auto [vertices, count] = open_vertices({(direction + 1) % 3, (direction + 2) % 3}, lowest);
+  for (std::size_t k = 0; k < count; ++k) corners.push_back(point_of(vertices[k]));
+  return corners;
+}
+
+std::vector<position> open_parts::corners_of_square(int direction, const corner& lowest) const {
+  if (mesh_.dimensions() == 2) return {point(lowest), point(shifted(lowest, 1 - direction))};
+  const int first = (direction + 1) % 3, second = (direction + 2) % 3;
+  const corner next = shifted(lowest, first);
+  return {point(lowest), point(next), point(shifted(next, second)), point(shifted(lowest, second))};
+}
+
+/// Adds the sides of the open part of a square that lie inside of it: from the zero where its outline leaves
+/// the open corners to the next zero.
+void open_parts::add_wall_sides(const plane& of, const corner& lowest, bool reversed, zero_chain& chain) {
+  const auto [vertices, count] = open_vertices(of, lowest);
+  const auto key = [this](const vertex& one) { return edge_key{one.edge, number(one.lower)}; };
+  for (std::size_t k = 0; k < count; ++k) {
+    const vertex &from = vertices[k], &to = vertices[(k + 1) % count];
+    if (from.edge < 0 || to.edge < 0) continue;
+    const vertex &first = reversed ? to : from, &second = reversed ? from : to;
+    chain.insert_or_assign(key(first), std::pair{first, key(second)});
+  }
+}
+
+std::vector<std::vector<position>> open_parts::wall_loops(const corner& lowest) {
+  zero_chain chain;
+  if (mesh_.dimensions() == 2) {
+    add_wall_sides({0, 1}, lowest, true, chain);
+    std::vector<std::vector<position>> segments;
+    for (const auto& [edge, side] : chain) {
+      const auto& [direction, lower] = side.second;
+      const corner end = {static_cast<int>(lower / corners_[2] / corners_[1]),
+                          static_cast<int>(lower / corners_[2] % corners_[1]), 0};
+      segments.push_back({point_of(side.first), point_of({{}, end, direction})});
+    }
+    return segments;
+  }
+  for (int normal = 0; normal < 3; ++normal)
+    for (const bool upper : {false, true})
+      add_wall_sides({(normal + 1) % 3, (normal + 2) % 3}, shifted(lowest, normal, upper ? 1 : 0), !upper,
+                     chain);
+  std::vector<std::vector<position>> loops;
+  while (!chain.empty()) {
+    std::vector<position> loop;
+    for (auto next = chain.begin(); next != chain.end();) {
+      const auto [zero, following] = next->second;
+      const position x = point_of(zero);
+      if (loop.empty() || x != loop.back()) loop.push_back(x);
+      chain.erase(next);
+      next = chain.find(following);
+    }
+    while (loop.size() > 1 && loop.front() == loop.back()) loop.pop_back();
+    loops.push_back(std::move(loop));
+  }
+  return loops;
 }
 
 position open_parts::middle_of_zeros(const corner& lowest) {

@@ -4,8 +4,11 @@
 #include <apsis/mesh/grid.hpp>
 
 #include <array>
+#include <cstddef>
+#include <map>
 #include <string>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 namespace apsis {
@@ -29,6 +32,14 @@ class open_parts {
   state of_cell(const corner& lowest) const;
   /// Returns the open part of the face that is normal to a direction and has this lowest corner.
   part face(int direction, const corner& lowest);
+  /// Returns the corners of the open part of a face, counter-clockwise seen from the upper side; in two
+  /// dimensions its ends.
+  std::vector<position> corners_of_face(int direction, const corner& lowest);
+  /// Returns the corners of a whole face in the same order.
+  std::vector<position> corners_of_square(int direction, const corner& lowest) const;
+  /// Returns the loops of the zeros of φ on the edges of a cell: the boundaries of the wall in it, in the
+  /// order of wall_segment::corners. Neighbouring corners differ.
+  std::vector<std::vector<position>> wall_loops(const corner& lowest);
   /// Returns the mean of the zeros of φ on the edges of a cell that is cut.
   position middle_of_zeros(const corner& lowest);
   /// Something that passes between the corners of a cell.
@@ -56,6 +67,22 @@ class open_parts {
   double find_zero(int direction, const corner& lower) const;
   part open_edge(int direction, const corner& lower);
   part open_polygon(const plane& of, const corner& lowest);
+  /// A corner of the open part of a square: a corner of the mesh, or the zero on an edge.
+  struct vertex {
+    std::array<double, 2> share;  ///< along the directions of the square
+    corner lower;                 ///< the corner, or the lower end of the edge
+    int edge;                     ///< direction of the edge; −1 for a corner
+  };
+  struct polygon {
+    std::array<vertex, 8> vertices = {};
+    std::size_t count = 0;
+  };
+  using edge_key = std::pair<int, long>;  ///< direction of an edge and number of its lower corner
+  /// Zeros on edges, each with the edge of the next one along a wall.
+  using zero_chain = std::map<edge_key, std::pair<vertex, edge_key>>;
+  polygon open_vertices(const plane& of, const corner& lowest);
+  position point_of(const vertex& of);
+  void add_wall_sides(const plane& of, const corner& lowest, bool reversed, zero_chain& chain);
   /// Numbers of open and closed stretches of lines that reach neither of their ends.
   struct stretches {
     int gaps = 0, bodies = 0;

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <apsis/model/dimension.hpp>
+
+#include <string>
+#include <vector>
+
+namespace apsis {
+
+/// A table [output.reference]: the stream and the size to which coefficients of bodies and walls refer.
+/// Dimensionless.
+struct reference_values {
+  double density = 0.0,          ///< ρ of the stream
+      temperature = 0.0,         ///< T of the stream
+      length = 0.0,              ///< in the plane of forces and torques, in space of torques
+      area = 0.0;                ///< of forces in space; 0 in the plane
+  std::vector<double> velocity,  ///< U of the stream, a component for each direction of space
+      centre,                    ///< about which torques are taken; the origin where not given
+      up;                        ///< in space: lift is the force along its part across U; without it none
+  /// Whether all values are equal.
+  bool operator==(const reference_values&) const = default;
+
+  double speed() const;                                       ///< |U|
+  double dynamic_pressure() const;                            ///< ρU²/2
+  double size() const { return area > 0.0 ? area : length; }  ///< of forces: length in the plane, else area
+  /// Returns the unit vector across U along which a force is lift: in the plane U turned by 90°
+  /// counter-clockwise, in space the part of `up` across U. Empty in space without `up`.
+  std::vector<double> lift_direction() const;
+};
+
+/// A key of the table [output.reference].
+struct reference_key {
+  const char* name;                                ///< "density"
+  apsis::dimension dimension;                      ///< with a table [gas], units of it are valid
+  double reference_values::* number;               ///< member with the number; null of a vector
+  std::vector<double> reference_values::* vector;  ///< member with the vector; null of a number
+  bool positive, required;                         ///< whether it must be > 0; whether every case needs it
+  int only_in;      ///< number of space dimensions that have it; 0: two and three
+  const char* doc;  ///< meaning
+};
+
+/// Returns the keys in the order in which they are written.
+const std::vector<reference_key>& reference_keys();
+
+}  // namespace apsis

@@ -1,0 +1,174 @@
+#include <apsis/run/body_loads.hpp>
+
+#include <apsis/core/index.hpp>
+#include <apsis/run/internal/surface_columns.hpp>
+#include <apsis/run/simulation.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace apsis {
+namespace {
+
+using list = std::vector<double>;
+
+double product(const list& a, const list& b) {
+  return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
+}
+
+/// Returns a × b: in the plane its component along z.
+list cross(const list& a, const list& b) {
+  if (a.size() == 2) return {a[0] * b[1] - a[1] * b[0]};
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+
+/// "moment", or in space "moment_x", "moment_y", "moment_z".
+std::vector<std::string> names_of_torque(const std::string& head, int dimensions) {
+  if (dimensions == 2) return {head};
+  return {head + "_x", head + "_y", head + "_z"};
+}
+
+/// The columns of a history in which the load of a body is.
+class load_reader {
+ public:
+  load_reader(const run_setup& setup, const loaded_body& body, const std::vector<std::string>& columns)
+      : name_(body.name) {
+    const auto place = [&](const std::string& column) { return place_of_name(columns, column).value(); };
+    const auto invariants = setup.equation->invariants();
+    const auto momenta = places_of_momenta(*setup.equation);
+    const int dimensions = setup.whole_mesh().dimensions();
+    for (int k = 0; k < dimensions; ++k)
+      force_.push_back(place(fmt::format("flux_{}_{}", name_, invariants[momenta[at(k)]])));
+    for (const auto& column : names_of_torque("torque_" + name_, dimensions))
+      torque_.push_back(place(column));
+    heat_ = place(fmt::format("flux_{}_energy", name_));
+  }
+
+  body_load load(const list& row) const {
+    body_load made{name_, {}, {}, 0.0 - row[heat_]};
+    for (const std::size_t k : force_) made.force.push_back(0.0 - row[k]);
+    for (const std::size_t k : torque_) made.torque.push_back(row[k]);
+    return made;
+  }
+
+ private:
+  std::string name_;
+  std::vector<std::size_t> force_, torque_;
+  std::size_t heat_ = 0;
+};
+
+}  // namespace
+
+std::vector<loaded_body> loaded_bodies(const run_setup& setup) {
+  std::vector<loaded_body> all;
+  if (!setup.has_space()) return all;
+  const int dimensions = setup.whole_mesh().dimensions();
+  if (dimensions < 2 || places_of_momenta(*setup.equation).size() < at(dimensions) ||
+      !place_of_name(setup.equation->invariants(), "energy"))
+    return all;
+  const auto names = setup.open_faces();
+  const auto& surfaces = setup.builder().space().budget_surfaces();
+  for (std::size_t k = 0; k < surfaces.size(); ++k)
+    if (surfaces[k].solid >= 0) all.push_back({names[k], k});
+  return all;
+}
+
+std::vector<body_load> body_loads(const run_setup& setup, const step_record& step) {
+  std::vector<body_load> all;
+  const auto invariants = setup.equation->invariants();
+  const auto momenta = places_of_momenta(*setup.equation);
+  const auto bodies = loaded_bodies(setup);
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    const auto flux = [&](std::size_t invariant) {
+      return 0.0 - step.flux[bodies[b].face * invariants.size() + invariant];
+    };
+    body_load& made = all.emplace_back();
+    made.name = bodies[b].name;
+    for (int k = 0; k < setup.whole_mesh().dimensions(); ++k) made.force.push_back(flux(momenta[at(k)]));
+    const std::size_t count = step.torque.size() / bodies.size();
+    const auto first = step.torque.begin() + static_cast<std::ptrdiff_t>(b * count);
+    made.torque.assign(first, first + static_cast<std::ptrdiff_t>(count));
+    made.heat = flux(place_of_name(invariants, "energy").value());
+  }
+  return all;
+}
+
+std::vector<load_value> loads_in_stream(const body_load& body, const reference_values& stream) {
+  const int dimensions = static_cast<int>(stream.velocity.size());
+  const double speed = stream.speed(), unit = stream.dynamic_pressure() * stream.size();
+  dimension force = dimensions::pressure;
+  for (int k = 1; k < dimensions; ++k) force = force * dimensions::length;
+  std::vector<load_value> loads, coefficients;
+  const auto add = [&](const std::string& name, const std::string& coefficient, double value,
+                       const dimension& dims, double of_one) {
+    loads.push_back({name, value, dims});
+    coefficients.push_back({coefficient, value / of_one, dimensions::none});
+  };
+  add("drag", "C_D", product(body.force, stream.velocity) / speed, force, unit);
+  if (const list across = stream.lift_direction(); !across.empty())
+    add("lift", "C_L", product(body.force, across), force, unit);
+  const list of_centre = cross(stream.centre, body.force);
+  const auto moments = names_of_torque("moment", dimensions), names = names_of_torque("C_M", dimensions);
+  for (std::size_t k = 0; k < moments.size(); ++k)
+    add(moments[k], names[k], body.torque[k] - of_centre[k], force * dimensions::length,
+        unit * stream.length);
+  add("heat", "C_H", body.heat, force * dimensions::velocity, unit * speed);
+  loads.insert(loads.end(), coefficients.begin(), coefficients.end());
+  return loads;
+}
+
+std::vector<std::string> torque_columns(const run_setup& setup) {
+  std::vector<std::string> columns;
+  for (const loaded_body& body : loaded_bodies(setup))
+    for (auto& name : names_of_torque("torque_" + body.name, setup.whole_mesh().dimensions()))
+      columns.push_back(std::move(name));
+  return columns;
+}
+
+namespace {
+
+/// "C_D_NAME", "moment_NAME_x".
+std::string column_of(const std::string& load, const std::string& body) {
+  const bool component = load.size() > 2 && load[load.size() - 2] == '_' && std::islower(load.back()) != 0;
+  if (!component) return fmt::format("{}_{}", load, body);
+  return fmt::format("{}_{}_{}", load.substr(0, load.size() - 2), body, load.back());
+}
+
+}  // namespace
+
+std::vector<std::pair<std::string, dimension>> load_dimensions(const simulation& run) {
+  const run_setup& setup = run.setup();
+  std::vector<std::pair<std::string, dimension>> all;
+  dimension torque = dimensions::pressure;
+  if (!setup.has_space()) return all;
+  for (int k = 0; k < setup.whole_mesh().dimensions(); ++k) torque = torque * dimensions::length;
+  for (auto& name : torque_columns(setup)) all.emplace_back(std::move(name), torque);
+  const auto& reference = run.config().output.reference;
+  if (!reference) return all;
+  for (const body_load& body : body_loads(setup, run.last()))
+    for (const load_value& one : loads_in_stream(body, *reference))
+      if (one.dims != dimensions::none) all.emplace_back(column_of(one.name, body.name), one.dims);
+  return all;
+}
+
+numeric_table with_loads(numeric_table history, const simulation& run) {
+  const auto& reference = run.config().output.reference;
+  if (!reference) return history;
+  const std::vector<std::string> columns = history.columns;
+  for (const loaded_body& body : loaded_bodies(run.setup())) {
+    const load_reader reader(run.setup(), body, columns);
+    for (std::size_t k = 0; k < history.rows.size(); ++k)
+      for (const load_value& one : loads_in_stream(reader.load(history.rows[k]), *reference)) {
+        if (k == 0) history.columns.push_back(column_of(one.name, body.name));
+        history.rows[k].push_back(one.value);
+      }
+  }
+  return history;
+}
+
+}  // namespace apsis

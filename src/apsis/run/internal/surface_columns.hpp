@@ -1,0 +1,90 @@
+#pragma once
+
+#include <apsis/config/reference_values.hpp>
+#include <apsis/mesh/face.hpp>
+#include <apsis/model/gas_model.hpp>
+#include <apsis/run/surface_table.hpp>
+
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace apsis {
+
+/// Returns the places of the momenta among the invariants of a model, one for each of its velocity
+/// dimensions; nothing where it lacks one.
+std::vector<std::size_t> places_of_momenta(const model& equation);
+
+/// Returns the place of a name; nothing if it is not there.
+std::optional<std::size_t> place_of_name(const std::vector<std::string>& names, const std::string& name);
+
+/// The columns of a surface that are derived from the fluxes of the invariants: pressure, shear stress, heat
+/// flux, and with reference values their coefficients.
+class load_columns {
+ public:
+  load_columns(const model& equation, const std::optional<reference_values>& reference);
+
+  /// Adds the names, and the dimensions given those of the fluxes of the invariants.
+  void add_names(surface_table& table, const std::vector<dimension>& fluxes) const;
+  /// Appends the values at a piece of wall with the normal n into the gas. In the plane the shear stress is
+  /// the component counter-clockwise around the body.
+  void add_values(std::vector<double>& row, const std::vector<double>& given, const std::array<double, 3>& n,
+                  const std::array<double, 3>& wall_velocity) const;
+  /// Appends the values at a face of a cell. In the plane the shear stress is the component along the axis.
+  void add_values(std::vector<double>& row, const std::vector<double>& given, const face& where,
+                  const std::array<double, 3>& wall_velocity) const;
+
+ private:
+  void add(std::vector<double>& row, double pressure, std::optional<double> shear,
+           std::optional<double> heat) const;
+
+  std::vector<std::size_t> momenta_;   ///< of each velocity dimension; empty if the model has none
+  std::optional<std::size_t> energy_;  ///< nothing without momenta
+  const std::optional<reference_values>& reference_;
+};
+
+/// The columns of the state of a gas; none for other models.
+class gas_columns {
+ public:
+  explicit gas_columns(const model& equation) : gas_(equation.as_gas()) {}
+
+  void add_names(surface_table& table) const;
+  /// Appends the values for the densities of the invariants, which are the moments of a gas.
+  void add_values(std::vector<double>& row, std::span<const double> moments) const;
+
+ private:
+  int directions() const { return gas_->molecules().dimensions(); }
+
+  const gas_model* gas_;
+};
+
+/// The columns of what arrives at a surface and what leaves it, of mass and energy as far as the model has
+/// them.
+class one_way_columns {
+ public:
+  explicit one_way_columns(const model& equation);
+
+  void add_names(surface_table& table, const std::vector<dimension>& fluxes) const;
+  /// Appends the values; NaN where nothing is known.
+  void add_values(std::vector<double>& row, std::span<const double> arriving,
+                  std::span<const double> leaving) const;
+
+ private:
+  struct amount {
+    std::string name;
+    std::size_t invariant;
+  };
+  std::vector<amount> amounts_;
+};
+
+/// Sorts the rows of a surface by their first column.
+void sort_by_first_column(surface_table& table);
+
+/// Replaces the angles in the first column of the sorted rows of a body by lengths along its wall, to the
+/// middle of each piece. Rows begin after an opening of the wall, where it ends at a face of the domain.
+void measure_around(surface_table& table);
+
+}  // namespace apsis

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <apsis/boundary/domain.hpp>
+#include <apsis/output/solution.hpp>
+#include <apsis/run/setup.hpp>
+
+#include <vector>
+
+namespace apsis {
+
+/// Returns the corners of the face of a cell at an end of a segment, in the order of wall_segment::corners;
+/// nothing on a line. Neighbouring faces have equal corners bit by bit.
+std::vector<position> corners_of_end(const domain& space, int surface, int place);
+
+/// Returns the walls of the bodies of the whole mesh in the plane, with lengths in this unit; none otherwise.
+std::vector<wall_outline> wall_outlines(const run_setup& setup, double unit_of_length);
+
+}  // namespace apsis

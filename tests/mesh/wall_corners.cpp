@@ -1,0 +1,172 @@
+// Corners of the pieces of wall: areas and normals of the pieces, and surfaces without holes.
+#include <apsis/core/errors.hpp>
+#include <apsis/core/index.hpp>
+#include <apsis/mesh/cut_cells.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <random>
+#include <utility>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace wall_corners_test {
+namespace {
+
+using apsis::at;
+using apsis::cut_cells;
+using apsis::grid;
+using apsis::outside_function;
+using apsis::position;
+
+constexpr std::array<bool, 3> closed = {false, false, false};
+
+outside_function ball(double x, double y, double z, double r) {
+  return [=](const position& p) { return std::hypot(p[0] - x, p[1] - y, p[2] - z) - r; };
+}
+
+grid plane(int n) {
+  return grid(2, {n, n, 1}, {-2, -2, 0}, {2, 2, 1});
+}
+
+grid space(int n) {
+  return grid(3, {n, n, n}, {-2, -2, -2}, {2, 2, 2});
+}
+
+std::array<double, 3> cross(const position& a, const position& b) {
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+
+/// The vector area of a polygon; of a segment its length times the normal on its right.
+std::array<double, 3> vector_area(const std::vector<position>& corners) {
+  if (corners.size() == 2) return {corners[1][1] - corners[0][1], corners[0][0] - corners[1][0], 0.0};
+  std::array<double, 3> sum{};
+  for (std::size_t k = 0; k < corners.size(); ++k) {
+    const auto one = cross(corners[k], corners[(k + 1) % corners.size()]);
+    for (std::size_t d = 0; d < 3; ++d) sum[d] += 0.5 * one[d];
+  }
+  return sum;
+}
+
+void expect_areas_and_normals(const grid& mesh, const cut_cells& cut) {
+  ASSERT_FALSE(cut.walls().empty());
+  const std::size_t fewest = mesh.dimensions() == 2 ? 2 : 3;
+  // Products of coordinates up to 2, and differences of shares of cells.
+  const double rounding = 1e-14;
+  for (const auto& wall : cut.walls()) {
+    ASSERT_GE(wall.corners.size(), fewest);
+    const auto found = vector_area(wall.corners);
+    for (std::size_t d = 0; d < 3; ++d) EXPECT_NEAR(found[d], wall.area * wall.normal[d], rounding);
+  }
+  for (const auto& face : cut.faces()) {
+    EXPECT_EQ(face.corners.empty(), face.below >= 0 && face.above >= 0);
+    if (face.corners.empty()) continue;
+    const auto found = vector_area(face.corners);
+    EXPECT_NEAR(found[at(face.direction)], face.below < 0 ? face.area : -face.area, rounding);
+  }
+}
+
+using side = std::pair<position, position>;
+
+/// Counts the directed sides of all pieces of bodies; the ends of segments as sides of one point.
+std::map<side, int> sides_of(const cut_cells& cut) {
+  std::map<side, int> count;
+  for (const auto& wall : cut.walls()) {
+    const auto& c = wall.corners;
+    if (c.size() == 2) {
+      ++count[{c[0], {}}];
+      ++count[{position{}, c[1]}];
+      continue;
+    }
+    for (std::size_t k = 0; k < c.size(); ++k) ++count[{c[k], c[(k + 1) % c.size()]}];
+  }
+  return count;
+}
+
+/// Whether a piece begins where another ends, bit by bit; in space both have a side, in opposite directions.
+void expect_no_holes(const grid& mesh, const cut_cells& cut) {
+  const auto sides = sides_of(cut);
+  int missing = 0;
+  for (const auto& [one, count] : sides) {
+    const side other = mesh.dimensions() == 3     ? side{one.second, one.first}
+                       : one.second == position{} ? side{position{}, one.first}
+                                                  : side{one.second, position{}};
+    const auto found = sides.find(other);
+    missing += count == 1 && found != sides.end() && found->second == 1 ? 0 : 1;
+  }
+  EXPECT_EQ(missing, 0) << "of " << sides.size();
+}
+
+}  // namespace
+
+TEST(corners_of_walls, in_the_plane_join_the_pieces_of_every_body) {
+  for (const int n : {12, 31}) {
+    const grid mesh = plane(n);
+    const auto disc = [](double x, double y, double r) {
+      return [=](const position& p) { return std::hypot(p[0] - x, p[1] - y) - r; };
+    };
+    const auto square = [](const position& p) {
+      const double a = 0.8 * p[0] + 0.6 * p[1], b = 0.8 * p[1] - 0.6 * p[0];
+      return std::max(std::abs(a), std::abs(b)) - 0.9;
+    };
+    for (const std::vector<outside_function>& bodies :
+         {std::vector<outside_function>{disc(0.03, -0.02, 1.1)},
+          {disc(-0.4, 0, 0.7), disc(0.5, 0.1, 0.8)},
+          {square},
+          {[](const position& p) { return 1.5 - std::hypot(p[0], p[1]); }},
+          {disc(0, 0, 4.0 / 3.0)}}) {
+      const cut_cells cut(mesh, bodies, closed);
+      expect_areas_and_normals(mesh, cut);
+      expect_no_holes(mesh, cut);
+    }
+  }
+}
+
+TEST(corners_of_walls, in_space_make_surfaces_without_holes) {
+  for (const int n : {9, 14}) {
+    const grid mesh = space(n);
+    for (const std::vector<outside_function>& bodies :
+         {std::vector<outside_function>{ball(0.03, -0.02, 0.05, 1.2)},
+          {ball(-0.4, 0, 0, 0.9), ball(0.5, 0.1, 0.2, 0.9)},
+          {[](const position& p) { return 1.6 - std::hypot(p[0], p[1], p[2]); }},
+          {ball(0, 0, 0, 4.0 / 3.0)}}) {
+      const cut_cells cut(mesh, bodies, closed);
+      expect_areas_and_normals(mesh, cut);
+      expect_no_holes(mesh, cut);
+    }
+  }
+}
+
+TEST(corners_of_walls, at_boxes_and_faces_of_the_domain_have_the_areas_of_their_pieces) {
+  const grid flat = plane(16).with_solids({{{0, 6, 0}, {7, 4, 1}}});
+  expect_areas_and_normals(flat, cut_cells(flat, {ball(0.05, 0.1, 0, 1.1)}, closed));
+  expect_areas_and_normals(flat, cut_cells(flat, {ball(1.9, -1.8, 0, 1.3)}, closed));
+  const grid deep = space(8).with_solids({{{0, 3, 2}, {3, 2, 4}}});
+  expect_areas_and_normals(deep, cut_cells(deep, {ball(0.05, 0.1, 0.2, 1.3)}, closed));
+  expect_areas_and_normals(deep, cut_cells(deep, {ball(1.9, -1.8, 2, 1.7)}, closed));
+}
+
+TEST(corners_of_walls, of_random_bodies_have_the_areas_of_their_pieces) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> place(-1.3, 1.3), size(0.5, 0.9);
+  int made = 0;
+  for (int k = 0; k < 30; ++k) {
+    std::vector<outside_function> bodies;
+    for (int b = 0; b < 3; ++b)
+      bodies.push_back(ball(place(random), place(random), k % 2 == 0 ? 0.0 : place(random), size(random)));
+    const grid mesh = k % 2 == 0 ? plane(40) : space(13);
+    try {
+      const cut_cells cut(mesh, bodies, closed);
+      expect_areas_and_normals(mesh, cut);
+      ++made;
+    } catch (const apsis::input_error&) {
+      continue;  // a gap between two of them is too thin
+    }
+  }
+  EXPECT_GT(made, 7);
+}
+
+}  // namespace wall_corners_test

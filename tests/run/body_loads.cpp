@@ -1,0 +1,395 @@
+// Loads of bodies: sums over their pieces, coefficients, one-way fluxes, files for ParaView, restarts.
+#include <apsis/run/body_loads.hpp>
+
+#include "cases_in_space.hpp"
+#include "support/folder.hpp"
+
+#include <apsis/core/text_file.hpp>
+#include <apsis/run/manifest.hpp>
+#include <apsis/run/result_units.hpp>
+#include <apsis/run/setup.hpp>
+#include <apsis/run/simulation.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <map>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+namespace body_loads_test {
+namespace {
+
+using namespace apsis;
+
+/// A stream past a disc that turns, beside a box.
+const std::string flat = R"toml(
+[model]
+name = "bgk"
+epsilon = 0.3
+degrees_of_freedom = 3
+[initial]
+rho = 1.1
+u = [1.2, 0.4]
+T = 1
+[space]
+cells = [16, 16]
+domain = [[-2, 2], [-2, 2]]
+boundary = "inflow"
+[boundary.left]
+rho = 1.1
+u = [1.2, 0.4]
+T = 1
+[boundary.right]
+kind = "outflow"
+[boundary.top]
+kind = "diffuse"
+T = 1.2
+[boundary.bottom]
+kind = "symmetry"
+[[space.body]]
+name = "disc"
+shape = "circle"
+centre = [-0.4, 0.1]
+radius = 0.8
+T = 1.3
+velocity = ["-0.5*(y - 0.1)", "0.5*(x + 0.4)"]
+[[space.solid]]
+name = "box"
+from = [1, 0.5]
+to = [1.5, 1]
+[velocity]
+max = 7
+points = 12
+[time]
+method = "md-imex-3-2"
+end = 0.1
+safety = 1
+[output]
+surfaces = "all"
+[output.reference]
+density = 1.1
+velocity = [1.2, 0.4]
+temperature = 1
+length = 1.6
+centre = [-0.4, 0.1]
+)toml";
+
+/// The same in space.
+const std::string deep = R"toml(
+[model]
+name = "bgk"
+epsilon = 0.3
+[initial]
+rho = 1
+u = [1.2, 0, 0]
+T = 1
+[space]
+cells = [8, 7, 7]
+domain = [[-2, 2], [-1.5, 2], [-1.5, 2]]
+boundary = "outflow"
+[[space.body]]
+name = "ball"
+shape = "sphere"
+centre = [-0.2, 0.3, 0.2]
+radius = 1
+[[space.solid]]
+name = "box"
+from = [1, 0.5, 0]
+to = [1.5, 1, 0.5]
+[velocity]
+max = 5
+points = 10
+[time]
+method = "md-imex-3-2"
+end = 0.02
+safety = 1
+[output]
+surfaces = "all"
+[output.reference]
+density = 1
+velocity = [1.2, 0, 0]
+temperature = 1
+length = 2
+area = 3.14
+up = [0, 0, 1]
+centre = [-0.2, 0.3, 0.2]
+)toml";
+
+simulation finished(const std::string& text, const std::vector<std::string>& overrides = {}) {
+  simulation run(parse_case(text, "case.toml", overrides));
+  while (!run.finished()) run.advance();
+  return run;
+}
+
+/// The runs of both, made once.
+const simulation& run_of(const std::string& text) {
+  static const simulation in_plane = finished(flat), in_space = finished(deep);
+  return text == flat ? in_plane : in_space;
+}
+
+using columns = std::map<std::string, std::vector<double>>;
+
+columns columns_of(const surface_table& table) {
+  columns all;
+  for (const auto& row : table.numbers.rows)
+    for (std::size_t k = 0; k < row.size(); ++k) all[table.numbers.columns[k]].push_back(row[k]);
+  return all;
+}
+
+surface_table table_of(const simulation& run, const std::string& name) {
+  for (auto& one : run.surfaces())
+    if (one.name == name) return one;
+  ADD_FAILURE() << "no surface " << name;
+  return {};
+}
+
+double sum(const columns& of, const std::function<double(const columns&, std::size_t)>& term) {
+  double total = 0.0;
+  for (std::size_t k = 0; k < of.at("area").size(); ++k) total += of.at("area")[k] * term(of, k);
+  return total;
+}
+
+std::map<std::string, double> values_of(const body_load& body, const reference_values& stream) {
+  std::map<std::string, double> all;
+  for (const load_value& one : loads_in_stream(body, stream)) all[one.name] = one.value;
+  return all;
+}
+
+}  // namespace
+
+TEST(loads_of_bodies, are_sums_over_the_pieces_of_their_walls) {
+  for (const std::string& text : {flat, deep}) {
+    const simulation& run = run_of(text);
+    const auto loads = body_loads(run.setup(), run.last());
+    ASSERT_EQ(loads.size(), 2U);
+    EXPECT_EQ(loads[0].name, "box");
+    for (const body_load& body : loads) {
+      const columns wall = columns_of(table_of(run, body.name));
+      const auto force = [&](const char* axis) {
+        return sum(wall,
+                   [&](const columns& c, std::size_t k) { return c.at(std::string("momentum_") + axis)[k]; });
+      };
+      const auto torque = [&](const std::string& a, const std::string& b) {
+        return sum(wall, [&](const columns& c, std::size_t k) {
+          return c.at(a)[k] * c.at("momentum_" + b)[k] - c.at(b)[k] * c.at("momentum_" + a)[k];
+        });
+      };
+      // Sums of some fifty terms of the size of the pressure.
+      constexpr double rounding = 1e-13;
+      EXPECT_NEAR(body.force[0], force("x"), rounding);
+      EXPECT_NEAR(body.force[1], force("y"), rounding);
+      EXPECT_NEAR(body.heat, sum(wall, [](const columns& c, std::size_t k) { return c.at("energy")[k]; }),
+                  rounding);
+      EXPECT_GT(std::abs(body.force[0]), 1e-3);
+      if (text == flat) {
+        ASSERT_EQ(body.torque.size(), 1U);
+        EXPECT_NEAR(body.torque[0], torque("x", "y"), rounding);
+      } else {
+        ASSERT_EQ(body.torque.size(), 3U);
+        EXPECT_NEAR(body.force[2], force("z"), rounding);
+        EXPECT_NEAR(body.torque[0], torque("y", "z"), rounding);
+        EXPECT_NEAR(body.torque[1], torque("z", "x"), rounding);
+        EXPECT_NEAR(body.torque[2], torque("x", "y"), rounding);
+      }
+    }
+  }
+}
+
+TEST(loads_of_bodies, in_a_stream_have_the_coefficients_of_their_definition) {
+  // U = (3, 4)/2: |U| = 2.5, ρU²/2 = 6.25.
+  const reference_values plane{
+      .density = 2, .temperature = 1, .length = 0.5, .velocity = {1.5, 2}, .centre = {1, -1}, .up = {}};
+  const auto found = values_of({"a", {5, 10}, {7}, 25}, plane);
+  EXPECT_NEAR(found.at("drag"), 11, 1e-14);        // (15 + 40)/5
+  EXPECT_NEAR(found.at("lift"), 2, 1e-14);         // (−20 + 30)/5
+  EXPECT_NEAR(found.at("moment"), 7 - 15, 1e-14);  // − (1·10 − (−1)·5)
+  EXPECT_NEAR(found.at("C_D"), 11 / 3.125, 1e-14);
+  EXPECT_NEAR(found.at("C_L"), 2 / 3.125, 1e-14);
+  EXPECT_NEAR(found.at("C_M"), -8 / 1.5625, 1e-14);
+  EXPECT_NEAR(found.at("C_H"), 25 / 7.8125, 1e-14);
+  const reference_values space{.density = 2,
+                               .temperature = 1,
+                               .length = 3,
+                               .area = 0.5,
+                               .velocity = {0, 2, 0},
+                               .centre = {0, 0, 2},
+                               .up = {1, 5, 0}};
+  const auto deep_ones = values_of({"a", {5, 10, -1}, {1, 2, 3}, 8}, space);
+  EXPECT_EQ(deep_ones.at("C_D"), 10 / 2.0);
+  EXPECT_EQ(deep_ones.at("C_L"), 5 / 2.0);
+  // centre × F = (0·(−1) − 2·10, 2·5 − 0, 0).
+  EXPECT_EQ(deep_ones.at("moment_x"), 21);
+  EXPECT_EQ(deep_ones.at("moment_y"), -8);
+  EXPECT_EQ(deep_ones.at("C_M_z"), 3 / 6.0);
+  EXPECT_EQ(deep_ones.at("C_H"), 8 / 4.0);
+}
+
+TEST(loads_of_bodies, are_in_the_history_and_the_summary_in_units_of_the_results) {
+  const simulation& run = run_of(flat);
+  run_records records(run);
+  records.add_step(run.last());
+  const numeric_table table = result_history(records.history(), run);
+  const auto last = [&](const std::string& name) {
+    const auto& c = table.columns;
+    return table.rows.back().at(static_cast<std::size_t>(std::find(c.begin(), c.end(), name) - c.begin()));
+  };
+  const auto json = to_json(run, records);
+  for (const body_load& body : body_loads(run.setup(), run.last())) {
+    const auto& listed = json["bodies"][body.name];
+    EXPECT_EQ(listed["force"][1], body.force[1]);
+    EXPECT_EQ(last("torque_" + body.name), body.torque[0]);
+    for (const auto& [name, value] : values_of(body, *run.config().output.reference)) {
+      EXPECT_EQ(last(name + "_" + body.name), value) << name;
+      EXPECT_EQ(listed[name], value) << name;
+    }
+  }
+  // Without a stream there are force, torque and heat.
+  std::string text = flat.substr(0, flat.find("[output.reference]"));
+  const simulation without = finished(text, {"time.end=0.05"});
+  const auto short_json = to_json(without, run_records(without));
+  EXPECT_EQ(short_json["bodies"]["disc"].size(), 3U);
+  EXPECT_EQ(result_history(run_records(without).history(), without).columns.back(), "torque_disc");
+  const auto in_space = finished(deep, {"time.end=0"});
+  EXPECT_THAT(result_history(run_records(in_space).history(), in_space).columns,
+              testing::IsSupersetOf({"torque_ball_x", "moment_ball_z", "C_M_ball_y", "C_L_box"}));
+}
+
+TEST(loads_of_bodies, are_those_of_a_turned_flow) {
+  // x → y, y → −x: the same numbers with turned vectors.
+  const std::string turned = R"toml(
+[model]
+name = "bgk"
+epsilon = 0.3
+degrees_of_freedom = 3
+[initial]
+rho = 1
+u = [0, 1.2]
+T = 1
+[space]
+cells = [12, 16]
+domain = [[-1.5, 1.5], [-2, 2]]
+boundary = "outflow"
+[[space.body]]
+name = "wing"
+shape = "ellipse"
+centre = [0.1, -0.2]
+semi_axes = [0.6, 1]
+angle = 20
+[velocity]
+max = 7
+points = 12
+[time]
+method = "md-imex-3-2"
+end = 0.1
+safety = 1
+[output.reference]
+density = 1
+velocity = [0, 1.2]
+temperature = 1
+length = 2
+)toml";
+  std::string lying = turned;
+  const auto change = [&lying](const std::string& from, const std::string& to) {
+    for (auto at = lying.find(from); at != std::string::npos; at = lying.find(from, at + to.size()))
+      lying.replace(at, from.size(), to);
+  };
+  change("[0, 1.2]", "[1.2, 0]");
+  change("[12, 16]", "[16, 12]");
+  change("[[-1.5, 1.5], [-2, 2]]", "[[-2, 2], [-1.5, 1.5]]");
+  change("[0.1, -0.2]", "[-0.2, -0.1]");
+  change("[0.6, 1]", "[1, 0.6]");
+  const simulation up = finished(turned), right = finished(lying);
+  const auto a = values_of(body_loads(up.setup(), up.last()).front(), *up.config().output.reference),
+             b = values_of(body_loads(right.setup(), right.last()).front(), *right.config().output.reference);
+  for (const auto& [name, value] : a) EXPECT_NEAR(value, b.at(name), 1e-11) << name;
+  EXPECT_GT(std::abs(a.at("C_L")), 0.05);
+  EXPECT_GT(std::abs(a.at("C_M")), 0.005);
+}
+
+TEST(one_way_fluxes, of_mass_are_equal_at_every_wall_and_their_difference_is_what_is_given) {
+  for (const std::string& text : {flat, deep}) {
+    const simulation& run = run_of(text);
+    for (const surface_table& table : run.surfaces()) {
+      const columns wall = columns_of(table);
+      const bool is_wall = table.name == "disc" || table.name == "ball" || table.name == "box" ||
+                           (text == flat && (table.name == "top" || table.name == "bottom"));
+      for (std::size_t k = 0; k < wall.at("area").size(); ++k) {
+        const double arriving = wall.at("mass_arriving")[k], leaving = wall.at("mass_leaving")[k];
+        EXPECT_GE(arriving, 0.0);
+        EXPECT_GE(leaving, 0.0);
+        EXPECT_GE(wall.at("energy_arriving")[k], 0.0);
+        EXPECT_GE(wall.at("energy_leaving")[k], 0.0);
+        if (!is_wall) continue;
+        EXPECT_GT(arriving, 0.05);
+        // Sums over some hundred velocities.
+        EXPECT_NEAR(arriving, leaving, 1e-13) << table.name;
+        if (table.name != "bottom") continue;
+        EXPECT_NEAR(wall.at("energy_arriving")[k], wall.at("energy_leaving")[k], 1e-13);
+      }
+    }
+  }
+}
+
+TEST(coefficients_of_pieces, are_the_columns_over_the_pressure_of_the_stream) {
+  const simulation& run = run_of(flat);
+  const columns wall = columns_of(table_of(run, "disc"));
+  const double q = 0.5 * 1.1 * 1.6, speed = std::sqrt(1.6);
+  for (std::size_t k = 0; k < wall.at("area").size(); ++k) {
+    EXPECT_NEAR(wall.at("C_p")[k], (wall.at("pressure")[k] - 1.1) / q, 1e-14);
+    EXPECT_NEAR(wall.at("C_f")[k], wall.at("shear_stress")[k] / q, 1e-14);
+    EXPECT_NEAR(wall.at("C_h")[k], wall.at("heat_flux")[k] / (q * speed), 1e-14);
+    EXPECT_NEAR(std::hypot(wall.at("n_x")[k], wall.at("n_y")[k]), 1.0, 1e-14);
+    // Into the gas: away from the centre of the disc, but for the chord of a cell.
+    EXPECT_GT(wall.at("n_x")[k] * (wall.at("x")[k] + 0.4) + wall.at("n_y")[k] * (wall.at("y")[k] - 0.1),
+              0.75);
+  }
+}
+
+TEST(a_body_on_edges_of_cells, has_the_loads_and_the_arc_length_of_a_solid_box) {
+  std::string text = flat;
+  const auto body = text.find("[[space.body]]");
+  text.replace(body, text.find("[[space.solid]]") - body,
+               "[[space.body]]\nname = \"disc\"\nshape = \"box\"\nfrom = [-1, -0.5]\nto = [0, 0.5]\n");
+  std::string same = text;
+  const auto again = same.find("[[space.body]]");
+  same.replace(again, same.find("[[space.solid]]") - again,
+               "[[space.solid]]\nname = \"disc\"\nfrom = [-1, -0.5]\nto = [0, 0.5]\n");
+  const simulation a = finished(text, {"time.end=0.05"}), b = finished(same, {"time.end=0.05"});
+  const auto load = [](const simulation& run) {
+    for (const body_load& one : body_loads(run.setup(), run.last()))
+      if (one.name == "disc") return one;
+    return body_load{};
+  };
+  EXPECT_NEAR(load(a).force[0], load(b).force[0], 1e-12);
+  EXPECT_NEAR(load(a).torque[0], load(b).torque[0], 1e-12);
+  const columns wall = columns_of(table_of(a, "disc"));
+  ASSERT_EQ(wall.at("s").size(), 16U);
+  EXPECT_NEAR(wall.at("s").front(), 0.125, 1e-14);
+  EXPECT_NEAR(wall.at("s").back(), 3.875, 1e-14);
+  EXPECT_NEAR(wall.at("x").front(), 0.0, 1e-14);
+}
+
+TEST(loads_of_bodies, of_a_continued_run_are_those_of_an_uninterrupted_one) {
+  const test_folder folder;
+  in_several_dimensions::run_into(folder / "whole", flat);
+  in_several_dimensions::run_into(folder / "first", flat, {"time.end=0.05"});
+  session_options how;
+  how.out = folder / "second";
+  how.restart = folder / "first/checkpoint.h5";
+  run_session(parse_case(flat, "case.toml"), how).run();
+  for (const std::string file :
+       {"history.csv", "surfaces/disc.csv", "surfaces/disc.vtp", "surfaces/box.vtp"}) {
+    const auto text = [&](const std::string& of) {
+      return read_text_file(folder / (of + "/" + file), 10'000'000, "file");
+    };
+    EXPECT_EQ(text("whole"), text("second")) << file;
+  }
+}
+
+}  // namespace body_loads_test

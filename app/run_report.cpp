@@ -93,7 +93,7 @@ std::string summary_text(const simulation& run, run_end end, const run_records& 
       for (const load_value& one : loads_in_stream(body, *reference))
         if (one.dims == dimensions::none)
           coefficients.push_back(fmt::format("{} {:.6g}", one.name, one.value));
-      line(fmt::format("coefficients of {}", body.name), fmt::format("{}", fmt::join(coefficients, ", ")));
+      line("coefficients", fmt::format("{} ({})", fmt::join(coefficients, ", "), body.name));
     }
   if (!iterates && !std::isnan(run.initial_record().entropy))
     line("max entropy increase", fmt::format("{:.2e}", s.max_entropy_increase));

@@ -91,6 +91,19 @@ std::vector<py::ssize_t> shape_of(const std::vector<mesh_axis>& axes, std::vecto
   return first;
 }
 
+/// Outlines of the bodies in the plane: [pieces][ends][2].
+py::dict walls_of(const simulation& run, double unit_of_length) {
+  py::dict walls;
+  for (const wall_outline& wall : wall_outlines(run.setup(), unit_of_length)) {
+    std::vector<double> ends;
+    for (const auto& piece : wall.corners)
+      for (const position& one : piece) ends.insert(ends.end(), one.begin(), one.begin() + 2);
+    walls[py::str(wall.name)] =
+        to_array(std::move(ends), {static_cast<py::ssize_t>(wall.corners.size()), 2, 2});
+  }
+  return walls;
+}
+
 /// Snapshots of every field: [snapshots][nx][ny].
 py::dict fields_of(const field_series& series) {
   py::dict fields;
@@ -198,15 +211,7 @@ py::dict result_of(const run_session& session, run_end end) {
   for (const surface_table& surface : walls)
     surfaces[py::str(surface.name)] = columns_of(units.convert(surface));
   out["surfaces"] = surfaces;
-  py::dict outlines;
-  for (const wall_outline& wall : wall_outlines(run.setup(), units.factor(dimensions::length))) {
-    std::vector<double> ends;
-    for (const auto& piece : wall.corners)
-      for (const position& end : piece) ends.insert(ends.end(), end.begin(), end.begin() + 2);
-    outlines[py::str(wall.name)] =
-        to_array(std::move(ends), {static_cast<py::ssize_t>(wall.corners.size()), 2, 2});
-  }
-  out["walls"] = outlines;
+  out["walls"] = walls_of(run, units.factor(dimensions::length));
   return out;
 }
 

@@ -146,7 +146,7 @@ def test_pictures_show_outlines_and_coefficients(computed):
     drawn = np.array(lines[-1].get_segments())
     np.testing.assert_array_equal(drawn, result.walls["disc"])
     labels = [axes.get_ylabel() for axes in made["surface-disc"].axes]
-    assert labels == ["$C_p$", "$C_f$", "$C_h$"]
+    assert labels == ["C_p (dimensionless)", "C_f (dimensionless)", "C_h (dimensionless)"]
     np.testing.assert_array_equal(np.concatenate([line.get_ydata() for line in made["surface-disc"].axes[0].lines]),
                                   result.surfaces["disc"]["C_p"])
 

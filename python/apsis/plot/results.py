@@ -123,8 +123,8 @@ def distribution_figure(result: RunResult) -> Any:
 
 
 def history_figure(result: RunResult) -> Any:
-    """Draws the checks of every step: smallest value, conservation defects, entropy, and a step size that varies. None after
-    no step. Of iterations to a steady state it draws residual, net rates and smallest value."""
+    """Draws the checks of every step: smallest value, conservation defects, entropy, a step size that varies, and the coefficients of
+    bodies. None after no step. Of iterations to a steady state it draws residual, net rates and smallest value."""
     history = result.history
     if len(history["t"]) < 2:
         return None
@@ -135,7 +135,8 @@ def history_figure(result: RunResult) -> Any:
     # The last two steps end at time.end, which is not a change of the step size.
     steps = history["dt"][1:-2]
     changing = len(steps) > 1 and float(np.ptp(steps)) > 1e-9 * float(steps.max())
-    figure, axes = panels(1 + bool(defects) + with_entropy + changing, height=3.4)
+    coefficients = [name for name in history if name.startswith("C_")]
+    figure, axes = panels(1 + bool(defects) + with_entropy + changing + bool(coefficients), height=3.4)
     following = iter(axes)
     draw_smallest(next(following), history)
     if defects:
@@ -148,6 +149,8 @@ def history_figure(result: RunResult) -> Any:
         panel = next(following)
         panel.semilogy(history["t"][1:-2], steps, color=BLUE)
         panel.set_ylabel(f"Δt ({result.unit('dt')})")
+    if coefficients:
+        draw_coefficients(next(following), history, coefficients)
     for panel in axes:
         panel.set_xlabel(f"t ({result.unit('t')})")
     figure.suptitle(title_of(result))
@@ -171,6 +174,14 @@ def iterations_figure(result: RunResult) -> Any:
         panel.set_xlabel("iteration")
     figure.suptitle(title_of(result))
     return figure
+
+
+def draw_coefficients(panel: Any, history: dict[str, Array], names: list[str]) -> None:
+    """Draws coefficients of bodies after the first step, before which the gas has given them nothing."""
+    for name in names:
+        panel.plot(history["t"][1:], history[name][1:], label=name.replace("_", " ").replace(" ", "_", 1))
+    panel.set_ylabel("coefficients (dimensionless)")
+    panel.legend(fontsize=8, ncols=1 + len(names) // 6)
 
 
 def draw_smallest(panel: Any, history: dict[str, Array]) -> None:

@@ -27,7 +27,7 @@ def quantities(columns: Columns) -> list[str]:
 
 def label(result: RunResult, name: str) -> str:
     if name in COEFFICIENTS:
-        return f"${name}$"
+        return f"{name} (dimensionless)"
     return f"{name.replace('_', ' ')} ({result.unit(name)})"
 
 
@@ -60,6 +60,29 @@ def profiles(result: RunResult, title: str, columns: Columns) -> Any:
         panel.set_ylabel(label(result, name))
     for unused in grid.flat[len(names):]:
         unused.remove()
+    figure.suptitle(title)
+    return figure
+
+
+def stream_of(result: RunResult) -> Array:
+    """Unit vector along the stream of the reference values, or along x without them."""
+    output = result.manifest.get("case", {}).get("output", {})
+    stream = np.array(output.get("reference", {}).get("velocity", [1.0, 0.0, 0.0]), dtype=float)
+    return stream / np.linalg.norm(stream)
+
+
+def angle_profiles(result: RunResult, title: str, columns: Columns) -> Any:
+    """A panel for each quantity of a body in space, over the angle between its normal and the direction from which the stream comes."""
+    names = quantities(columns)
+    figure, grid = plt.subplots(1, len(names), figsize=(4.2 * len(names) if len(names) > 1 else 6.0, 3.6), squeeze=False)
+    normals = np.stack([columns[f"n_{axis}"] for axis in AXES], axis=1)
+    angle = np.degrees(np.arccos(np.clip(-normals @ stream_of(result), -1.0, 1.0)))
+    for panel, name in zip(grid.flat, names):
+        panel.plot(angle, columns[name], color=BLUE, marker=".", markersize=4, linestyle="none")
+        panel.set_xlim(0, 180)
+        panel.set_xticks(range(0, 181, 45))
+        panel.set_xlabel("angle of the normal to the stream (degrees)")
+        panel.set_ylabel(label(result, name))
     figure.suptitle(title)
     return figure
 
@@ -105,5 +128,6 @@ def surface_figures(result: RunResult) -> Iterator[tuple[str, Any]]:
         drawn = quantities(columns)
         if dimensions(result) < 2 or not drawn or not len(columns["area"]) or np.isnan(columns[drawn[0]]).all():
             continue
-        draw = profiles if dimensions(result) == 2 else face_maps
+        in_space = angle_profiles if "wall" in columns["face"] else face_maps
+        draw = profiles if dimensions(result) == 2 else in_space
         yield f"surface-{name}", draw(result, f"what the gas gives to '{name}'", columns)

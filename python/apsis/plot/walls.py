@@ -43,5 +43,5 @@ def draw_walls(panel: Any, walls: dict[str, Array], x: Array, y: Array) -> None:
     """Covers the solid parts of cut cells, between the edges x and y of the cells, and draws the walls."""
     for pieces in walls.values():
         parts = list(solid_parts(pieces, x, y))
-        panel.add_collection(PolyCollection(parts, facecolors=SOLID, edgecolors=SOLID, linewidths=0.3, zorder=2.5), autolim=False)
-        panel.add_collection(LineCollection(list(pieces), colors=BLACK, linewidths=1.0, capstyle="round", zorder=2.6), autolim=False)
+        panel.add_collection(PolyCollection(parts, facecolors=SOLID, edgecolors=SOLID, linewidths=0.5, antialiaseds=False, zorder=2.5), autolim=False)
+        panel.add_collection(LineCollection(list(pieces), colors=BLACK, linewidths=1.3, capstyle="round", zorder=2.6), autolim=False)

@@ -24,8 +24,8 @@ struct loaded_body {
 /// Returns the solid boxes and bodies with loads, in the order of run_setup::open_faces().
 std::vector<loaded_body> loaded_bodies(const run_setup& setup);
 
-/// What the gas gives to a solid box or body per unit of time, in the mean over a step; in the plane per
-/// length. Dimensionless.
+/// Force, torque and heat that the gas gives to a solid box or body per unit of time, in the mean over a
+/// step; in the plane per length. Dimensionless.
 struct body_load {
   std::string name;            ///< of the box or body
   std::vector<double> force;   ///< [direction]

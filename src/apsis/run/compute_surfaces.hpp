@@ -17,8 +17,8 @@ struct surface_values {
 
 /// Returns the tables of the surfaces of output.surfaces, a row for each cell face, with the columns
 ///   s          in the plane: arc length; on a face of the domain from its lower end, around a box
-///              counter-clockwise from its lower left corner, around a body from its rightmost side, in the
-///              order of the angle around the middle of its wall
+///              counter-clockwise from its lower left corner, around a body from its rightmost side, with
+///              the body on the left
 ///   x, y, z    centre of the cell face
 ///   n_x, n_y, n_z or n   unit normal into the gas
 ///   area       of the cell face: 1 on a line, a length in the plane

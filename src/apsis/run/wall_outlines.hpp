@@ -1,6 +1,5 @@
 #pragma once
 
-#include <apsis/boundary/domain.hpp>
 #include <apsis/output/solution.hpp>
 #include <apsis/run/setup.hpp>
 

@@ -83,8 +83,9 @@ class one_way_columns {
 /// Sorts the rows of a surface by their first column.
 void sort_by_first_column(surface_table& table);
 
-/// Replaces the angles in the first column of the sorted rows of a body by lengths along its wall, to the
-/// middle of each piece. Rows begin after an opening of the wall, where it ends at a face of the domain.
+/// Puts the rows of a body in the plane, sorted by angles, in their order along its wall, with the body on
+/// the left, and replaces the angles by the length along the wall to the middle of each piece. An open wall
+/// begins at its opening, a closed one with its first row. Between two walls lies the distance of their ends.
 void measure_around(surface_table& table);
 
 }  // namespace apsis

@@ -1,7 +1,8 @@
 #include <apsis/run/internal/surface_columns.hpp>
 
 #include <algorithm>
-#include <numbers>
+#include <cmath>
+#include <map>
 #include <numeric>
 #include <utility>
 
@@ -19,33 +20,34 @@ void reorder(surface_table& table, const std::vector<std::size_t>& order) {
   table = std::move(sorted);
 }
 
-std::vector<std::size_t> places_of_rows(const surface_table& table) {
-  std::vector<std::size_t> order(table.faces.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  return order;
-}
-
-/// Begins with the first piece counter-clockwise of an opening of the wall.
-void begin_after_gap(surface_table& table) {
-  constexpr double least_gap = std::numbers::pi / 3.0;
-  const auto& rows = table.numbers.rows;
-  std::size_t first = 0;
-  double widest = rows.front().front() + 2.0 * std::numbers::pi - rows.back().front();
-  for (std::size_t k = 1; k < rows.size(); ++k)
-    if (const double gap = rows[k].front() - rows[k - 1].front(); gap > widest) {
-      widest = gap;
-      first = k;
+/// Returns the order of sorted rows along the wall: lines that begin at an opening first, then closed ones,
+/// both from their first row on.
+std::vector<std::size_t> order_along(const std::vector<std::vector<position>>& pieces) {
+  std::map<position, std::size_t> begins, ends;
+  for (std::size_t k = 0; k < pieces.size(); ++k) {
+    begins.emplace(pieces[k].front(), k);
+    ends.emplace(pieces[k].back(), k);
+  }
+  std::vector<std::size_t> order;
+  std::vector<bool> taken(pieces.size(), false);
+  const auto follow = [&](std::size_t first) {
+    for (auto next = first; !taken[next];) {
+      taken[next] = true;
+      order.push_back(next);
+      if (const auto found = begins.find(pieces[next].back()); found != begins.end()) next = found->second;
     }
-  if (widest < least_gap) return;
-  std::vector<std::size_t> order = places_of_rows(table);
-  std::rotate(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(first), order.end());
-  reorder(table, order);
+  };
+  for (const bool closed : {false, true})
+    for (std::size_t k = 0; k < pieces.size(); ++k)
+      if (closed || !ends.contains(pieces[k].front())) follow(k);
+  return order;
 }
 
 }  // namespace
 
 void sort_by_first_column(surface_table& table) {
-  std::vector<std::size_t> order = places_of_rows(table);
+  std::vector<std::size_t> order(table.faces.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
   const auto& rows = table.numbers.rows;
   std::sort(order.begin(), order.end(),
             [&](std::size_t a, std::size_t b) { return rows[a].front() < rows[b].front(); });
@@ -54,9 +56,14 @@ void sort_by_first_column(surface_table& table) {
 
 void measure_around(surface_table& table) {
   const std::size_t area = place_of_name(table.numbers.columns, "area").value();
-  begin_after_gap(table);
+  reorder(table, order_along(table.corners));
   double length = 0.0;
-  for (auto& row : table.numbers.rows) {
+  for (std::size_t k = 0; k < table.corners.size(); ++k) {
+    auto& row = table.numbers.rows[k];
+    if (k > 0) {
+      const position &from = table.corners[k - 1].back(), &to = table.corners[k].front();
+      length += std::hypot(to[0] - from[0], to[1] - from[1]);
+    }
     row.front() = length + 0.5 * row[area];
     length += row[area];
   }

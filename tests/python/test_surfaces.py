@@ -82,7 +82,7 @@ def test_faces_in_space_are_maps_with_the_covered_part_blank(computed):
         return
     made = figures(read_result(folder))
     bottom = result.surfaces["bottom"]
-    assert list(bottom)[:5] == ["face", "x", "y", "z", "area"]
+    assert list(bottom)[:8] == ["face", "x", "y", "z", "n_x", "n_y", "n_z", "area"]
     panel = made["surface-bottom"].axes[0]
     assert (panel.get_xlabel(), panel.get_ylabel()) == ("x (dimensionless)", "z (dimensionless)")
     shown = panel.collections[0].get_array().filled(np.nan).reshape(3, 4)

@@ -171,8 +171,9 @@ TEST(surfaces, have_a_row_for_every_cell_face_with_its_place) {
   run.advance();
   const surface_table box = surface_of(run, "box"), top = surface_of(run, "top");
   EXPECT_THAT(box.numbers.columns,
-              ElementsAre("s", "x", "y", "area", "mass", "momentum_x", "momentum_y", "energy", "pressure",
-                          "shear_stress", "heat_flux", "rho", "u_x", "u_y", "T"));
+              ElementsAre("s", "x", "y", "n_x", "n_y", "area", "mass", "momentum_x", "momentum_y", "energy",
+                          "pressure", "shear_stress", "heat_flux", "rho", "u_x", "u_y", "T", "mass_arriving",
+                          "mass_leaving", "energy_arriving", "energy_leaving"));
   // Cells of 0.2 x 0.4; the box is two cells wide and one high. Counter-clockwise from (0.4, -0.2).
   EXPECT_THAT(box.faces, ElementsAre("bottom", "bottom", "right", "top", "top", "left"));
   const auto near = [](std::vector<double> expected) {

@@ -178,8 +178,11 @@ def iterations_figure(result: RunResult) -> Any:
 
 def draw_coefficients(panel: Any, history: dict[str, Array], names: list[str]) -> None:
     """Draws coefficients of bodies after the first step, before which the gas has given them nothing."""
+    kinds = list(dict.fromkeys(name[:3] for name in names))
+    bodies = list(dict.fromkeys(name[4:] for name in names))
     for name in names:
-        panel.plot(history["t"][1:], history[name][1:], label=name.replace("_", " ").replace(" ", "_", 1))
+        style = ("-", "--", ":", "-.")[bodies.index(name[4:]) % 4]
+        panel.plot(history["t"][1:], history[name][1:], color=f"C{kinds.index(name[:3])}", linestyle=style, label=f"{name[:3]} {name[4:]}")
     panel.set_ylabel("coefficients (dimensionless)")
     panel.legend(fontsize=8, ncols=1 + len(names) // 6)
 

@@ -375,6 +375,34 @@ TEST(a_body_on_edges_of_cells, has_the_loads_and_the_arc_length_of_a_solid_box) 
   EXPECT_NEAR(wall.at("x").front(), 0.0, 1e-14);
 }
 
+TEST(tables_of_concave_bodies, follow_the_wall_from_piece_to_piece) {
+  // A slot that opens to the right, and a disc on the floor.
+  std::string text = flat;
+  const auto body = text.find("[[space.body]]");
+  text.replace(body, text.find("[velocity]") - body,
+               "[[space.body]]\nname = \"slotted\"\nshape = \"difference\"\nshapes = [{ shape = \"circle\", "
+               "centre = [0, "
+               "0.4], radius = 1.1 }, { shape = \"box\", from = [-0.2, -0.1], to = [2, 0.9] }]\n"
+               "[[space.body]]\nname = \"mound\"\nshape = \"circle\"\ncentre = [-1.2, -2]\nradius = 0.6\n");
+  const simulation run = finished(text, {"time.end=0"});
+  for (const std::string name : {"slotted", "mound"}) {
+    const surface_table table = table_of(run, name);
+    const columns wall = columns_of(table);
+    for (std::size_t k = 1; k < table.corners.size(); ++k) {
+      EXPECT_EQ(table.corners[k].front(), table.corners[k - 1].back());
+      EXPECT_NEAR(wall.at("s")[k] - wall.at("s")[k - 1], 0.5 * (wall.at("area")[k] + wall.at("area")[k - 1]),
+                  1e-14);
+    }
+    // Outside of the middle on the right, upwards.
+    EXPECT_GT(wall.at("n_x").front(), 0.3);
+    EXPECT_GT(wall.at("y")[1], wall.at("y")[0]);
+  }
+  const surface_table mound = table_of(run, "mound"), slotted = table_of(run, "slotted");
+  EXPECT_EQ(mound.corners.front().front()[1], -2.0);
+  EXPECT_EQ(mound.corners.back().back()[1], -2.0);
+  EXPECT_EQ(slotted.corners.front().front(), slotted.corners.back().back());
+}
+
 TEST(loads_of_bodies, of_a_continued_run_are_those_of_an_uninterrupted_one) {
   const test_folder folder;
   in_several_dimensions::run_into(folder / "whole", flat);

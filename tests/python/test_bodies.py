@@ -9,6 +9,7 @@ import pytest
 from apsis.plot import read_result
 from apsis.plot.results import figures
 from apsis.plot.style import plt
+from apsis.plot.surfaces import angle_profiles
 from apsis.plot.walls import behind, solid_parts
 
 REFERENCE = {"density": 1, "velocity": [1.2, 0], "temperature": 1, "length": 1.6}
@@ -149,6 +150,18 @@ def test_pictures_show_outlines_and_coefficients(computed):
     assert labels == ["C_p (dimensionless)", "C_f (dimensionless)", "C_h (dimensionless)"]
     np.testing.assert_array_equal(np.concatenate([line.get_ydata() for line in made["surface-disc"].axes[0].lines]),
                                   result.surfaces["disc"]["C_p"])
+
+
+def test_bodies_in_space_have_profiles_over_the_angle_to_the_stream(computed):
+    case, folder, result = computed
+    if case is PLANE:
+        return
+    wall = result.surfaces["ball"]
+    figure = angle_profiles(read_result(folder), "ball", wall)
+    assert [axes.get_ylabel() for axes in figure.axes] == ["C_p (dimensionless)", "C_f (dimensionless)", "C_h (dimensionless)"]
+    line = figure.axes[0].lines[0]
+    np.testing.assert_allclose(np.cos(np.radians(line.get_xdata())), -wall["n_x"], atol=1e-12)
+    np.testing.assert_array_equal(line.get_ydata(), wall["C_p"])
 
 
 def test_solid_parts_of_cut_cells_fill_what_the_wall_encloses(computed):

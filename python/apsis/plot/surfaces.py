@@ -67,8 +67,8 @@ def profiles(result: RunResult, title: str, columns: Columns) -> Any:
 def stream_of(result: RunResult) -> Array:
     """Unit vector along the stream of the reference values, or along x without them."""
     output = result.manifest.get("case", {}).get("output", {})
-    stream = np.array(output.get("reference", {}).get("velocity", [1.0, 0.0, 0.0]), dtype=float)
-    return stream / np.linalg.norm(stream)
+    stream: Array = np.array(output.get("reference", {}).get("velocity", [1.0, 0.0, 0.0]), dtype=float)
+    return stream / float(np.linalg.norm(stream))
 
 
 def angle_profiles(result: RunResult, title: str, columns: Columns) -> Any:

@@ -189,7 +189,8 @@ std::string schema_text() {
       "  from, to (list of numbers or formulas without variables)\n"
       "      Lower and upper corner of a solid box, on edges of cells. Boxes may touch and overlap.\n"
       "  kind (text, default \"diffuse\") and its variables (apsis list boundaries)\n"
-      "      Boundary condition at the faces of the box, with numbers or formulas in t and the position.\n"
+      "      Boundary condition at the faces of the box, with numbers, formulas in t and the position, or\n"
+      "      tables in time as in [boundary.left].\n"
       "  name (text, default \"solid-1\", …)\n"
       "      Names the columns of the history for what its walls give to the gas.\n"
       "\n[[space.body]], in two and three space dimensions\n"
@@ -198,7 +199,8 @@ std::string schema_text() {
       "are\n"
       "      shapes that it combines: shapes = [{ shape = \"circle\", ... }, ...].\n"
       "  kind (text, default \"diffuse\") and its variables (apsis list boundaries)\n"
-      "      Boundary condition at its wall, with numbers or formulas in t and the position.\n"
+      "      Boundary condition at its wall, with numbers, formulas in t and the position, or tables in "
+      "time.\n"
       "  name (text, default \"body-1\", …)\n"
       "      Names the columns of the history for what its wall gives to the gas.\n"
       "\n[[output.probe]], of models with space\n"
@@ -228,10 +230,25 @@ std::string schema_text() {
 
 namespace {
 
+/// A formula in quotes. A table in time has several lines, broken after commas, which TOML joins again.
+std::string quoted_formula(const std::string& formula) {
+  constexpr std::size_t longest = 200, of_a_line = 90;
+  if (formula.size() <= longest || formula.find_first_of("\"\\") != std::string::npos) return quoted(formula);
+  std::string out = "\"\"\"";
+  for (std::size_t begin = 0; begin < formula.size();) {
+    const std::size_t comma = formula.find(", ", std::min(begin + of_a_line, formula.size()));
+    const std::size_t end = comma == std::string::npos ? formula.size() : comma + 2;
+    out.append(formula, begin, end - begin);
+    if (end < formula.size()) out += "\\\n  ";
+    begin = end;
+  }
+  return out + "\"\"\"";
+}
+
 void add_state(std::string& out, const state_formulas& state) {
   for (const auto& [name, formulas] : state) {
     std::vector<std::string> texts;
-    for (const auto& formula : formulas) texts.push_back(quoted(formula));
+    for (const auto& formula : formulas) texts.push_back(quoted_formula(formula));
     const std::string list = fmt::format("{}", fmt::join(texts, ", "));
     out +=
         formulas.size() == 1 ? fmt::format("{} = {}\n", name, list) : fmt::format("{} = [{}]\n", name, list);

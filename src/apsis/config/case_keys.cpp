@@ -278,10 +278,12 @@ std::vector<case_key> face_keys() {
         key("boundary." + face_names[k] + ".kind", [k](auto& c) -> auto& { return c.faces[k].kind; },
             {.scope = key_scope::space,
              .choices = names_in(boundary_entries),
-             .doc = fmt::format("Boundary condition at the {} end in {}, where it differs from "
-                                "space.boundary. Further keys of the table [boundary.{}] are the variables "
-                                "of the kind (apsis list boundaries), numbers or formulas in t and x.",
-                                k % 2 == 0 ? "lower" : "upper", "xyz"[k / 2], face_names[k])}));
+             .doc = fmt::format(
+                 "Boundary condition at the {} end in {}, where it differs from "
+                 "space.boundary. Further keys of the table [boundary.{}] are the variables "
+                 "of the kind (apsis list boundaries): numbers, formulas in t and x, or tables in time, "
+                 "T = {{ file = \"wall.csv\" }} with columns t and T.",
+                 k % 2 == 0 ? "lower" : "upper", "xyz"[k / 2], face_names[k])}));
   return all;
 }
 

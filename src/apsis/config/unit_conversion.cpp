@@ -5,6 +5,7 @@
 #include <apsis/config/case_value.hpp>
 #include <apsis/config/gas_reader.hpp>
 #include <apsis/config/quantity.hpp>
+#include <apsis/config/table_reader.hpp>
 
 #include <map>
 
@@ -45,7 +46,6 @@ class unit_remover {
     if (const auto dims = dimension_of(path)) convert(path, raw, &*dims);
   }
 
- private:
   /// Returns the dimension of a numeric key; nothing of a key that takes text.
   std::optional<dimension> dimension_of(const std::string& path) const {
     for (const case_key& key : case_schema())
@@ -75,6 +75,7 @@ class unit_remover {
     return variable == variables_.end() ? std::nullopt : std::optional(variable->second);
   }
 
+ private:
   /// Returns the dimension of the numbers of a key of a shape; nothing of other keys.
   static std::optional<dimension> dimension_of_shape_key(const std::string& name) {
     for (const shape_entry* shape : shape_entries())
@@ -115,6 +116,7 @@ class unit_remover {
 
 void remove_units(case_text& text, const model_entry& model, const std::optional<gas_scales>& scales) {
   const unit_remover remover(model, scales);
+  read_tables_in_time(text, [&](const std::string& path) { return remover.dimension_of(path); }, scales);
   for (auto& [path, raw] : text.values) remover.convert(path, raw);
 }
 

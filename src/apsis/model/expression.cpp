@@ -2,6 +2,7 @@
 
 #include <apsis/core/construction_count.hpp>
 #include <apsis/core/suggest.hpp>
+#include <apsis/model/formula_table.hpp>
 
 #include <algorithm>
 #include <array>
@@ -26,9 +27,9 @@ namespace apsis {
 namespace {
 
 const std::vector<std::string>& names_of_the_language() {
-  static const std::vector<std::string> names = {"pi",   "e",     "sin",  "cos",  "tan",  "asin",
-                                                 "acos", "atan",  "sinh", "cosh", "tanh", "exp",
-                                                 "log",  "log10", "sqrt", "abs",  "min",  "max"};
+  static const std::vector<std::string> names = {"pi",   "e",    "sin",  "cos",  "tan",  "asin", "acos",
+                                                 "atan", "sinh", "cosh", "tanh", "exp",  "log",  "log10",
+                                                 "sqrt", "abs",  "min",  "max",  "table"};
   return names;
 }
 
@@ -104,15 +105,17 @@ std::string excerpt(const std::string& text, std::size_t at) {
                                                     excerpt(text, at), why, at + 1, advice));
 }
 
-void check_characters(const std::string& text, const source_place& place, const formula_kind& kind) {
+/// `size`: without the points of its tables, which do not count.
+void check_characters(const std::string& text, const source_place& place, const formula_kind& kind,
+                      std::size_t size) {
   if (text.find_first_not_of(" \t") == std::string::npos)
     throw input_error(
         place,
         fmt::format("expression is empty (a number or a formula in {} is needed); write for example 1e-3",
                     fmt::join(kind.variables, ", ")));
-  if (text.size() > expression::longest)
+  if (size > expression::longest)
     throw input_error(place, fmt::format("expression has {} characters (at most {} are read); shorten it",
-                                         text.size(), expression::longest));
+                                         size, expression::longest));
   for (std::size_t i = 0; i < text.size(); ++i) {
     const auto c = static_cast<unsigned char>(text[i]);
     if ((c < 32 && c != '\t') || c > 126)
@@ -160,11 +163,14 @@ std::string explain(const mu::ParserError& e) {
 /// time.
 class variable_parser {
  public:
-  variable_parser(const std::string& text, const formula_kind& kind) : values_(kind.variables.size()) {
+  /// `text` must outlive the object.
+  variable_parser(const text_of_tables& text, const formula_kind& kind) : values_(kind.variables.size()) {
     define_language(parser_);
     for (std::size_t k = 0; k < values_.size(); ++k) parser_.DefineVar(kind.variables[k], &values_[k]);
     for (const auto& [name, value] : kind.constants) parser_.DefineConst(name, value);
-    parser_.SetExpr(text);
+    for (std::size_t k = 0; k < text.tables.size(); ++k)
+      parser_.DefineFunUserData(name_of_table(k), value_of_table, table_of(text, k));
+    parser_.SetExpr(text.text);
   }
 
   double evaluate(std::span<const double> variables) {
@@ -174,6 +180,14 @@ class variable_parser {
   const mu::Parser& parser() const { return parser_; }
 
  private:
+  /// muParser passes pointers that are not const.
+  static void* table_of(const text_of_tables& text, std::size_t k) {
+    return const_cast<formula_table*>(&text.tables[k]);
+  }
+  static double value_of_table(void* table, double a) {
+    return static_cast<const formula_table*>(table)->at(a);
+  }
+
   std::vector<double> values_;
   mu::Parser parser_;
 };
@@ -183,10 +197,11 @@ class variable_parser {
 /// times as slow, bench/micro/expression.cpp).
 class parser_pool {
  public:
-  parser_pool(const std::string& text, const formula_kind& kind) : text_(text), kind_(kind) {
-    slots_.front().parser = std::make_unique<variable_parser>(text, kind);
+  parser_pool(text_of_tables text, const formula_kind& kind) : text_(std::move(text)), kind_(kind) {
+    slots_.front().parser = std::make_unique<variable_parser>(text_, kind);
   }
 
+  const text_of_tables& text() const { return text_; }
   /// The first parser, for the constructor of an expression.
   variable_parser& first() { return *slots_.front().parser; }
 
@@ -219,7 +234,7 @@ class parser_pool {
     }
   }
 
-  std::string text_;
+  text_of_tables text_;
   formula_kind kind_;
   std::array<slot, 64> slots_;
 };
@@ -278,7 +293,7 @@ std::string why_not_variables(const std::vector<std::string>& names, const formu
 /// A compiled text, which all expressions of this text share.
 struct expression::compiled : construction_count<expression> {
   compiled(const std::string& words, const source_place& place, const formula_kind& kind)
-      : text(words), parsers(text, kind) {
+      : text(words), parsers(without_points(words, place), kind) {
     try {
       parsers.first().evaluate(std::vector<double>(kind.variables.size()));
     } catch (const mu::ParserError& e) {
@@ -286,6 +301,7 @@ struct expression::compiled : construction_count<expression> {
       // muParser reports the end of some tokens and the start of others, so that an unknown name is searched
       // for.
       std::size_t at = e.GetPos() >= 0 ? static_cast<std::size_t>(e.GetPos()) : 0;
+      at = parsers.text().position_in_formula(at);
       if (unknown && text.rfind(e.GetToken(), at) != std::string::npos) at = text.rfind(e.GetToken(), at);
       at = std::min(at, text.size() - 1);
       fail(text, place, at, explain(e),
@@ -313,6 +329,13 @@ struct expression::compiled : construction_count<expression> {
     return made;
   }
 
+  /// Throws input_error where a table of the formula cannot be read.
+  static text_of_tables without_points(const std::string& text, const source_place& place) {
+    return take_tables(text, [&](std::size_t at, const std::string& why, const std::string& advice) {
+      fail(text, place, at, why, advice);
+    });
+  }
+
   std::string text;
   std::set<std::string> used;   ///< names of its variables
   mutable parser_pool parsers;  ///< thread-safe
@@ -320,7 +343,7 @@ struct expression::compiled : construction_count<expression> {
 
 expression::expression(const std::string& text, const source_place& place, const formula_kind& kind)
     : place_(place), variables_(kind.variables), nonnegative_(kind.nonnegative) {
-  check_characters(text, place, kind);
+  check_characters(text, place, kind, compiled::without_points(text, place).text.size());
   compiled_ = compiled::of(text, place, kind);
 }
 

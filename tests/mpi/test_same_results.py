@@ -4,7 +4,7 @@ import unittest
 
 from processes import Folder, main, one_of, slow
 
-# A gas of three dimensions between moving, heated walls of all kinds, around two solid boxes, with a force; near walls it is
+# A gas of three dimensions between moving walls with and without a given temperature and ends of all kinds, around two solid boxes, with a force; near walls it is
 # so thin in places that the limiter works there.
 STEP = """
 title = "Gas around boxes"
@@ -28,18 +28,22 @@ T = "1.1 + 0.1*x"
 [boundary.left]
 kind = "vacuum"
 [boundary.right]
-kind = "outflow"
+kind = "mass-flow"
+flux = "table(t, 0, -0.05, 0.01, 0.1, 0.02, -0.02)*y"
 [boundary.bottom]
 kind = "symmetry"
 [[space.solid]]
 name = "box"
 from = [0.3, 0.2]
 to = [0.5, 0.6]
-T = 0.8
+kind = "radiating"
+sigma = 0.3
+surroundings = 0.8
 [[space.solid]]
 name = "corner"
 from = [1.2, 0.0]
 to = [1.5, 0.4]
+kind = "adiabatic"
 accommodation = 0.7
 [force]
 acceleration = ["0.1*cos(y)", 0]

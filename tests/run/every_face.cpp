@@ -41,6 +41,17 @@ const placed_wall far_away = {"far-field",
                               {"0.1", "0.2*sin({X})", "-0.1"}};
 const placed_wall reservoir = {
     "pressure", {{"p", "1.1 + 0.3*sin(2*{X} - 50*t)"}, {"T", "1 + 0.2*{X}"}}, "", {}};
+const placed_wall inlet = {
+    "mass-flow", {{"flux", "0.1 + 0.2*{X} + 0.1*cos(40*t)"}, {"T", "1 + 0.2*{X}"}}, "", {}};
+const placed_wall insulated = {"adiabatic",
+                               {{"accommodation", "0.8 - 0.2*{Y}"}},
+                               "velocity",
+                               {"0", "0.3*cos({Y} + 20*t)", "0.2*sin({Y})"}};
+const placed_wall black = {
+    "radiating",
+    {{"emissivity", "0.5 + 0.3*{Y}"}, {"sigma", "0.4"}, {"surroundings", "0.8 + 0.1*{Y}"}},
+    "",
+    {}};
 const placed_wall mirror = {"symmetry", {}, "", {}}, open = {"outflow", {}, "", {}};
 const placed_wall lid = {"diffuse", {{"T", "1 + 0.3*{X}"}}, "velocity", {"0.4*cos(2*{X})", "0", "0"}};
 const placed_wall start = {
@@ -120,6 +131,9 @@ std::string at_rest(int dimensions, const std::string& kind, const std::string& 
 std::string matching_values(int dimensions, const std::string& kind) {
   const std::string zero = " + 0*t*x*y\"\n";
   if (kind == "diffuse") return "T = \"0.9" + zero + "accommodation = \"0.7" + zero;
+  if (kind == "mass-flow") return "flux = \"0" + zero + "T = \"0.9" + zero;
+  if (kind == "adiabatic") return "accommodation = \"0.7" + zero;
+  if (kind == "radiating") return "sigma = \"0.3" + zero + "surroundings = \"0.9" + zero;
   if (kind == "pressure") return "p = \"1.3*0.9" + zero + "T = \"0.9" + zero;
   if (kind == "inflow" || kind == "far-field") return "rho = \"1.3" + zero + "u = 0\nT = \"0.9" + zero;
   if (kind != "given") return "";
@@ -168,6 +182,7 @@ TEST(every_face, keeps_a_gas_at_rest_that_matches_it) {
 TEST(every_face, of_the_plane_has_every_kind_with_formulas_along_it) {
   expect_images(in_the_plane({moving_plate, entering, far_away, reservoir}), of_the_plane, 14, 2);
   expect_images(in_the_plane({given(2), open, mirror, lid}), of_the_plane, 14, 2);
+  expect_images(in_the_plane({insulated, black, inlet, open}), of_the_plane, 14, 2);
 }
 
 TEST(every_face, of_space_has_every_kind_with_formulas_along_it) {

@@ -63,8 +63,8 @@ class generator {
   }
 
   std::string boundary(const std::string& side, int d, int degrees) {
-    const std::string kind =
-        pick({"diffuse", "diffuse", "inflow", "symmetry", "outflow", "far-field", "pressure", "given"});
+    const std::string kind = pick({"diffuse", "diffuse", "inflow", "symmetry", "outflow", "far-field",
+                                   "pressure", "given", "mass-flow", "adiabatic", "radiating"});
     std::string text = fmt::format("[boundary.{}]\nkind = \"{}\"\n", side, kind);
     if (kind == "diffuse") {
       text += fmt::format("T = \"{:.3f} + 0.3*sin({:.3f}*t)\"\naccommodation = {:.3f}\n", number(0.8, 2.0),
@@ -72,6 +72,13 @@ class generator {
       if (d == 2) text += fmt::format("velocity = [0, \"{:.3f}*cos(30*t)\"]\n", number(-1.0, 1.0));
     } else if (kind == "pressure") {
       text += fmt::format("p = {:.3g}\nT = {:.3f}\n", number(0.1, 2.0), number(0.5, 2.0));
+    } else if (kind == "mass-flow") {
+      text += fmt::format("flux = \"{:.3f}*cos(20*t)\"\nT = {:.3f}\n", number(-1.0, 1.0), number(0.5, 2.0));
+    } else if (kind == "adiabatic" || kind == "radiating") {
+      text += fmt::format("accommodation = {:.3f}\n", number(0.0, 1.0));
+      if (kind == "radiating")
+        text += fmt::format("sigma = {:.3g}\nsurroundings = {:.3f}\n", std::pow(10.0, number(-3.0, 3.0)),
+                            number(0.8, 2.0));
     } else if (kind == "given") {
       const std::string g = fmt::format("{:.3g}*exp(-abs(v_x)^3)", number(0.0, 2.0));
       text += d < degrees ? fmt::format("g = \"{0}\"\nh = \"0.5*{0}\"\n", g) : fmt::format("f = \"{}\"\n", g);

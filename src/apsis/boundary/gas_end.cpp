@@ -16,6 +16,12 @@ namespace {
 
 constexpr std::size_t most = 5;  ///< numbers of ω in three dimensions
 
+[[noreturn]] void fail(const std::string& problem, double t) {
+  throw numerical_error(problem, {-1, t, -1, std::numeric_limits<double>::quiet_NaN()});
+}
+
+}  // namespace
+
 const gas& gas_of(const model& equation, const std::string& boundary_name) {
   if (const auto* found = equation.as_gas()) return found->molecules();
   throw input_error(fmt::format(
@@ -23,12 +29,6 @@ const gas& gas_of(const model& equation, const std::string& boundary_name) {
       "choose another kind, see: apsis list boundaries",
       boundary_name));
 }
-
-[[noreturn]] void fail(const std::string& problem, double t) {
-  throw numerical_error(problem, {-1, t, -1, std::numeric_limits<double>::quiet_NaN()});
-}
-
-}  // namespace
 
 gas_end::gas_end(const model& equation, std::string boundary_name)
     : molecules_(gas_of(equation, boundary_name)),
@@ -59,7 +59,7 @@ fluid_state gas_end::state_at_face(std::span<const double* const> ghosts, double
   return molecules_.state(omega.data());
 }
 
-void gas_end::incoming_given_outgoing(const face& where, double t, const position& at, const double*,
+void gas_end::incoming_given_outgoing(const face& where, double t, const position& at, const double* outgoing,
                                       std::span<const double* const> ghosts, double* values) const {
   const fluid_state inside = state_at_face(ghosts, values);
   const fluid_state state = outside(inside, where, t, at);
@@ -73,7 +73,8 @@ void gas_end::incoming_given_outgoing(const face& where, double t, const positio
   }
   omega[static_cast<std::size_t>(d) + 1] =
       0.5 * state.rho * (square + molecules_.degrees_of_freedom() * state.T);
-  if (state.admissible() && molecules_.equilibrium(omega.data(), values)) return;
+  if (state.admissible() && molecules_.equilibrium(omega.data(), values))
+    return adjust(where, t, at, outgoing, values);
   if (!state.admissible() || !(outward(state, where) > sound(state.T)))
     fail(fmt::format(
              "no Maxwellian has the state outside of a boundary '{}' (density {:.6g}, normal velocity "

@@ -10,6 +10,10 @@
 
 namespace apsis {
 
+/// Returns the gas of a model. Throws input_error with the name of the boundary that needs it if the model is
+/// no gas.
+const gas& gas_of(const model& equation, const std::string& boundary_name);
+
 /// An open end of a gas whose incoming components are those of the Maxwellian of a state that follows from
 /// the gas inside, such as a far field or a given pressure. Dimensionless.
 class gas_end : public incoming_boundary {
@@ -27,6 +31,11 @@ class gas_end : public incoming_boundary {
   virtual fluid_state outside(const fluid_state& inside, const face& where, double t,
                               const position& at) const = 0;
 
+  /// Changes what enters, given what leaves; nothing by default.
+  virtual void adjust(const face& /*where*/, double /*t*/, const position& /*at*/, const double* /*outgoing*/,
+                      double* /*incoming*/) const {}
+
+  const gas& molecules() const { return molecules_; }
   double gamma() const { return gamma_; }  ///< ratio of specific heats (D + 2)/D
   double sound(double T) const;            ///< speed of sound √(γT)
 

@@ -3,6 +3,7 @@
 #include <apsis/exec/communicator.hpp>
 #include <apsis/integrate/integrate.hpp>
 #include <apsis/mesh/field.hpp>
+#include <apsis/run/flow_watch.hpp>
 #include <apsis/run/monitor.hpp>
 #include <apsis/run/rounding.hpp>
 #include <apsis/run/run_promises.hpp>
@@ -35,6 +36,7 @@ struct running_case {
   const case_config& config;                      ///< the case as given
   std::unique_ptr<semidiscrete_problem> problem;  ///< T and Q
   monitor watch;                                  ///< of every step
+  flow_watch flows;                               ///< of its stages
   rounding_bound rounding;                        ///< of the sums of a step
   budgeted_state now;                             ///< the state, and the budget of the present step
   field& state = now.unknowns;                    ///< its unknowns

@@ -125,6 +125,7 @@ const step_record& simulation::advance() {
   run.totals.cpu_s += thread_seconds() - cpu;
   impl_->progress->check();
   run.watch.watch_velocities(run.state, run.last, run.totals);
+  run.flows.update(run.last);
   return run.last;
 }
 

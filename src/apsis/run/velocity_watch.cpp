@@ -39,7 +39,7 @@ bool has_walls(const case_config& config) {
   if (!config.solids.empty() || !config.bodies.empty()) return true;
   for (std::size_t k = 0; k < 2 * config.space.cells.size(); ++k) {
     const std::string kind = config.faces[k].kind.value_or(config.space.boundary);
-    if (kind == "diffuse" || kind == "symmetry") return true;
+    if (kind == "diffuse" || kind == "symmetry" || kind == "adiabatic" || kind == "radiating") return true;
   }
   return false;
 }

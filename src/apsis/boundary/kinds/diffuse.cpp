@@ -2,6 +2,7 @@
 #include <apsis/boundary/mirrored_components.hpp>
 #include <apsis/boundary/oblique_reflection.hpp>
 #include <apsis/boundary/prescribed_state.hpp>
+#include <apsis/boundary/wall_values.hpp>
 #include <apsis/core/errors.hpp>
 
 #include <algorithm>
@@ -16,17 +17,6 @@
 
 namespace apsis {
 namespace {
-
-/// Returns α at a point of a wall.
-double accommodation_at(const face_quantity& accommodation, double t, const position& at) {
-  const double alpha = accommodation.at(t, at);
-  if (!(alpha >= 0.0 && alpha <= 1.0))
-    throw input_error(
-        fmt::format("the accommodation of a diffuse wall is {:g} at t = {:.10g} (a number "
-                    "from 0 to 1 is needed); change it",
-                    alpha, t));
-  return alpha;
-}
 
 /// A wall with any normal (Maxwell 1879): f_in = α ρ_w M[1, u_w, T_w] + (1 − α) f_reflected with the part of
 /// u_w along the wall, and with the specular reflection of oblique_reflection. No mass crosses it. A wall
@@ -159,12 +149,7 @@ class diffuse_wall final : public incoming_boundary {
 
   void incoming(const face& where, double t, const position& at, const double* outgoing,
                 double* values) const override {
-    const double normal = velocity_[static_cast<std::size_t>(where.direction)].at(t, at);
-    if (normal != 0.0)
-      throw input_error(
-          fmt::format("the velocity of a diffuse wall is {:g} along its normal at t = {:.10g} (the "
-                      "domain would have to move); give 0 there",
-                      normal, t));
+    static_cast<void>(velocity_along(velocity_, where, t, at));
     const double alpha = accommodation_at(accommodation_, t, at);
     const double* emitted = emitted_.at(t, at, {values, mirrored_.size()});
     double arriving = 0.0, leaving = 0.0;

@@ -1,0 +1,185 @@
+#include <apsis/boundary/heat_balance_wall.hpp>
+
+#include <apsis/boundary/gas_end.hpp>
+#include <apsis/boundary/mirrored_components.hpp>
+#include <apsis/boundary/wall_values.hpp>
+#include <apsis/core/errors.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace apsis {
+namespace {
+
+prescribed_state emission(const model& equation, const std::string& kind,
+                          const std::vector<face_quantity>& velocity) {
+  // A temperature that is a function: rows are made by write_other() alone.
+  std::vector<face_quantity> state = {1.0};
+  state.insert(state.end(), velocity.begin(), velocity.end());
+  state.emplace_back([](double, const position&) { return 1.0; });
+  return {maxwellian_form(equation, kind), std::move(state), equation.components()};
+}
+
+}  // namespace
+
+/// The balance at one face and time, per mass that arrives: α e(T) + c T⁴ = α E/m + c T_0⁴ with c = factor/m.
+class heat_balance_wall::balance {
+ public:
+  balance(const heat_balance_wall& wall, const std::array<double, 3>& u, double t, std::span<double> row)
+      : wall_(wall), u_(u), t_(t), row_(row) {}
+
+  double arriving_mass = 0.0, arriving_heat = 0.0;
+  double alpha = 1.0;
+  radiation radiated;
+
+  /// row ← the Maxwellian of density 1 of the temperature that balances; returns the factor of its density.
+  double solve() {
+    const double given = arriving_heat / arriving_mass, c = radiated.factor / arriving_mass,
+                 sum = alpha * given + c * fourth(radiated.surroundings);
+    if (!(arriving_mass > 0.0 && given > 0.0 && std::isfinite(sum))) fail(given, "what arrives has no heat");
+    double T = start(sum, c), low = 0.0, high = std::numeric_limits<double>::infinity();
+    double best = T, least = std::numeric_limits<double>::infinity();
+    // The difference of sums of this size is rounding.
+    const double small = 2.0 * std::numeric_limits<double>::epsilon() * (sum + c * fourth(T));
+    constexpr int most = 60;
+    for (int n = 0; n < most; ++n) {
+      const double e = emitted_heat(T), excess = alpha * e + c * fourth(T) - sum;
+      if (std::abs(excess) < least) {
+        least = std::abs(excess);
+        best = T;
+      }
+      if (least <= small) break;
+      (excess > 0.0 ? high : low) = T;
+      // e is proportional to T but for the sums.
+      double next = T - excess / (alpha * e / T + 4.0 * c * T * T * T);
+      if (!(next > low && next < high)) next = std::isfinite(high) ? 0.5 * (low + high) : 2.0 * T;
+      if (next == T || next == low || next == high) break;
+      T = next;
+    }
+    constexpr double accurate = 1e-10;  // of sums, far above their rounding
+    if (!(least <= accurate * (sum + c * fourth(best))))
+      fail(best, "no temperature on the velocities has this heat");
+    if (best != T) emitted_heat(best);
+    return arriving_mass / emitted_mass_;
+  }
+
+ private:
+  static double fourth(double T) { return T * T * (T * T); }
+
+  /// The root for continuous velocities, by Newton's method from above on a convex function.
+  double start(double sum, double c) const {
+    const double slope = alpha * wall_.heat_of_mass_;
+    double T = slope > 0.0 ? sum / slope : std::numeric_limits<double>::infinity();
+    if (c > 0.0) T = std::min(T, std::sqrt(std::sqrt(sum / c)));
+    constexpr int enough = 40;
+    for (int n = 0; n < enough && c > 0.0; ++n) {
+      const double next = T - (slope * T + c * fourth(T) - sum) / (slope + 4.0 * c * T * T * T);
+      if (!(next < T)) break;
+      T = next;
+    }
+    return T;
+  }
+
+  /// row ← the Maxwellian of a temperature; returns its e(T).
+  double emitted_heat(double T) {
+    std::array<double, 5> numbers = {1.0};
+    const std::size_t d = wall_.velocity_.size();
+    std::copy_n(u_.begin(), d, numbers.begin() + 1);
+    numbers[d + 1] = T;
+    try {
+      wall_.emitted_.write_other({numbers.data(), d + 2}, t_, row_);
+    } catch (const input_error& problem) {
+      fail(T, problem.what());
+    }
+    double heat = 0.0;
+    emitted_mass_ = 0.0;
+    for (std::size_t j = 0; j < wall_.mass_flux_.size(); ++j)
+      if (wall_.mass_flux_[j] > 0.0) {
+        emitted_mass_ += wall_.mass_flux_[j] * row_[j];
+        heat += wall_.mass_flux_[j] * wall_.heat(row_.data(), j, u_);
+      }
+    if (!(emitted_mass_ > 0.0)) fail(T, "its Maxwellian is 0 at all velocities that leave it");
+    return heat / emitted_mass_;
+  }
+
+  [[noreturn]] void fail(double T, const std::string& why) const {
+    throw numerical_error(
+        fmt::format("a wall '{}' has no temperature that balances its heat (near T = {:.6g}: {}); use more "
+                    "velocity.points or a larger velocity.max, or space.limiter = \"positivity\"",
+                    wall_.kind_, T, why),
+        {-1, t_, -1, T});
+  }
+
+  const heat_balance_wall& wall_;
+  const std::array<double, 3>& u_;
+  double t_;
+  std::span<double> row_;
+  double emitted_mass_ = 0.0;
+};
+
+heat_balance_wall::heat_balance_wall(const model& equation, const std::string& kind,
+                                     std::vector<face_quantity> velocity, face_quantity accommodation)
+    : kind_(kind),
+      emitted_(emission(equation, kind, velocity)),
+      velocity_(std::move(velocity)),
+      accommodation_(std::move(accommodation)),
+      heat_of_mass_(0.5 * (gas_of(equation, kind).degrees_of_freedom() + 1)) {}
+
+std::vector<data_variable> heat_balance_wall::variables(const model& equation, const std::string& kind) {
+  const int d = gas_of(equation, kind).dimensions();
+  return {
+      {"velocity", "velocity of the wall, 0 along its normal (dimensionless)", d, 0.0, dimensions::velocity},
+      {"accommodation", "fraction of molecules that is re-emitted, 0 to 1; the others are reflected", 1,
+       1.0}};
+}
+
+std::shared_ptr<const boundary> heat_balance_wall::prepared(const face& where,
+                                                            const velocity_set& velocities) const {
+  auto own = copy();
+  own->velocities_ = velocities;
+  own->mirrored_ = mirrored_components(velocities, where.direction);
+  const std::vector<double> inward = inward_speeds(where, velocities);
+  own->mass_flux_.assign(velocities.weights().begin(), velocities.weights().end());
+  for (std::size_t j = 0; j < own->mass_flux_.size(); ++j) own->mass_flux_[j] *= inward[j];
+  return own;
+}
+
+std::array<double, 3> heat_balance_wall::wall_velocity(double t, const position& at) const {
+  std::array<double, 3> u{};
+  for (std::size_t k = 0; k < velocity_.size(); ++k) u[k] = velocity_[k].at(t, at);
+  return u;
+}
+
+/// ½(|v − u|² g + h) at velocity j.
+double heat_balance_wall::heat(const double* row, std::size_t j, const std::array<double, 3>& u) const {
+  double square = 0.0;
+  for (int k = 0; k < velocities_.dimensions(); ++k) {
+    const double c = velocities_.speeds(k)[j] - u[static_cast<std::size_t>(k)];
+    square += c * c;
+  }
+  return 0.5 * (square * row[j] + (velocities_.sets() > 1 ? row[mass_flux_.size() + j] : 0.0));
+}
+
+void heat_balance_wall::incoming(const face& where, double t, const position& at, const double* outgoing,
+                                 double* values) const {
+  const std::array<double, 3> u = velocity_along(velocity_, where, t, at);
+  balance of(*this, u, t, {values, mirrored_.size()});
+  of.alpha = accommodation_at(accommodation_, t, at);
+  of.radiated = radiated(t, at);
+  for (std::size_t j = 0; j < mass_flux_.size(); ++j)
+    if (mass_flux_[j] < 0.0) {
+      of.arriving_mass -= mass_flux_[j] * outgoing[j];
+      of.arriving_heat -= mass_flux_[j] * heat(outgoing, j, u);
+    }
+  // Where nothing arrives nothing leaves, whatever the temperature.
+  const bool emits = of.alpha > 0.0 && of.arriving_mass != 0.0;
+  const double rho = emits ? of.alpha * of.solve() : 0.0;
+  for (std::size_t k = 0; k < mirrored_.size(); ++k)
+    values[k] = (emits ? rho * values[k] : 0.0) + (1.0 - of.alpha) * outgoing[mirrored_[k]];
+}
+
+}  // namespace apsis

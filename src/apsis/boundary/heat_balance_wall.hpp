@@ -1,0 +1,62 @@
+#pragma once
+
+#include <apsis/boundary/boundary.hpp>
+#include <apsis/boundary/boundary_registry.hpp>
+#include <apsis/boundary/prescribed_state.hpp>
+
+#include <array>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace apsis {
+
+/// A diffuse wall whose temperature T_w follows at every face and stage from the heat that crosses it,
+///   α (E − m e(T_w)) = q(T_w),  e(T) = Σ_in w v_n ½|v − u_w|² M / Σ_in w v_n M,  M = M[1, u_w, T],
+/// with the mass m = Σ_out w |v_n| f and the heat E = Σ_out w |v_n| ½|v − u_w|² f that arrive, the
+/// accommodation α, and the heat q that the wall gives away. It emits what a diffuse wall of temperature T_w
+/// emits. Discrete sums are those of the fluxes in the step, so that neither mass crosses the wall nor heat
+/// other than q, to rounding. e(T) and q(T) increase with T. Dimensionless.
+class heat_balance_wall : public incoming_boundary {
+ public:
+  /// `equation` must outlive the object. Throws input_error with the name of the kind if it has no
+  /// Maxwellians.
+  heat_balance_wall(const model& equation, const std::string& kind, std::vector<face_quantity> velocity,
+                    face_quantity accommodation);
+
+  std::shared_ptr<const boundary> prepared(const face& where, const velocity_set& velocities) const final;
+  std::array<double, 3> wall_velocity(double t, const position& at) const final;
+  /// Throws numerical_error if no temperature that the velocities represent balances the heat.
+  void incoming(const face& where, double t, const position& at, const double* outgoing,
+                double* incoming) const final;
+
+  /// Returns the variables `velocity` and `accommodation` of a kind. Throws input_error as the constructor
+  /// does.
+  static std::vector<data_variable> variables(const model& equation, const std::string& kind);
+
+ protected:
+  /// The heat c (T⁴ − T_0⁴) that a wall gives away.
+  struct radiation {
+    double factor = 0.0;        ///< c ≥ 0
+    double surroundings = 0.0;  ///< T_0 ≥ 0
+  };
+  /// Returns what the wall radiates.
+  virtual radiation radiated(double t, const position& at) const = 0;
+  /// Returns a copy of this object.
+  virtual std::shared_ptr<heat_balance_wall> copy() const = 0;
+
+ private:
+  class balance;
+  double heat(const double* row, std::size_t j, const std::array<double, 3>& u) const;
+
+  std::string kind_;
+  prescribed_state emitted_;
+  std::vector<face_quantity> velocity_;
+  face_quantity accommodation_;
+  double heat_of_mass_;  ///< e(T)/T of continuous velocities, (D + 1)/2
+  velocity_set velocities_;
+  std::vector<int> mirrored_;      ///< component whose normal velocity is opposite
+  std::vector<double> mass_flux_;  ///< of unit components of the first set; > 0 enters
+};
+
+}  // namespace apsis

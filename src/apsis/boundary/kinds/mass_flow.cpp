@@ -1,0 +1,96 @@
+#include <apsis/boundary/gas_end.hpp>
+#include <apsis/boundary/limited_flow.hpp>
+#include <apsis/boundary/prescribed_state.hpp>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <cstddef>
+#include <memory>
+#include <utility>
+#include <vector>
+
+namespace apsis {
+namespace {
+
+/// A given mass flux m through every face, into the gas if m > 0. The Maxwellian ρ M[1, u, T] enters with
+///   ρ = (m + Σ_out w |v_n| f)/Σ_in w |v_n| M,
+/// with the discrete sums of the fluxes in the step, so that the net flux is m to rounding, and f ≥ 0 where
+/// ρ ≥ 0. Gas that enters has the temperature of the boundary and the velocity m/ρ_i along the normal, gas
+/// that leaves temperature and velocity along the face from inside, and m/ρ_i too (index i inside), at most
+/// the speed of sound. In a continuum ρ is then that of the gas inside, without a kinetic layer. An outlet
+/// whose flux exceeds what arrives lets nothing enter.
+class mass_flow_end final : public gas_end, public limited_flow {
+ public:
+  mass_flow_end(const model& equation, face_quantity flux, face_quantity temperature)
+      : gas_end(equation, "mass-flow"), flux_(std::move(flux)), temperature_(std::move(temperature)) {}
+
+  std::shared_ptr<const boundary> prepared(const face& where, const velocity_set& velocities) const override {
+    auto own = std::make_shared<mass_flow_end>(*this);
+    own->short_ = std::make_shared<std::atomic<bool>>(false);
+    const std::vector<double> inward = inward_speeds(where, velocities);
+    own->mass_flux_.assign(velocities.weights().begin(), velocities.weights().end());
+    for (std::size_t j = 0; j < own->mass_flux_.size(); ++j) own->mass_flux_[j] *= inward[j];  // > 0: enters
+    return own;
+  }
+
+  bool take_shortfall() const override { return short_->exchange(false); }
+
+ private:
+  fluid_state outside(const fluid_state& inside, const face& where, double t,
+                      const position& at) const override {
+    const double m = flux_.at(t, at), T = temperature_.at(t, at);
+    const bool empty = !inside.admissible();
+    fluid_state state;
+    if (m < 0.0 && !empty) {
+      state = inside;
+    } else {
+      state.rho = empty ? 1.0 : inside.rho;  // adjust() replaces it
+      state.T = T;
+    }
+    if (!(state.T > 0.0)) return state;  // refused as no state of a gas
+    const double fastest = sound(state.T), speed = empty ? fastest : std::abs(m) / inside.rho;
+    set_outward(state, where, std::copysign(std::min(speed, fastest), -m));
+    return state;
+  }
+
+  void adjust(const face&, double t, const position& at, const double* outgoing,
+              double* incoming) const override {
+    double arriving = 0.0, entering = 0.0;
+    for (std::size_t j = 0; j < mass_flux_.size(); ++j) {
+      if (mass_flux_[j] < 0.0) arriving -= mass_flux_[j] * outgoing[j];
+      if (mass_flux_[j] > 0.0) entering += mass_flux_[j] * incoming[j];
+    }
+    const double needed = flux_.at(t, at) + arriving;
+    if (needed < 0.0) short_->store(true, std::memory_order_relaxed);
+    const double scale = needed > 0.0 && entering > 0.0 ? needed / entering : 0.0;
+    for (int k = 0; k < molecules().velocities().components(); ++k) incoming[k] *= scale;
+  }
+
+  face_quantity flux_, temperature_;
+  std::vector<double> mass_flux_;             ///< of unit components of the first set; > 0 enters
+  std::shared_ptr<std::atomic<bool>> short_;  ///< whether a flux was not reached
+};
+
+}  // namespace
+
+extern const boundary_entry boundary_mass_flow;
+const boundary_entry boundary_mass_flow = {
+    .name = "mass-flow",
+    .description = "inlet or outlet of given mass flux, reached exactly at every face",
+    .variables =
+        [](const model& equation) {
+          maxwellian_form(equation, "mass-flow");
+          return std::vector<data_variable>{{"flux",
+                                             "mass flux into the gas, < 0 where it leaves (dimensionless)",
+                                             1,
+                                             {},
+                                             dimensions::mass_flux},
+                                            {"T", "temperature of the gas that enters, > 0 (dimensionless)",
+                                             1, 1.0, dimensions::temperature}};
+        },
+    .make = [](const boundary_source& from) -> std::unique_ptr<boundary> {
+      return std::make_unique<mass_flow_end>(*from.equation, from.values[0], from.values[1]);
+    }};
+
+}  // namespace apsis

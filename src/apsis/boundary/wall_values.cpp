@@ -1,0 +1,33 @@
+#include <apsis/boundary/wall_values.hpp>
+
+#include <apsis/core/errors.hpp>
+
+#include <cstddef>
+
+#include <fmt/format.h>
+
+namespace apsis {
+
+double accommodation_at(const face_quantity& accommodation, double t, const position& at) {
+  const double alpha = accommodation.at(t, at);
+  if (!(alpha >= 0.0 && alpha <= 1.0))
+    throw input_error(
+        fmt::format("the accommodation of a diffuse wall is {:g} at t = {:.10g} (a number "
+                    "from 0 to 1 is needed); change it",
+                    alpha, t));
+  return alpha;
+}
+
+std::array<double, 3> velocity_along(const std::vector<face_quantity>& velocity, const face& where, double t,
+                                     const position& at) {
+  std::array<double, 3> u{};
+  for (std::size_t k = 0; k < velocity.size(); ++k) u[k] = velocity[k].at(t, at);
+  if (const double normal = u[static_cast<std::size_t>(where.direction)]; normal != 0.0)
+    throw input_error(
+        fmt::format("the velocity of a diffuse wall is {:g} along its normal at t = {:.10g} (the "
+                    "domain would have to move); give 0 there",
+                    normal, t));
+  return u;
+}
+
+}  // namespace apsis

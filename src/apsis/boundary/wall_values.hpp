@@ -1,0 +1,19 @@
+#pragma once
+
+#include <apsis/boundary/boundary_registry.hpp>
+#include <apsis/mesh/face.hpp>
+
+#include <array>
+#include <vector>
+
+namespace apsis {
+
+/// Returns the fraction of molecules that a wall re-emits. Throws input_error if it is not from 0 to 1.
+double accommodation_at(const face_quantity& accommodation, double t, const position& at);
+
+/// Returns the velocity of the wall at a face of the domain. Throws input_error if it is not 0 along the
+/// normal.
+std::array<double, 3> velocity_along(const std::vector<face_quantity>& velocity, const face& where, double t,
+                                     const position& at);
+
+}  // namespace apsis

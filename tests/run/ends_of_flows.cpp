@@ -1,0 +1,145 @@
+// Runs with tables in time, ends of given mass flux, and walls without a given temperature.
+#include <apsis/config/case.hpp>
+#include <apsis/run/setup.hpp>
+#include <apsis/run/simulation.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+namespace ends_of_flows_test {
+
+namespace {
+
+using namespace apsis;
+using testing::HasSubstr;
+
+const std::string line = R"toml(
+[model]
+name = "bgk"
+degrees_of_freedom = 3
+epsilon = 0.1
+[initial]
+rho = 1
+T = 1
+[space]
+cells = 16
+formulation = "finite-difference"
+limiter = "positivity"
+[velocity]
+max = 8
+points = 24
+[time]
+method = "md-imex-6-3"
+safety = 1
+end = 0.1
+)toml";
+
+simulation run_of(const std::string& text, const std::vector<std::string>& more = {}) {
+  simulation run(parse_case(text, "flow.toml", more));
+  while (!run.finished()) run.advance();
+  return run;
+}
+
+/// Flux of an invariant, the last being the energy, through an open face.
+double flux_of(const simulation& run, std::size_t face, std::size_t invariant) {
+  const std::size_t count = run.setup().equation->invariants().size();
+  return run.last().flux.at(face * count + invariant);
+}
+
+void expect_promises(const simulation& run) {
+  EXPECT_LT(run.summary().conservation_defect, 1e-12);
+  EXPECT_EQ(run.summary().negative_values, 0);
+}
+
+}  // namespace
+
+TEST(ends_of_flows, of_given_flux_have_it_in_every_formulation_and_model) {
+  const std::string ends =
+      "[boundary.left]\nkind = \"mass-flow\"\nflux = 0.25\nT = 1.1\n"
+      "[boundary.right]\nkind = \"mass-flow\"\nflux = -0.15\n";
+  for (const char* model : {"bgk", "shakhov", "es-bgk"})
+    for (const char* formulation : {"finite-difference", "finite-volume"})
+      for (const char* epsilon : {"1e-5", "0.1", "10"}) {
+        const simulation run = run_of(
+            line + ends, {fmt::format("model.name={}", model), fmt::format("model.epsilon={}", epsilon),
+                          fmt::format("space.formulation={}", formulation)});
+        // Sums of some ten terms of size 1 in each of 6 stages.
+        EXPECT_NEAR(flux_of(run, 0, 0), 0.25, 1e-13) << model << formulation << epsilon;
+        EXPECT_NEAR(flux_of(run, 1, 0), -0.15, 1e-13) << model << formulation << epsilon;
+        EXPECT_LT(run.summary().conservation_defect, 1e-12);
+        if (std::string(model) != "shakhov") expect_promises(run);
+      }
+}
+
+TEST(ends_of_flows, whose_flux_is_not_reached_are_named_once) {
+  testing::internal::CaptureStderr();
+  const simulation run = run_of(line +
+                                "[boundary.right]\nkind = \"mass-flow\"\nflux = -3\n"
+                                "[boundary.left]\nkind = \"diffuse\"\n");
+  const std::string messages = testing::internal::GetCapturedStderr();
+  EXPECT_GT(flux_of(run, 1, 0), -3.0);
+  EXPECT_LT(flux_of(run, 1, 0), -0.2);
+  const std::string wanted = "less gas arrives at [boundary.right] than its flux lets out";
+  const auto first = messages.find(wanted);
+  EXPECT_NE(first, std::string::npos) << messages;
+  EXPECT_EQ(messages.find(wanted, first + 1), std::string::npos) << messages;
+  expect_promises(run);
+}
+
+TEST(ends_of_flows, with_tables_in_time_are_those_of_their_formulas) {
+  const auto with = [](const std::string& T) {
+    return run_of(line + fmt::format("[boundary.left]\nkind = \"diffuse\"\nT = \"{}\"\n"
+                                     "[boundary.right]\nkind = \"diffuse\"\n",
+                                     T));
+  };
+  const auto table = with("table(t, 0, 1, 0.05, 1.5, 0.08, 1.2)").state(),
+             formula = with("t < 0.05 ? 1 + 10*t : (t < 0.08 ? 1.5 - 10*(t - 0.05) : 1.2)").state();
+  double most = 0.0;
+  for (std::size_t k = 0; k < table.size(); ++k) most = std::max(most, std::abs(table[k] - formula[k]));
+  EXPECT_LT(most, 1e-13);
+}
+
+TEST(ends_of_flows, at_walls_without_a_given_temperature_balance_heat) {
+  for (const char* model : {"bgk", "shakhov", "es-bgk"})
+    for (const char* formulation : {"finite-difference", "finite-volume"}) {
+      const simulation run =
+          run_of(line +
+                     "[boundary.left]\nkind = \"adiabatic\"\naccommodation = 0.8\n[boundary.right]\nkind = "
+                     "\"diffuse\"\nT "
+                     "= 1.4\n",
+                 {fmt::format("model.name={}", model), fmt::format("space.formulation={}", formulation)});
+      EXPECT_NEAR(flux_of(run, 0, 0), 0.0, 1e-13);
+      EXPECT_NEAR(flux_of(run, 0, 2), 0.0, 1e-13);
+      EXPECT_GT(flux_of(run, 1, 2), 1e-2);
+    }
+  // Between a radiating plate and a warm one, the steady heat flux is what the plate radiates.
+  const simulation run = run_of(line +
+                                    "[boundary.left]\nkind = \"radiating\"\nsigma = 0.3\nsurroundings = 0.8\n"
+                                    "[boundary.right]\nkind = \"diffuse\"\nT = 1.4\n[steady]\n",
+                                {"velocity.points=16", "space.cells=8"});
+  const double heat = -flux_of(run, 0, 2), T = std::pow(heat / 0.3 + std::pow(0.8, 4), 0.25);
+  EXPECT_NEAR(heat, flux_of(run, 1, 2), 1e-6);
+  const simulation fixed =
+      run_of(line + fmt::format("[boundary.left]\nkind = \"diffuse\"\nT = {}\n"
+                                "[boundary.right]\nkind = \"diffuse\"\nT = 1.4\n[steady]\n",
+                                T),
+             {"velocity.points=16", "space.cells=8"});
+  EXPECT_NEAR(-flux_of(fixed, 0, 2), heat, 1e-6);
+}
+
+TEST(ends_of_flows, of_given_flux_and_pressure_settle) {
+  const simulation run =
+      run_of(line +
+                 "[boundary.left]\nkind = \"mass-flow\"\nflux = 0.2\n[boundary.right]\nkind = "
+                 "\"pressure\"\np = 1\n[steady]\n",
+             {"velocity.points=16", "space.cells=8"});
+  EXPECT_NEAR(flux_of(run, 0, 0), 0.2, 1e-8);
+  EXPECT_NEAR(flux_of(run, 1, 0), -0.2, 1e-6);
+}
+
+}  // namespace ends_of_flows_test

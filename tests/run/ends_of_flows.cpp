@@ -1,5 +1,9 @@
-// Runs with tables in time, ends of given mass flux, and walls without a given temperature.
+// Runs with tables in time, ends of given mass flux, walls without a given temperature, and profiles of
+// earlier results.
 #include <apsis/config/case.hpp>
+#include <apsis/config/case_schema.hpp>
+#include <apsis/core/errors.hpp>
+#include <apsis/run/session.hpp>
 #include <apsis/run/setup.hpp>
 #include <apsis/run/simulation.hpp>
 
@@ -11,6 +15,8 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <support/folder.hpp>
+
 namespace ends_of_flows_test {
 
 namespace {
@@ -140,6 +146,80 @@ TEST(ends_of_flows, of_given_flux_and_pressure_settle) {
              {"velocity.points=16", "space.cells=8"});
   EXPECT_NEAR(flux_of(run, 0, 0), 0.2, 1e-8);
   EXPECT_NEAR(flux_of(run, 1, 0), -0.2, 1e-6);
+}
+
+namespace {
+
+const std::string plane = R"toml(
+[model]
+name = "bgk"
+velocity_dimensions = 2
+degrees_of_freedom = 3
+epsilon = 0.1
+[initial]
+rho = "1 + 0.1*y + 0.1*x"
+u = ["0.2 + 0.1*y", 0]
+T = "1 + 0.2*y*(1 - y)"
+[space]
+cells = [6, 5]
+boundary = "outflow"
+limiter = "positivity"
+[velocity]
+max = 7
+points = 12
+[time]
+method = "md-imex-6-3"
+safety = 1
+end = 0.01
+)toml";
+
+std::string refusal(const std::string& text) {
+  try {
+    parse_case(text, "c.toml");
+  } catch (const input_error& problem) {
+    return problem.what();
+  }
+  return "";
+}
+
+}  // namespace
+
+TEST(ends_of_flows, take_profiles_from_earlier_results) {
+  const test_folder folder;
+  session_options how;
+  how.out = folder / "earlier";
+  run_session(parse_case(plane, "earlier.toml"), how).run();
+  const std::string file = folder / "earlier/solution.h5";
+  const auto with = [&](const std::string& more) {
+    return plane +
+           fmt::format("[boundary.left]\nkind = \"inflow\"\nprofile = {{ file = \"{}\"{} }}\n", file, more);
+  };
+  const case_config config = parse_case(with(", side = \"right\""), "c.toml");
+  const auto& rho = config.faces[0].values.at("rho").front();
+  EXPECT_THAT(rho, testing::StartsWith("table(y, 0.1, "));
+  ASSERT_EQ(config.faces[0].values.at("u").size(), 2U);
+  // The values in the cells at x = 11/12 of the earlier result.
+  const simulation earlier = run_of(plane);
+  const auto fields = earlier.fields();
+  EXPECT_THAT(rho, HasSubstr(fmt::format("0.1, {}, ", fields.values.front().at(25))));
+  EXPECT_EQ(to_toml(parse_case(to_toml(config), "again")), to_toml(config));
+  expect_promises(run_of(to_toml(config)));
+  EXPECT_NE(parse_case(with(""), "c.toml").faces[0].values.at("rho").front(), rho);
+  EXPECT_THAT(
+      refusal(with(", side = \"top\"")),
+      HasSubstr("'boundary.left.profile.side' is the text 'top' (it has another direction than the face); "
+                "give left or right"));
+  EXPECT_THAT(refusal(with(", side = \"rigt\"")),
+              HasSubstr("unknown side 'rigt' (no face has this name); did you "
+                        "mean 'right'?"));
+  EXPECT_THAT(refusal(with("") + "rho = 1\n"),
+              HasSubstr("conflicts with 'boundary.left.rho' (both give the value)"));
+  EXPECT_THAT(refusal(line + fmt::format("[boundary.left]\nkind = \"inflow\"\nprofile.file = \"{}\"\n"
+                                         "[boundary.right]\nkind = \"outflow\"\n",
+                                         file)),
+              HasSubstr("it has 2 space dimensions (the case has 1); give another result"));
+  EXPECT_THAT(refusal(plane + "[boundary.left]\nkind = \"inflow\"\nprofile.file = \"nowhere.h5\"\n"),
+              HasSubstr("c.toml:24:9: 'boundary.left.profile.file' = \"nowhere.h5\" cannot be used: "));
 }
 
 }  // namespace ends_of_flows_test

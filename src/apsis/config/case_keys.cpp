@@ -282,7 +282,9 @@ std::vector<case_key> face_keys() {
                  "Boundary condition at the {} end in {}, where it differs from "
                  "space.boundary. Further keys of the table [boundary.{}] are the variables "
                  "of the kind (apsis list boundaries): numbers, formulas in t and x, or tables in time, "
-                 "T = {{ file = \"wall.csv\" }} with columns t and T.",
+                 "T = {{ file = \"wall.csv\" }} with columns t and T. profile = {{ file = "
+                 "\"results/earlier/solution.h5\", side = \"right\" }} gives rho, u and T of a side "
+                 "of an earlier result.",
                  k % 2 == 0 ? "lower" : "upper", "xyz"[k / 2], face_names[k])}));
   return all;
 }

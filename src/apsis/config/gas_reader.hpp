@@ -14,9 +14,9 @@ std::optional<gas_scales> read_gas_scales(const case_text& text, const model_ent
                                           const case_config& config);
 
 /// Replaces quantities with units in the values of a case by dimensionless numbers; those of [parameters] may
-/// have any dimension. Tables in time become formulas (table_reader.hpp).
+/// have any dimension. Tables in time and profiles become formulas (table_reader.hpp, profile_reader.hpp).
 /// Throws input_error at the place of a key: a unit without scales, or of another dimension than the key; and
-/// as read_tables_in_time() does.
+/// as read_tables_in_time() and read_profiles() do.
 void remove_units(case_text& text, const model_entry& model, const std::optional<gas_scales>& scales);
 
 /// Sets the options of the model that the scales in `config` determine: collision_rate, viscosity_exponent,

@@ -4,6 +4,7 @@
 #include <apsis/config/case_schema.hpp>
 #include <apsis/config/case_value.hpp>
 #include <apsis/config/gas_reader.hpp>
+#include <apsis/config/profile_reader.hpp>
 #include <apsis/config/quantity.hpp>
 #include <apsis/config/table_reader.hpp>
 
@@ -115,6 +116,7 @@ class unit_remover {
 }  // namespace
 
 void remove_units(case_text& text, const model_entry& model, const std::optional<gas_scales>& scales) {
+  read_profiles(text, scales);
   const unit_remover remover(model, scales);
   read_tables_in_time(text, [&](const std::string& path) { return remover.dimension_of(path); }, scales);
   for (auto& [path, raw] : text.values) remover.convert(path, raw);

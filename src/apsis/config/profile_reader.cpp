@@ -1,0 +1,191 @@
+#include <apsis/config/profile_reader.hpp>
+
+#include <apsis/config/at_place.hpp>
+#include <apsis/config/case_json.hpp>
+#include <apsis/config/case_units.hpp>
+#include <apsis/config/case_value.hpp>
+#include <apsis/core/suggest.hpp>
+#include <apsis/mesh/face.hpp>
+#include <apsis/model/formula_table.hpp>
+#include <apsis/output/hdf5_file.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+namespace apsis {
+namespace {
+
+const std::string key = ".profile.file";
+
+/// A side of an earlier result.
+class earlier_side {
+ public:
+  earlier_side(const std::string& path, const face& where, const std::optional<gas_scales>& scales)
+      : file_(hdf5_file::open(path)), where_(where), scales_(scales) {
+    if (!file_.has_attribute("manifest") || !file_.has("fields/rho") || !file_.has("fields/T"))
+      throw input_error("it is no result of a gas (rho and T are needed); give a solution.h5");
+    shape_ = file_.extents("fields/rho");
+    check_scales();
+    if (shape_.size() > 2)
+      throw input_error(
+          "it has three space dimensions (profiles are read along lines); give formulas in their place");
+    if (static_cast<std::size_t>(where.direction) >= shape_.size())
+      throw input_error("it has no such side (it has one space dimension); give left or right");
+  }
+
+  std::size_t dimensions() const { return shape_.size(); }
+
+  /// Returns rho, u and T as formulas.
+  std::map<std::string, std::vector<std::string>> formulas() const {
+    std::map<std::string, std::vector<std::string>> all;
+    all["rho"] = {formula("rho", dimensions::density)};
+    all["T"] = {formula("T", dimensions::temperature)};
+    if (file_.has("fields/u")) all["u"] = {formula("u", dimensions::velocity)};
+    for (const char axis : {'x', 'y', 'z'})
+      if (const std::string name = fmt::format("u_{}", axis); file_.has("fields/" + name))
+        all["u"].push_back(formula(name, dimensions::velocity));
+    return all;
+  }
+
+ private:
+  /// Dimensionless numbers are those of the scales of the result.
+  void check_scales() const {
+    const auto manifest =
+        nlohmann::ordered_json::parse(file_.read_text_attribute("manifest"), nullptr, false);
+    const auto theirs =
+        manifest.is_object() && manifest.contains("scales") ? manifest["scales"] : nlohmann::ordered_json();
+    const bool has_units = file_.units("fields/rho") != unit_of(dimensions::none);
+    if (has_units || theirs.is_null()) return;
+    if (!scales_ || theirs != to_json(*scales_))
+      throw input_error(
+          "its units are those of another table [gas]; write it with output.units = \"SI\", or use the same "
+          "reference state");
+  }
+
+  std::vector<double> numbers(const std::string& name, const dimension& wanted) const {
+    std::vector<double> values = file_.read(name);
+    const std::string unit = file_.units(name);
+    for (double& value : values)
+      value = in_units_of_case(value, unit, fmt::format("'{}'", name), wanted, scales_);
+    return values;
+  }
+
+  /// A table through the cells at the side, without those in solids, or the number on a line.
+  std::string formula(const std::string& name, const dimension& wanted) const {
+    const std::vector<double> values = numbers("fields/" + name, wanted);
+    const auto side = static_cast<std::size_t>(where_.direction), along = 1 - side;
+    const std::size_t last = where_.upper ? shape_[side] - 1 : 0;
+    if (shape_.size() == 1) return fmt::format("{}", values.at(last));
+    const std::string coordinate(1, along == 0 ? 'x' : 'y');
+    const std::vector<double> centres = numbers(coordinate, dimensions::length);
+    if (centres.size() != shape_[along] || values.size() != shape_[0] * shape_[1])
+      throw input_error(
+          fmt::format("'{}' and '{}' do not belong together (damaged file); give another", name, coordinate));
+    std::vector<std::pair<double, double>> points;
+    for (std::size_t k = 0; k < centres.size(); ++k) {
+      const double value = values[side == 0 ? last * shape_[1] + k : k * shape_[1] + last];
+      if (std::isfinite(value)) points.emplace_back(centres[k], value);
+    }
+    if (points.empty())
+      throw input_error(
+          fmt::format("'{}' has no values at this side (solid cells); give another side", name));
+    return formula_of_table(coordinate, points);
+  }
+
+  hdf5_file file_;
+  face where_;
+  const std::optional<gas_scales>& scales_;
+  hdf5_file::shape shape_;
+};
+
+std::size_t face_with_name(const std::string& name) {
+  const auto found = std::find(face_names.begin(), face_names.end(), name);
+  if (found == face_names.end())
+    throw input_error(fmt::format("unknown side '{}' (no face has this name); {}", shown(name),
+                                  suggest(name, {face_names.begin(), face_names.end()})));
+  return static_cast<std::size_t>(found - face_names.begin());
+}
+
+std::size_t dimensions_of(const case_text& text) {
+  const raw_value* cells = text.find("space.cells");
+  const auto* list = cells == nullptr ? nullptr : std::get_if<raw_value::list>(&cells->value);
+  return list == nullptr ? 1 : list->size();
+}
+
+const std::string& text_of(const raw_value& raw, const std::string& path, const char* example) {
+  const auto* found = std::get_if<std::string>(&raw.value);
+  if (found == nullptr || found->empty()) refuse(raw, path, "it must be a text", example);
+  return *found;
+}
+
+/// Returns the side of the result for a face: `side`, or the face itself.
+face side_for(const case_text& text, const std::string& table, const source_place& place) {
+  const std::size_t own = at_place(place, [&] { return face_with_name(table.substr(table.rfind('.') + 1)); });
+  const std::string path = table + ".profile.side";
+  const raw_value* side = text.find(path);
+  if (side == nullptr) return face_of(own);
+  const std::string& name = text_of(*side, path, "write for example side = \"right\"");
+  const std::size_t theirs = at_place(side->place, [&] { return face_with_name(name); });
+  if (face_of(own).direction != face_of(theirs).direction)
+    refuse(*side, path, "it has another direction than the face",
+           fmt::format("give {} or {}", face_names[own / 2 * 2], face_names[own / 2 * 2 + 1]));
+  return face_of(theirs);
+}
+
+std::map<std::string, std::vector<std::string>> formulas_of(const case_text& text, const std::string& table,
+                                                            const raw_value& file,
+                                                            const std::optional<gas_scales>& scales) {
+  const std::string& path =
+      text_of(file, table + key, "write for example file = \"results/earlier/solution.h5\"");
+  const face where = side_for(text, table, file.place);
+  try {
+    const earlier_side from(path, where, scales);
+    const std::size_t wanted = dimensions_of(text);
+    if (from.dimensions() != wanted)
+      throw input_error(fmt::format("it has {} space dimension{} (the case has {}); give another result",
+                                    from.dimensions(), from.dimensions() == 1 ? "" : "s", wanted));
+    return from.formulas();
+  } catch (const error& problem) {
+    throw input_error(file.place, fmt::format("'{}{}' = \"{}\" cannot be used: {}", table, key, shown(path),
+                                              problem.what()));
+  }
+}
+
+}  // namespace
+
+void read_profiles(case_text& text, const std::optional<gas_scales>& scales) {
+  std::map<std::string, raw_value> made;
+  std::vector<std::string> tables;
+  for (const auto& [path, raw] : text.values) {
+    if (path.rfind("boundary.", 0) != 0 || !path.ends_with(key)) continue;
+    const std::string table = path.substr(0, path.size() - key.size());
+    const auto formulas = formulas_of(text, table, raw, scales);
+    for (const auto& [name, components] : formulas) {
+      const std::string variable = fmt::format("{}.{}", table, name);
+      if (text.find(variable) != nullptr)
+        throw input_error(raw.place, fmt::format("'{}' conflicts with '{}' (both give the value); remove one "
+                                                 "of them",
+                                                 path, variable));
+      raw_value::list items;
+      for (const auto& one : components)
+        items.push_back({one, fmt::format("a profile in '{}'", path), raw.place, raw.place});
+      made.emplace(variable,
+                   raw_value{std::move(items), fmt::format("a profile in '{}'", path), raw.place, raw.place});
+    }
+    tables.push_back(table);
+  }
+  for (const auto& table : tables) {
+    text.values.erase(table + key);
+    text.values.erase(table + ".profile.side");
+  }
+  text.values.merge(made);
+}
+
+}  // namespace apsis

@@ -35,9 +35,9 @@ class gas_end : public incoming_boundary {
   virtual void adjust(const face& /*where*/, double /*t*/, const position& /*at*/, const double* /*outgoing*/,
                       double* /*incoming*/) const {}
 
-  const gas& molecules() const { return molecules_; }
-  double gamma() const { return gamma_; }  ///< ratio of specific heats (D + 2)/D
-  double sound(double T) const;            ///< speed of sound √(γT)
+  const gas& molecules() const { return molecules_; }  ///< the gas inside
+  double gamma() const { return gamma_; }              ///< ratio of specific heats (D + 2)/D
+  double sound(double T) const;                        ///< speed of sound √(γT)
 
  private:
   /// `row`: scratch of one row.

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include <fmt/format.h>
@@ -38,54 +39,80 @@ class heat_balance_wall::balance {
 
   /// row ← the Maxwellian of density 1 of the temperature that balances; returns the factor of its density.
   double solve() {
-    const double given = arriving_heat / arriving_mass, c = radiated.factor / arriving_mass,
-                 sum = alpha * given + c * fourth(radiated.surroundings);
-    if (!(arriving_mass > 0.0 && given > 0.0 && std::isfinite(sum))) fail(given, "what arrives has no heat");
-    double T = start(sum, c), low = 0.0, high = std::numeric_limits<double>::infinity();
-    double best = T, least = std::numeric_limits<double>::infinity();
+    given_ = arriving_heat / arriving_mass;
+    c_ = radiated.factor / arriving_mass;
+    sum_ = alpha * given_ + c_ * fourth(radiated.surroundings);
+    if (!(arriving_mass > 0.0 && given_ > 0.0 && std::isfinite(sum_)))
+      fail(given_, "what arrives has no heat");
+    trial last = first_trial(start()), before = last, best = last;
+    double low = 0.0, high = std::numeric_limits<double>::infinity();
     // The difference of sums of this size is rounding.
-    const double small = 2.0 * std::numeric_limits<double>::epsilon() * (sum + c * fourth(T));
-    constexpr int most = 60;
-    for (int n = 0; n < most; ++n) {
-      const double e = emitted_heat(T), excess = alpha * e + c * fourth(T) - sum;
-      if (std::abs(excess) < least) {
-        least = std::abs(excess);
-        best = T;
+    const double small = 2.0 * std::numeric_limits<double>::epsilon() * (sum_ + c_ * fourth(last.T));
+    constexpr int most = 200, between_halvings = 6;
+    for (int n = 1; n < most && !(std::abs(best.excess) <= small); ++n) {
+      (last.excess > 0.0 ? high : low) = last.T;
+      double next = last.T - last.excess / slope(before, last);
+      const bool halve = n % between_halvings == 0;  // or double
+      if (halve || !(next > low && next < high))
+        next = std::isfinite(high) ? 0.5 * (low + high) : 2.0 * last.T;
+      if (!(next > low && next < high)) break;
+      if (const auto excess = excess_at(next)) {
+        before = std::exchange(last, {next, *excess});
+        if (std::abs(last.excess) < std::abs(best.excess)) best = last;
+      } else {
+        (next < last.T ? low : high) = next;
       }
-      if (least <= small) break;
-      (excess > 0.0 ? high : low) = T;
-      // e is proportional to T but for the sums.
-      double next = T - excess / (alpha * e / T + 4.0 * c * T * T * T);
-      if (!(next > low && next < high)) next = std::isfinite(high) ? 0.5 * (low + high) : 2.0 * T;
-      if (next == T || next == low || next == high) break;
-      T = next;
     }
     constexpr double accurate = 1e-10;  // of sums, far above their rounding
-    if (!(least <= accurate * (sum + c * fourth(best))))
-      fail(best, "no temperature on the velocities has this heat");
-    if (best != T) emitted_heat(best);
+    if (!(std::abs(best.excess) <= accurate * (sum_ + c_ * fourth(best.T))))
+      fail(best.T, "no temperature on the velocities has this heat");
+    excess_at(best.T);
     return arriving_mass / emitted_mass_;
   }
 
  private:
+  /// A temperature that the velocities represent, and α e(T) + c T⁴ − sum.
+  struct trial {
+    double T, excess;
+  };
+
   static double fourth(double T) { return T * T * (T * T); }
 
   /// The root for continuous velocities, by Newton's method from above on a convex function.
-  double start(double sum, double c) const {
+  double start() const {
     const double slope = alpha * wall_.heat_of_mass_;
-    double T = slope > 0.0 ? sum / slope : std::numeric_limits<double>::infinity();
-    if (c > 0.0) T = std::min(T, std::sqrt(std::sqrt(sum / c)));
+    double T = slope > 0.0 ? sum_ / slope : std::numeric_limits<double>::infinity();
+    if (c_ > 0.0) T = std::min(T, std::sqrt(std::sqrt(sum_ / c_)));
     constexpr int enough = 40;
-    for (int n = 0; n < enough && c > 0.0; ++n) {
-      const double next = T - (slope * T + c * fourth(T) - sum) / (slope + 4.0 * c * T * T * T);
+    for (int n = 0; n < enough && c_ > 0.0; ++n) {
+      const double next = T - (slope * T + c_ * fourth(T) - sum_) / (slope + 4.0 * c_ * T * T * T);
       if (!(next < T)) break;
       T = next;
     }
     return T;
   }
 
-  /// row ← the Maxwellian of a temperature; returns its e(T).
-  double emitted_heat(double T) {
+  /// The first of T, 2T, T/2, 4T, … that the velocities represent.
+  trial first_trial(double T) {
+    constexpr int most_doublings = 10;
+    double factor = 1.0;
+    for (int k = 0; k <= most_doublings; ++k, factor *= 2.0)
+      for (const double one : {T * factor, T / factor})
+        if (const auto excess = excess_at(one)) return {one, *excess};
+    excess_at(T);
+    fail(T, why_);
+  }
+
+  /// The slope between two temperatures. At one alone e is proportional to T, as with continuous velocities.
+  double slope(const trial& before, const trial& last) const {
+    if (before.T != last.T)
+      if (const double found = (last.excess - before.excess) / (last.T - before.T); found > 0.0) return found;
+    return (last.excess + sum_ + 3.0 * c_ * fourth(last.T)) / last.T;
+  }
+
+  /// row ← the Maxwellian of a temperature; returns its excess, nothing if the velocities do not represent
+  /// it.
+  std::optional<double> excess_at(double T) {
     std::array<double, 5> numbers = {1.0};
     const std::size_t d = wall_.velocity_.size();
     std::copy_n(u_.begin(), d, numbers.begin() + 1);
@@ -93,7 +120,8 @@ class heat_balance_wall::balance {
     try {
       wall_.emitted_.write_other({numbers.data(), d + 2}, t_, row_);
     } catch (const input_error& problem) {
-      fail(T, problem.what());
+      why_ = problem.what();
+      return std::nullopt;
     }
     double heat = 0.0;
     emitted_mass_ = 0.0;
@@ -102,8 +130,9 @@ class heat_balance_wall::balance {
         emitted_mass_ += wall_.mass_flux_[j] * row_[j];
         heat += wall_.mass_flux_[j] * wall_.heat(row_.data(), j, u_);
       }
-    if (!(emitted_mass_ > 0.0)) fail(T, "its Maxwellian is 0 at all velocities that leave it");
-    return heat / emitted_mass_;
+    if (emitted_mass_ > 0.0) return alpha * (heat / emitted_mass_) + c_ * fourth(T) - sum_;
+    why_ = "its Maxwellian is 0 at all velocities that leave it";
+    return std::nullopt;
   }
 
   [[noreturn]] void fail(double T, const std::string& why) const {
@@ -118,7 +147,9 @@ class heat_balance_wall::balance {
   const std::array<double, 3>& u_;
   double t_;
   std::span<double> row_;
+  double given_ = 0.0, c_ = 0.0, sum_ = 0.0;  ///< E/m, c, and the right-hand side
   double emitted_mass_ = 0.0;
+  std::string why_;  ///< the velocities do not represent the last temperature
 };
 
 heat_balance_wall::heat_balance_wall(const model& equation, const std::string& kind,

@@ -155,4 +155,15 @@ double last_flux(const simulation& run, const std::string& face, const std::stri
   return run.last().flux.at(at);
 }
 
+std::map<std::string, std::vector<double>> wall_values(const simulation& run, const std::string& surface) {
+  for (const surface_table& table : run.surfaces()) {
+    if (table.name != surface) continue;
+    std::map<std::string, std::vector<double>> columns;
+    for (const auto& row : table.numbers.rows)
+      for (std::size_t k = 0; k < row.size(); ++k) columns[table.numbers.columns[k]].push_back(row[k]);
+    return columns;
+  }
+  throw std::out_of_range("no table of '" + surface + "' in the run");
+}
+
 }  // namespace apsis::validation

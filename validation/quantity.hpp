@@ -111,4 +111,8 @@ std::vector<double> field_values(const simulation& run, const std::string& name)
 /// std::out_of_range for unknown names.
 double last_flux(const simulation& run, const std::string& face, const std::string& invariant);
 
+/// Returns the columns of the table of a surface by name, such as "area" (compute_surfaces()). Throws
+/// std::out_of_range for a surface that is not in output.surfaces.
+std::map<std::string, std::vector<double>> wall_values(const simulation& run, const std::string& surface);
+
 }  // namespace apsis::validation

@@ -1,0 +1,123 @@
+// Free molecules past a circle and a sphere: the reference values against integrals over the molecules that
+// arrive, runs with specular walls, and pressure, shear and heat at every piece of a wall.
+#include <apsis/config/case.hpp>
+#include <apsis/core/errors.hpp>
+#include <apsis/run/simulation.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <validation/quantity.hpp>
+
+namespace free_molecular_bodies_test {
+namespace {
+
+using apsis::simulation;
+using apsis::validation::compute_quantity;
+using apsis::validation::find_quantity;
+using apsis::validation::wall_values;
+
+/// Fluxes at a wall with the density and temperature 1 of the stream, and R = 1.
+struct wall_fluxes {
+  double pressure, shear, heat, reemitted_pressure;
+};
+
+/// Returns the fluxes of the molecules with v_n < 0 of a stream with the velocities u_n and u_t, by Simpson's
+/// rule over v_n; v_t and the third direction have the moments of a Maxwellian. The wall has the
+/// temperature 1.
+wall_fluxes arriving(double u_n, double u_t) {
+  const int n = 400;
+  const double low = std::min(u_n, 0.0) - 10.0, step = -low / n;
+  std::array<double, 4> sums{};
+  for (int k = 0; k <= n; ++k) {
+    const double v = low + k * step, weight = (k == 0 || k == n ? 1.0 : 2.0 + 2.0 * (k % 2)) * step / 3.0;
+    const double f = weight * std::exp(-0.5 * (v - u_n) * (v - u_n)) / std::sqrt(2.0 * std::numbers::pi);
+    for (int power = 1; power < 4; ++power) sums[power] += std::pow(-v, power) * f;
+  }
+  // A half Maxwellian of temperature 1 carries the energy 2 for each molecule, and √(2π)/2 of momentum.
+  return {sums[2], u_t * sums[1], 0.5 * sums[3] + (0.5 * u_t * u_t + 1.0) * sums[1] - 2.0 * sums[1],
+          0.5 * std::sqrt(2.0 * std::numbers::pi) * sums[1]};
+}
+
+/// Returns drag and heat coefficients of a circle or a sphere.
+std::array<double, 2> coefficients(double mach, double alpha, bool sphere) {
+  const double U = mach * std::sqrt(5.0 / 3.0), pi = std::numbers::pi;
+  const int n = 400;
+  double drag = 0.0, heat = 0.0;
+  // The midpoint rule is spectrally accurate for periodic and even functions of the angle; sin makes it
+  // second order.
+  for (int k = 0; k < n; ++k) {
+    const double angle = (k + 0.5) * pi / n, c = std::cos(angle), s = std::sin(angle);
+    const double area = (sphere ? 2.0 * s : 1.0) * pi / n;
+    const wall_fluxes at = arriving(-U * c, U * s);
+    drag += area * (2.0 * (1.0 - alpha) * at.pressure * c +
+                    alpha * ((at.pressure + at.reemitted_pressure) * c + at.shear * s));
+    heat += area * alpha * at.heat;
+  }
+  return {drag / (0.5 * U * U), heat / (0.5 * U * U * U)};
+}
+
+}  // namespace
+
+TEST(free_molecular_bodies, have_the_coefficients_that_the_fluxes_of_molecules_give) {
+  for (const std::string body : {"cylinder", "sphere"})
+    for (const auto& reference : find_quantity(body).references) {
+      const auto given = [&](const std::string& name, const std::string& otherwise) {
+        const auto found = reference.at.find(name);
+        return found == reference.at.end() ? otherwise : found->second;
+      };
+      const auto exact = coefficients(std::stod(given("mach", "2")), std::stod(given("accommodation", "1")),
+                                      body == "sphere");
+      const double value = exact[given("quantity", "drag") == "drag" ? 0 : 1];
+      // Printed with six decimals. The midpoint rule of 400 points has (π/400)²/24 = 3e-6 on a sphere.
+      EXPECT_NEAR(reference.value, value, 1e-5 * value) << body;
+    }
+}
+
+TEST(free_molecular_bodies, receive_no_heat_where_they_reflect) {
+  // Rounding errors alone: the factors of the reflected values return the energy that arrives.
+  EXPECT_NEAR(
+      compute_quantity(find_quantity("cylinder"), {"accommodation=0", "quantity=heat", "space.cells=[16,8]",
+                                                   "velocity.points=20", "time.end=0.3"}),
+      0.0, 1e-12);
+}
+
+TEST(free_molecular_bodies, have_the_drag_of_a_sphere_on_few_cells) {
+  // Ten velocities in place of twelve, and a quarter of the time: 1.5 % as with those.
+  EXPECT_NEAR(compute_quantity(find_quantity("sphere"), {"mach=1", "velocity.points=10", "time.end=0.2"}),
+              5.110056, 0.02 * 5.110056);
+}
+
+TEST(free_molecular_bodies, refuse_parameters_that_are_no_accommodation) {
+  EXPECT_THROW(static_cast<void>(compute_quantity(find_quantity("cylinder"), {"accommodation=1.1"})),
+               apsis::input_error);
+}
+
+TEST(SLOW_free_molecular_bodies, have_the_fluxes_of_free_molecules_at_every_piece_of_a_cylinder) {
+  const std::vector<std::string> overrides = {
+      "parameters.M=5",          "parameters.Kn=1e9",
+      "space.cells=[42,21]",     "space.domain=[[-1.3125,1.3125],[0,1.3125]]",
+      "velocity.max=10.85",      "velocity.points=32",
+      "time.method=md-imex-5-2", "time.end=1",
+      "output.every=0",          "output.surfaces=[\"cylinder\"]"};
+  simulation run(apsis::load_case("gas/cylinder", overrides));
+  while (!run.finished()) run.advance();
+  const auto wall = wall_values(run, "cylinder");
+  const double U = 5.0 * std::sqrt(5.0 / 3.0);
+  ASSERT_GT(wall.at("x").size(), 40U);
+  for (std::size_t k = 0; k < wall.at("x").size(); ++k) {
+    // Counter-clockwise along the wall, the stream has the component −U y.
+    const double x = wall.at("x")[k], y = wall.at("y")[k];
+    const wall_fluxes exact = arriving(U * x, -U * y);
+    EXPECT_NEAR(wall.at("pressure")[k], exact.pressure + exact.reemitted_pressure, 3e-3 * 0.5 * U * U) << x;
+    EXPECT_NEAR(wall.at("shear_stress")[k], exact.shear, 3e-3 * 0.5 * U * U) << x;
+    EXPECT_NEAR(wall.at("heat_flux")[k], exact.heat, 3e-3 * 0.5 * U * U * U) << x;
+  }
+}
+
+}  // namespace free_molecular_bodies_test

@@ -1,0 +1,69 @@
+#include <cmath>
+#include <cstddef>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <validation/quantity.hpp>
+
+namespace apsis::validation {
+namespace coaxial_quantity {
+namespace {
+
+/// Speed of the inner wall, and the difference of temperature. The equation of the run is nonlinear: terms of
+/// second order are up to these numbers, relative to the value, and below the error of the mesh.
+constexpr double speed = 0.01, heat = 0.002;
+
+double compute(const quantity_values& parameters, const quantity_run& make) {
+  static_cast<void>(positive_number(parameters, "delta"));
+  const bool torque = one_of(parameters, "quantity", {"torque", "heat"}) == "torque";
+  const int cells = 2 * static_cast<int>(std::lround(number_between(parameters, "cells", 16.0, 512.0) / 2.0));
+  // A cell beyond the outer cylinder on each side. Heat has the symmetries of the axes: a quarter suffices.
+  const double end = 2.0 + 4.0 / cells;
+  const int half = cells / 2 + 1;
+  std::vector<std::string> overrides = {"parameters.delta=" + parameters.at("delta"), "velocity.points=20",
+                                        "time.end=12", "output.every=0"};
+  if (torque)
+    overrides.insert(overrides.end(), {fmt::format("parameters.speed={}", speed),
+                                       fmt::format("space.cells=[{0},{0}]", 2 * half),
+                                       fmt::format("space.domain=[[{0},{1}],[{0},{1}]]", -end, end)});
+  else
+    overrides.insert(overrides.end(), {"parameters.speed=0", fmt::format("parameters.heat={}", heat),
+                                       fmt::format("space.cells=[{0},{0}]", half),
+                                       fmt::format("space.domain=[[0,{0}],[0,{0}]]", end),
+                                       "boundary.left.kind=symmetry", "boundary.bottom.kind=symmetry"});
+  const simulation run = make("gas/coaxial", overrides);
+  // ρ = T = 1: a mass √(1/2π) arrives per unit of time and area, and takes the velocity of the wall along, or
+  // the energy 2 (heat).
+  const double arriving = 2.0 * std::numbers::pi / std::sqrt(2.0 * std::numbers::pi);
+  if (!torque) return 4.0 * last_flux(run, "inner", "energy") / (arriving * 2.0 * heat);
+  const auto wall = wall_values(run, "inner");
+  double sum = 0.0;
+  for (std::size_t k = 0; k < wall.at("area").size(); ++k)
+    sum -= wall.at("area")[k] *
+           (wall.at("x")[k] * wall.at("momentum_y")[k] - wall.at("y")[k] * wall.at("momentum_x")[k]);
+  return sum / (arriving * speed);
+}
+
+}  // namespace
+}  // namespace coaxial_quantity
+
+extern const quantity_entry quantity_coaxial;
+const quantity_entry quantity_coaxial = {
+    .name = "coaxial",
+    .description =
+        "torque that turns, or heat that leaves the inner of two coaxial cylinders of radii 1 and 2, over "
+        "the free-molecular value, linear, diffuse walls",
+    .source = "linearized BGK equation, the integral equations of tests/validation/linear_annulus.hpp",
+    .parameters = {{"delta", "1", "rarefaction p r/(mu v0), r the inner radius, v0 = sqrt(2 R T)"},
+                   {"quantity", "torque", "torque or heat"},
+                   {"cells", "32", "cells over the outer diameter, 16 to 512, even"}},
+    .references = {computed({{"delta", "0.1"}}, 0.98830, 2e-2), computed({{"delta", "1"}}, 0.88123, 2e-2),
+                   computed({{"delta", "10"}}, 0.35207, 2e-2),
+                   computed({{"delta", "0.1"}, {"quantity", "heat"}}, 0.97173, 2e-2),
+                   computed({{"delta", "1"}, {"quantity", "heat"}}, 0.77179, 2e-2),
+                   computed({{"delta", "10"}, {"quantity", "heat"}, {"cells", "64"}}, 0.24738, 1e-2)},
+    .compute = coaxial_quantity::compute};
+
+}  // namespace apsis::validation

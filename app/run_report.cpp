@@ -42,7 +42,7 @@ std::string summary_text(const simulation& run, run_end end, const run_records& 
   const case_config& c = run.config();
   std::string out = fmt::format("{}\n", c.title.empty() ? c.source : c.title);
   const auto line = [&out](const std::string& name, const std::string& value) {
-    out += fmt::format("  {:<22}{}\n", name, value);
+    out += fmt::format("  {:<21} {}\n", name, value);
   };
   const result_units units(c);
   const double time = units.factor(units.of_time());

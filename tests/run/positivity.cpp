@@ -47,7 +47,7 @@ TEST(shipped_gases, promise_positivity_where_their_model_keeps_f_nonnegative) {
     if (!name.starts_with("gas/")) continue;
     apsis::case_config c = apsis::load_case(name);
     if (c.solids.empty())  // promises do not depend on the mesh
-      for (int& cells : c.space.cells) cells = std::min(cells, 24);
+      for (int& cells : c.space.cells) cells = std::min(cells, c.space.cells.size() < 3 ? 24 : 6);
     const apsis::simulation run(c);
     EXPECT_EQ(run.promises().positivity, run.promises().why_signed.empty()) << name;
     promising += run.promises().positivity ? 1 : 0;

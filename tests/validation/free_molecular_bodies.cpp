@@ -88,8 +88,8 @@ TEST(free_molecular_bodies, receive_no_heat_where_they_reflect) {
 }
 
 TEST(free_molecular_bodies, have_the_drag_of_a_sphere_on_few_cells) {
-  // Ten velocities in place of twelve, and a quarter of the time: 1.5 % as with those.
-  EXPECT_NEAR(compute_quantity(find_quantity("sphere"), {"mach=1", "velocity.points=10", "time.end=0.2"}),
+  // Ten velocities in place of twelve, and an eighth of the time: 1.5 % as with those.
+  EXPECT_NEAR(compute_quantity(find_quantity("sphere"), {"mach=1", "velocity.points=10", "time.end=0.1"}),
               5.110056, 0.02 * 5.110056);
 }
 
@@ -99,17 +99,25 @@ TEST(free_molecular_bodies, refuse_parameters_that_are_no_accommodation) {
 }
 
 TEST(SLOW_free_molecular_bodies, have_the_fluxes_of_free_molecules_at_every_piece_of_a_cylinder) {
+  // Where a wall is normal to an axis, the sum of v_n M over half of the velocities is too large by the share
+  // Δv²/24 at T = 1, and the pressure of what it emits too small: with 56 velocities by 6e-3, 2.3e-3 of
+  // ρU²/2. 32 would leave 7e-3.
   const std::vector<std::string> overrides = {
-      "parameters.M=5",          "parameters.Kn=1e9",
-      "space.cells=[42,21]",     "space.domain=[[-1.3125,1.3125],[0,1.3125]]",
-      "velocity.max=10.85",      "velocity.points=32",
-      "time.method=md-imex-5-2", "time.end=1",
-      "output.every=0",          "output.surfaces=[\"cylinder\"]"};
+      "parameters.M=5",
+      "parameters.Kn=1e9",
+      "space.cells=[32,16]",
+      "space.domain=[[-1.3333333333333333,1.3333333333333333],[0,1.3333333333333333]]",
+      "velocity.max=10.5",
+      "velocity.points=56",
+      "time.method=md-imex-5-2",
+      "time.end=0.6",
+      "output.every=0",
+      "output.surfaces=[\"cylinder\"]"};
   simulation run(apsis::load_case("gas/cylinder", overrides));
   while (!run.finished()) run.advance();
   const auto wall = wall_values(run, "cylinder");
   const double U = 5.0 * std::sqrt(5.0 / 3.0);
-  ASSERT_GT(wall.at("x").size(), 40U);
+  ASSERT_GT(wall.at("x").size(), 30U);
   for (std::size_t k = 0; k < wall.at("x").size(); ++k) {
     // Counter-clockwise along the wall, the stream has the component −U y.
     const double x = wall.at("x")[k], y = wall.at("y")[k];

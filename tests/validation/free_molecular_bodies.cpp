@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <numbers>
 #include <string>
 #include <vector>
@@ -37,7 +38,8 @@ wall_fluxes arriving(double u_n, double u_t) {
   for (int k = 0; k <= n; ++k) {
     const double v = low + k * step, weight = (k == 0 || k == n ? 1.0 : 2.0 + 2.0 * (k % 2)) * step / 3.0;
     const double f = weight * std::exp(-0.5 * (v - u_n) * (v - u_n)) / std::sqrt(2.0 * std::numbers::pi);
-    for (int power = 1; power < 4; ++power) sums[power] += std::pow(-v, power) * f;
+    for (std::size_t power = 1; power < 4; ++power)
+      sums[power] += std::pow(-v, static_cast<double>(power)) * f;
   }
   // A half Maxwellian of temperature 1 carries the energy 2 for each molecule, and √(2π)/2 of momentum.
   return {sums[2], u_t * sums[1], 0.5 * sums[3] + (0.5 * u_t * u_t + 1.0) * sums[1] - 2.0 * sums[1],

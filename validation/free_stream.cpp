@@ -1,5 +1,8 @@
 #include <validation/free_stream.hpp>
 
+#include <apsis/core/errors.hpp>
+#include <apsis/run/body_loads.hpp>
+
 #include <cmath>
 
 #include <fmt/format.h>
@@ -16,19 +19,22 @@ double speed_of_stream(const quantity_values& parameters) {
   return number_between(parameters, "mach", 0.5, 8.0) * std::sqrt(5.0 / 3.0);
 }
 
-double free_stream_coefficient(const body_in_free_stream& of, const quantity_values& parameters,
-                               const quantity_run& make) {
+double free_stream_coefficient(const std::string& case_name, const std::vector<std::string>& resolution,
+                               const quantity_values& parameters, const quantity_run& make) {
   const double U = speed_of_stream(parameters);
   const bool drag = one_of(parameters, "quantity", {"drag", "heat"}) == "drag";
   static_cast<void>(number_between(parameters, "accommodation", 0.0, 1.0));
-  std::vector<std::string> overrides = of.resolution;
+  std::vector<std::string> overrides = resolution;
   overrides.insert(overrides.end(),
                    {"parameters.M=" + parameters.at("mach"), "parameters.Kn=1e9",
                     "parameters.alpha=" + parameters.at("accommodation"),
                     fmt::format("velocity.max={}", U + 4.4), "time.method=md-imex-5-2", "output.every=0"});
-  const simulation run = make(of.case_name, overrides);
-  const double received = -last_flux(run, of.body, drag ? "momentum_x" : "energy");
-  return 2.0 * received / (of.area * (drag ? U * U : U * U * U));
+  const simulation run = make(case_name, overrides);
+  const std::string wanted = drag ? "C_D" : "C_H";
+  for (const load_value& one :
+       loads_in_stream(body_loads(run.setup(), run.last()).front(), run.config().output.reference.value()))
+    if (one.name == wanted) return one.value;
+  throw input_error(fmt::format("the case {} has no {}", case_name, wanted));
 }
 
 }  // namespace apsis::validation

@@ -1,5 +1,4 @@
 #include <cmath>
-#include <numbers>
 #include <string>
 
 #include <fmt/format.h>
@@ -23,14 +22,11 @@ double compute(const quantity_values& parameters, const quantity_run& make) {
   // Incident molecules have their distribution from the start. Only numerical errors near the wall must
   // settle.
   return free_stream_coefficient(
-      {.case_name = "gas/sphere",
-       .body = "sphere",
-       .area = 0.25 * std::numbers::pi,
-       .resolution = {fmt::format("space.cells=[{},{},{}]", 2 * half, half, half),
-                      fmt::format("space.domain=[[{0},{1}],[0,{1}],[0,{1}]]", -end, end),
-                      "boundary.right.kind=inflow", "boundary.right.rho=1",
-                      "boundary.right.u=[\"M*sqrt(5/3)\",0,0]", "boundary.right.T=1",
-                      fmt::format("velocity.points={}", velocities), "time.end=0.8"}},
+      "gas/sphere",
+      {fmt::format("space.cells=[{},{},{}]", 2 * half, half, half),
+       fmt::format("space.domain=[[{0},{1}],[0,{1}],[0,{1}]]", -end, end), "boundary.right.kind=inflow",
+       "boundary.right.rho=1", "boundary.right.u=[\"M*sqrt(5/3)\",0,0]", "boundary.right.T=1",
+       fmt::format("velocity.points={}", velocities), "time.end=0.8"},
       parameters, make);
 }
 

@@ -159,8 +159,8 @@ TEST(bodies, are_refused_where_they_cannot_be) {
               testing::ThrowsMessage<apsis::input_error>(testing::HasSubstr("a body on a line")));
   std::string steady = with(circle + "T = \"1 + 0.1*t\"\n");
   steady.replace(steady.find("[time]"), std::string::npos, "[steady]\ntolerance = 1e-6\n");
-  EXPECT_THAT(of(steady),
-              testing::ThrowsMessage<apsis::input_error>(testing::HasSubstr("space.body.1.T depends on t")));
+  EXPECT_THAT(of(steady), testing::ThrowsMessage<apsis::input_error>(
+                              testing::HasSubstr("'space.body.1.T' depends on t")));
 }
 
 }  // namespace bodies_test

@@ -34,7 +34,8 @@ struct reference_key {
   apsis::dimension dimension;                      ///< with a table [gas], units of it are valid
   double reference_values::* number;               ///< member with the number; null of a vector
   std::vector<double> reference_values::* vector;  ///< member with the vector; null of a number
-  bool positive, required;                         ///< whether it must be > 0; whether every case needs it
+  bool positive;                                   ///< whether it must be > 0
+  bool required;                                   ///< whether every case needs it
   int only_in;      ///< number of space dimensions that have it; 0: two and three
   const char* doc;  ///< meaning
 };

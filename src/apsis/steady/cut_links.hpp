@@ -28,10 +28,10 @@ struct way_out_of_cut {
 
 /// A group of cut cells with its ways out.
 struct group_of_cut {
-  int cell = -1;            ///< the first one, which stands for the group
-  std::vector<int> others;  ///< whose rows are copies of its row
-  double volume = 0.0;      ///< of the gas, over that of a whole cell
-  std::vector<way_out_of_cut> ways;
+  int cell = -1;                     ///< the first one, which stands for the group
+  std::vector<int> others;           ///< whose rows are copies of its row
+  double volume = 0.0;               ///< of the gas, over that of a whole cell
+  std::vector<way_out_of_cut> ways;  ///< faces and walls
 };
 
 /// The groups of cut cells of a mesh of one process, for the sweeps and moment equations of steady states.

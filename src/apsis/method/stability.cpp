@@ -91,12 +91,21 @@ long double radius(long double k) {
   return std::pow(10.0L, -4.0L + 12.0L * k / samples);
 }
 
+const std::vector<long double>& sampled_radii() {
+  static const std::vector<long double> radii = [] {
+    std::vector<long double> all;
+    for (int k = 0; k <= samples; ++k) all.push_back(radius(static_cast<long double>(k)));
+    return all;
+  }();
+  return radii;
+}
+
 /// Returns the maximum of f(radius(k)): the largest sample, and golden-section maxima around all samples that
 /// are not below their neighbours.
 template <class Function>
 long double maximum_over_radii(const Function& f) {
   std::vector<long double> values;
-  for (int k = 0; k <= samples; ++k) values.push_back(f(radius(static_cast<long double>(k))));
+  for (const long double r : sampled_radii()) values.push_back(f(r));
   long double largest = *std::max_element(values.begin(), values.end());
   for (std::size_t k = 1; k + 1 < values.size(); ++k) {
     if (!(values[k] >= values[k - 1] && values[k] >= values[k + 1])) continue;

@@ -60,6 +60,8 @@ class symmetry_boundary final : public boundary {
     }
   }
 
+  bool mirrors() const override { return true; }
+
   /// Mirrored components have the same entropy.
   std::optional<std::vector<double>> entropy_bound() const override {
     if (std::any_of(signs_.begin(), signs_.end(), [](double sign) { return sign != 1.0; }))

@@ -3,11 +3,13 @@
 
 #include <apsis/boundary/boundary_registry.hpp>
 #include <apsis/boundary/oblique_reflection.hpp>
+#include <apsis/boundary/wall_temperature.hpp>
 #include <apsis/core/errors.hpp>
 #include <apsis/model/model_registry.hpp>
 
 #include <memory>
 #include <random>
+#include <utility>
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -71,6 +73,100 @@ TEST(oblique_walls, mix_reflection_and_emission_by_the_accommodation) {
     EXPECT_THAT([&] { with(apsis::face_quantity([](double t, const apsis::position&) { return t; }), 2.0); },
                 testing::ThrowsMessage<apsis::input_error>(testing::HasSubstr("is 2 at t = 2 (")));
   }
+}
+
+TEST(oblique_walls, without_a_given_temperature_balance_heat_and_mass_of_any_row) {
+  std::mt19937 generator(8);
+  int unmatched = 0;
+  for (const int d : {2, 3})
+    for (const row_kind kind : {row_kind::positive, row_kind::decades, row_kind::few})
+      for (const double alpha : {1.0, 0.6, 1e-3, 0.0})
+        for (int n = 0; n < 5; ++n) {
+          const auto gas = gas_of("bgk", d);
+          const velocity_set set = gas->velocities();
+          const vector normal = random_normal(d, generator);
+          const auto inward = inward_of(set, normal);
+          const auto f = random_row(kind, at(set.components()), generator);
+          vector u = {-0.3 * normal[1], 0.3 * normal[0], 0.0};
+          const std::vector<apsis::face_quantity> velocity(u.begin(), u.begin() + d);
+          const auto made =
+              apsis::make_boundary("adiabatic", *gas, {{"velocity", velocity}, {"accommodation", {alpha}}});
+          std::vector<double> values(f.size(), 0.0), reflected(f.size());
+          made->oblique(set)->emit({normal, {}, 0.0}, inward.data(), f.data(), values.data());
+          unmatched += !apsis::oblique_reflection(set)
+                            .reflect(normal, inward.data(), f.data(), reflected.data())
+                            .is_matched;
+          for (std::size_t k = 0; k < f.size(); ++k)
+            if (inward[k] > 0.0) {
+              EXPECT_GE(values[k], 0.0);
+            }
+          const auto heat = [&](const fluxes& all) {
+            long double sum = all.sum[4] + all.sum[5];
+            for (std::size_t k = 0; k < 3; ++k) sum += u[k] * (0.5L * u[k] * all.sum[0] - all.sum[1 + k]);
+            return sum;
+          };
+          const auto arrives = fluxes_of(set, normal, inward, -1.0, f),
+                     leaves = fluxes_of(set, normal, inward, 1.0, values);
+          if (!(arrives.sum[0] > 0.0L)) continue;  // internal energy without molecules is no gas
+          // Sums of a thousand terms. Reflection matches its sums to 1e-14 in other tests.
+          EXPECT_LT(difference(arrives, leaves, true), 1e-13) << d << alpha;
+          const long double size = arrives.size[4] + arrives.size[5];
+          EXPECT_NEAR(static_cast<double>((heat(leaves) - heat(arrives)) / size), 0.0, 1e-13) << d << alpha;
+        }
+  EXPECT_GT(unmatched, 10);
+}
+
+TEST(oblique_walls, without_a_given_temperature_are_those_of_faces_at_a_normal_along_an_axis) {
+  std::mt19937 generator(9);
+  const auto gas = gas_of("bgk", 2);
+  const velocity_set set = gas->velocities();
+  const auto f = random_row(row_kind::positive, at(set.components()), generator);
+  const apsis::face_quantities radiates = {{"sigma", {0.4}}, {"surroundings", {0.8}}, {"emissivity", {0.9}}};
+  for (const auto& [kind, values] :
+       {std::pair("adiabatic", apsis::face_quantities{}), std::pair("radiating", radiates)})
+    for (const apsis::face where : {apsis::face{0, false}, apsis::face{0, true}, apsis::face{1, true}}) {
+      const auto made = apsis::make_boundary(kind, *gas, values);
+      vector normal{};
+      normal[at(where.direction)] = where.upper ? -1.0 : 1.0;
+      const auto inward = inward_of(set, normal);
+      std::vector<double> at_face(f.size()), at_wall(f.size());
+      made->prepared(where, set)->incoming(where, 0.0, {}, f.data(), at_face.data());
+      made->oblique(set)->emit({normal, {}, 0.0}, inward.data(), f.data(), at_wall.data());
+      for (std::size_t k = 0; k < f.size(); ++k)
+        if (inward[k] > 0.0) {
+          EXPECT_NEAR(at_wall[k], at_face[k], 1e-12 * at_face[k]) << kind;
+        }
+    }
+}
+
+TEST(oblique_walls, have_the_temperature_with_which_they_emit) {
+  std::mt19937 generator(10);
+  const auto gas = gas_of("bgk", 2);
+  const velocity_set set = gas->velocities();
+  const vector n = random_normal(2, generator);
+  const auto inward = inward_of(set, n);
+  const auto f = random_row(row_kind::positive, at(set.components()), generator);
+  const auto sums = fluxes_of(set, n, inward, -1.0, f);
+  apsis::arriving_gas arriving{
+      static_cast<double>(sums.sum[0]), {}, static_cast<double>(sums.sum[4] + sums.sum[5])};
+  // Momentum along the wall; that along the normal does not matter, as the wall moves along itself.
+  for (std::size_t k = 0; k < 3; ++k) arriving.momentum[k] = static_cast<double>(sums.sum[1 + k]);
+  const std::vector<apsis::face_quantity> velocity = {-0.4 * n[1], 0.4 * n[0]};
+  const auto wall = apsis::make_boundary("radiating", *gas,
+                                         {{"velocity", velocity}, {"sigma", {0.4}}, {"surroundings", {0.8}}});
+  const apsis::wall_point where{n, {}, 0.0};
+  const auto T = dynamic_cast<const apsis::wall_temperature&>(*wall).temperature(where, set, arriving);
+  ASSERT_TRUE(T.has_value());
+  const auto known = apsis::make_boundary("diffuse", *gas, {{"T", {*T}}, {"velocity", velocity}});
+  EXPECT_EQ(dynamic_cast<const apsis::wall_temperature&>(*known).temperature(where, set, {}), *T);
+  std::vector<double> found(f.size()), expected(f.size());
+  wall->oblique(set)->emit(where, inward.data(), f.data(), found.data());
+  known->oblique(set)->emit(where, inward.data(), f.data(), expected.data());
+  for (std::size_t k = 0; k < f.size(); ++k)
+    if (inward[k] > 0.0) {
+      EXPECT_NEAR(found[k], expected[k], 1e-11 * expected[k]);
+    }
+  EXPECT_FALSE(dynamic_cast<const apsis::wall_temperature&>(*wall).temperature(where, set, {}).has_value());
 }
 
 TEST(oblique_walls, of_symmetry_need_the_components_of_a_gas) {

@@ -78,11 +78,11 @@ std::vector<double> column(const apsis::surface_table& table, const std::string&
 /// Free-molecular pressure and heat flux at a wall that makes the angle with the stream, over ρ, for u = 2.5
 /// and T = 1 on both sides. S: speed along the normal over √(2T).
 struct free_molecular {
-  double pressure, heat;
+  double pressure, heat, arriving;
   explicit free_molecular(double cosine) {
     const double s = 2.5 / std::sqrt(2.0), S = s * cosine, root = std::sqrt(std::numbers::pi);
     const double chi = std::exp(-S * S) + root * S * (1.0 + std::erf(S));
-    const double arriving = chi / std::sqrt(2.0 * std::numbers::pi);
+    arriving = chi / std::sqrt(2.0 * std::numbers::pi);
     // Bird, Molecular Gas Dynamics (1994), section 7: of diffuse walls.
     pressure = (S * std::exp(-S * S) + root * (0.5 + S * S) * (1.0 + std::erf(S))) / root +
                0.5 * std::sqrt(2.0 * std::numbers::pi) * arriving;
@@ -113,6 +113,41 @@ TEST(runs_past_bodies, have_free_molecular_pressure_and_heat_at_every_piece_of_w
       EXPECT_LT(x[k], x[k - 1]);
     }
   }
+}
+
+TEST(runs_past_bodies, have_the_free_molecular_recovery_temperature_at_every_adiabatic_piece) {
+  const apsis::simulation run = finished(cylinder("kind = \"adiabatic\"\n"));
+  EXPECT_EQ(run.summary().negative_values, 0);
+  const auto tables = run.surfaces();
+  const auto& wall = table_of(tables, "cylinder");
+  const auto x = column(wall, "x"), T = column(wall, "T_w"), q = column(wall, "heat_flux"),
+             m = column(wall, "mass"), E = column(wall, "energy_arriving");
+  ASSERT_GT(x.size(), 12U);
+  for (std::size_t k = 0; k < x.size(); ++k) {
+    // Sums of a thousand terms of each stage.
+    EXPECT_NEAR(m[k], 0.0, 1e-13);
+    EXPECT_NEAR(q[k], 0.0, 1e-13 * (1.0 + E[k]));
+    // 2 T_w per mass leaves. Where almost nothing arrives, far fewer velocities make up the sums.
+    const free_molecular exact(-x[k]);
+    if (x[k] < 0.3) {
+      EXPECT_NEAR(T[k], 1.0 + 0.5 * exact.heat / exact.arriving, 0.02 * T[k]) << x[k];
+    }
+  }
+}
+
+TEST(runs_past_bodies, beside_solid_boxes_without_a_given_temperature_conserve_mass_and_heat) {
+  std::string text = cylinder("kind = \"radiating\"\nsigma = 0\nsurroundings = 1\naccommodation = 0.7\n");
+  text.replace(text.find("end = 2"), 7, "end = 0.1");
+  text += "[[space.solid]]\nname = \"fin\"\nfrom = [0.65, 0]\nto = [1.3, 0.39]\nkind = \"adiabatic\"\n";
+  const apsis::simulation run = finished(text);
+  EXPECT_TRUE(run.promises().positivity);
+  EXPECT_EQ(run.summary().negative_values, 0);
+  EXPECT_LT(run.summary().conservation_defect, 1e-13);
+  const auto tables = run.surfaces();
+  for (const std::string name : {"cylinder", "fin"})
+    for (const std::string amount : {"mass", "heat_flux"})
+      for (const double value : column(table_of(tables, name), amount))
+        EXPECT_NEAR(value, 0.0, 1e-12) << name;
 }
 
 TEST(runs_past_bodies, give_walls_what_the_history_says) {

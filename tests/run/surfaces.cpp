@@ -173,7 +173,7 @@ TEST(surfaces, have_a_row_for_every_cell_face_with_its_place) {
   EXPECT_THAT(box.numbers.columns,
               ElementsAre("s", "x", "y", "n_x", "n_y", "area", "mass", "momentum_x", "momentum_y", "energy",
                           "pressure", "shear_stress", "heat_flux", "rho", "u_x", "u_y", "T", "mass_arriving",
-                          "mass_leaving", "energy_arriving", "energy_leaving"));
+                          "mass_leaving", "energy_arriving", "energy_leaving", "T_w"));
   // Cells of 0.2 x 0.4; the box is two cells wide and one high. Counter-clockwise from (0.4, -0.2).
   EXPECT_THAT(box.faces, ElementsAre("bottom", "bottom", "right", "top", "top", "left"));
   const auto near = [](std::vector<double> expected) {

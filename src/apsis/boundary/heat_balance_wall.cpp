@@ -2,6 +2,7 @@
 
 #include <apsis/boundary/gas_end.hpp>
 #include <apsis/boundary/mirrored_components.hpp>
+#include <apsis/boundary/oblique_reflection.hpp>
 #include <apsis/boundary/wall_values.hpp>
 #include <apsis/core/errors.hpp>
 
@@ -30,12 +31,23 @@ prescribed_state emission(const model& equation, const std::string& kind,
 /// The balance at one face and time, per mass that arrives: α e(T) + c T⁴ = α E/m + c T_0⁴ with c = factor/m.
 class heat_balance_wall::balance {
  public:
-  balance(const heat_balance_wall& wall, const std::array<double, 3>& u, double t, std::span<double> row)
-      : wall_(wall), u_(u), t_(t), row_(row) {}
+  /// `mass_flux`: that of unit components of the first set, > 0 where it leaves the wall.
+  balance(const heat_balance_wall& wall, const velocity_set& velocities, std::span<const double> mass_flux,
+          const std::array<double, 3>& u, double t, std::span<double> row)
+      : wall_(wall), velocities_(velocities), mass_flux_(mass_flux), u_(u), t_(t), row_(row) {}
 
   double arriving_mass = 0.0, arriving_heat = 0.0;
   double alpha = 1.0;
   radiation radiated;
+
+  /// Adds what arrives in a row.
+  void add_arriving(const double* row) {
+    for (std::size_t j = 0; j < mass_flux_.size(); ++j)
+      if (mass_flux_[j] < 0.0) {
+        arriving_mass -= mass_flux_[j] * row[j];
+        arriving_heat -= mass_flux_[j] * heat(row, j);
+      }
+  }
 
   /// row ← the Maxwellian of density 1 of the temperature that balances; returns the factor of its density.
   double solve() {
@@ -67,8 +79,12 @@ class heat_balance_wall::balance {
     if (!(std::abs(best.excess) <= accurate * (sum_ + c_ * fourth(best.T))))
       fail(best.T, "no temperature on the velocities has this heat");
     excess_at(best.T);
+    temperature_ = best.T;
     return arriving_mass / emitted_mass_;
   }
+
+  /// Returns the temperature that solve() found.
+  double temperature() const { return temperature_; }
 
  private:
   /// A temperature that the velocities represent, and α e(T) + c T⁴ − sum.
@@ -125,14 +141,24 @@ class heat_balance_wall::balance {
     }
     double heat = 0.0;
     emitted_mass_ = 0.0;
-    for (std::size_t j = 0; j < wall_.mass_flux_.size(); ++j)
-      if (wall_.mass_flux_[j] > 0.0) {
-        emitted_mass_ += wall_.mass_flux_[j] * row_[j];
-        heat += wall_.mass_flux_[j] * wall_.heat(row_.data(), j, u_);
+    for (std::size_t j = 0; j < mass_flux_.size(); ++j)
+      if (mass_flux_[j] > 0.0) {
+        emitted_mass_ += mass_flux_[j] * row_[j];
+        heat += mass_flux_[j] * this->heat(row_.data(), j);
       }
     if (emitted_mass_ > 0.0) return alpha * (heat / emitted_mass_) + c_ * fourth(T) - sum_;
     why_ = "its Maxwellian is 0 at all velocities that leave it";
     return std::nullopt;
+  }
+
+  /// ½(|v − u|² g + h) at velocity j.
+  double heat(const double* row, std::size_t j) const {
+    double square = 0.0;
+    for (int k = 0; k < velocities_.dimensions(); ++k) {
+      const double c = velocities_.speeds(k)[j] - u_[static_cast<std::size_t>(k)];
+      square += c * c;
+    }
+    return 0.5 * (square * row[j] + (velocities_.sets() > 1 ? row[mass_flux_.size() + j] : 0.0));
   }
 
   [[noreturn]] void fail(double T, const std::string& why) const {
@@ -144,12 +170,56 @@ class heat_balance_wall::balance {
   }
 
   const heat_balance_wall& wall_;
+  const velocity_set& velocities_;
+  std::span<const double> mass_flux_;
   const std::array<double, 3>& u_;
   double t_;
   std::span<double> row_;
   double given_ = 0.0, c_ = 0.0, sum_ = 0.0;  ///< E/m, c, and the right-hand side
-  double emitted_mass_ = 0.0;
+  double emitted_mass_ = 0.0, temperature_ = 0.0;
   std::string why_;  ///< the velocities do not represent the last temperature
+};
+
+/// The wall with any normal. Specular reflection returns the heat that arrives. Where it matches the mass
+/// alone, all that arrives is re-emitted: the balance is then exact too.
+class heat_balance_wall::oblique_form final : public oblique_wall {
+ public:
+  oblique_form(std::shared_ptr<const heat_balance_wall> wall, const velocity_set& velocities)
+      : wall_(std::move(wall)), velocities_(velocities) {
+    const face_quantity& part = wall_->accommodation_;
+    if (!part.is_constant() || accommodation_at(part, 0.0, {}) < 1.0) reflection_.emplace(velocities);
+  }
+
+  std::array<double, 3> velocity(const wall_point& where) const override {
+    return velocity_along(wall_->velocity_, where);
+  }
+
+  void emit(const wall_point& where, const double* inward, const double* arriving,
+            double* values) const override {
+    const auto n = static_cast<std::size_t>(velocities_.components());
+    thread_local std::vector<double> flux, emitted;
+    flux.assign(velocities_.weights().begin(), velocities_.weights().end());
+    for (std::size_t j = 0; j < flux.size(); ++j) flux[j] *= inward[j];
+    if (emitted.size() < n) emitted.resize(n);
+    const std::array<double, 3> u = velocity(where);
+    balance of(*wall_, velocities_, flux, u, where.t, {emitted.data(), n});
+    of.alpha = accommodation_at(wall_->accommodation_, where.t, where.at);
+    of.radiated = wall_->radiated(where.t, where.at);
+    if (of.alpha < 1.0 && !reflection_->reflect(where.normal, inward, arriving, values).is_matched)
+      of.alpha = 1.0;
+    if (of.alpha == 0.0) return;
+    of.add_arriving(arriving);
+    // Where nothing arrives nothing leaves, whatever the temperature.
+    const bool emits = of.arriving_mass != 0.0;
+    const double rho = emits ? of.alpha * of.solve() : 0.0;
+    for (std::size_t k = 0; k < n; ++k)
+      values[k] = (emits ? rho * emitted[k] : 0.0) + (of.alpha < 1.0 ? (1.0 - of.alpha) * values[k] : 0.0);
+  }
+
+ private:
+  std::shared_ptr<const heat_balance_wall> wall_;
+  velocity_set velocities_;
+  std::optional<oblique_reflection> reflection_;  ///< unless α = 1
 };
 
 heat_balance_wall::heat_balance_wall(const model& equation, const std::string& kind,
@@ -179,33 +249,46 @@ std::shared_ptr<const boundary> heat_balance_wall::prepared(const face& where,
   return own;
 }
 
+std::shared_ptr<const oblique_wall> heat_balance_wall::oblique(const velocity_set& velocities) const {
+  return std::make_shared<oblique_form>(copy(), velocities);
+}
+
+std::optional<double> heat_balance_wall::temperature(const wall_point& where, const velocity_set& velocities,
+                                                     const arriving_gas& arriving) const {
+  const std::array<double, 3> u = velocity_along(velocity_, where);
+  std::vector<double> flux(velocities.weights().begin(), velocities.weights().end()),
+      row(static_cast<std::size_t>(velocities.components()));
+  for (std::size_t j = 0; j < flux.size(); ++j) {
+    double inward = 0.0;
+    for (int k = 0; k < velocities.dimensions(); ++k)
+      inward += where.normal[static_cast<std::size_t>(k)] * velocities.speeds(k)[j];
+    flux[j] *= inward;
+  }
+  balance of(*this, velocities, flux, u, where.t, row);
+  of.alpha = accommodation_at(accommodation_, where.t, where.at);
+  of.radiated = radiated(where.t, where.at);
+  of.arriving_mass = arriving.mass;
+  of.arriving_heat = arriving.energy;
+  for (std::size_t k = 0; k < u.size(); ++k)
+    of.arriving_heat += u[k] * (0.5 * u[k] * arriving.mass - arriving.momentum[k]);
+  if (of.alpha == 0.0 || !(arriving.mass > 0.0)) return std::nullopt;
+  of.solve();
+  return of.temperature();
+}
+
 std::array<double, 3> heat_balance_wall::wall_velocity(double t, const position& at) const {
   std::array<double, 3> u{};
   for (std::size_t k = 0; k < velocity_.size(); ++k) u[k] = velocity_[k].at(t, at);
   return u;
 }
 
-/// ½(|v − u|² g + h) at velocity j.
-double heat_balance_wall::heat(const double* row, std::size_t j, const std::array<double, 3>& u) const {
-  double square = 0.0;
-  for (int k = 0; k < velocities_.dimensions(); ++k) {
-    const double c = velocities_.speeds(k)[j] - u[static_cast<std::size_t>(k)];
-    square += c * c;
-  }
-  return 0.5 * (square * row[j] + (velocities_.sets() > 1 ? row[mass_flux_.size() + j] : 0.0));
-}
-
 void heat_balance_wall::incoming(const face& where, double t, const position& at, const double* outgoing,
                                  double* values) const {
   const std::array<double, 3> u = velocity_along(velocity_, where, t, at);
-  balance of(*this, u, t, {values, mirrored_.size()});
+  balance of(*this, velocities_, mass_flux_, u, t, {values, mirrored_.size()});
   of.alpha = accommodation_at(accommodation_, t, at);
   of.radiated = radiated(t, at);
-  for (std::size_t j = 0; j < mass_flux_.size(); ++j)
-    if (mass_flux_[j] < 0.0) {
-      of.arriving_mass -= mass_flux_[j] * outgoing[j];
-      of.arriving_heat -= mass_flux_[j] * heat(outgoing, j, u);
-    }
+  of.add_arriving(outgoing);
   // Where nothing arrives nothing leaves, whatever the temperature.
   const bool emits = of.alpha > 0.0 && of.arriving_mass != 0.0;
   const double rho = emits ? of.alpha * of.solve() : 0.0;

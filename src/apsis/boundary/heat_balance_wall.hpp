@@ -3,21 +3,24 @@
 #include <apsis/boundary/boundary.hpp>
 #include <apsis/boundary/boundary_registry.hpp>
 #include <apsis/boundary/prescribed_state.hpp>
+#include <apsis/boundary/wall_temperature.hpp>
 
 #include <array>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 namespace apsis {
 
-/// A diffuse wall whose temperature T_w follows at every face and stage from the heat that crosses it,
+/// A diffuse wall whose temperature T_w follows at every face, piece of wall and stage from the heat that
+/// crosses it,
 ///   α (E − m e(T_w)) = q(T_w),  e(T) = Σ_in w v_n ½|v − u_w|² M / Σ_in w v_n M,  M = M[1, u_w, T],
 /// with the mass m = Σ_out w |v_n| f and the heat E = Σ_out w |v_n| ½|v − u_w|² f that arrive, the
 /// accommodation α, and the heat q that the wall gives away. It emits what a diffuse wall of temperature T_w
 /// emits. Discrete sums are those of the fluxes in the step, so that neither mass crosses the wall nor heat
 /// other than q, to rounding. e(T) and q(T) increase with T. Dimensionless.
-class heat_balance_wall : public incoming_boundary {
+class heat_balance_wall : public incoming_boundary, public wall_temperature {
  public:
   /// `equation` must outlive the object. Throws input_error with the name of the kind if it has no
   /// Maxwellians.
@@ -25,7 +28,13 @@ class heat_balance_wall : public incoming_boundary {
                     face_quantity accommodation);
 
   std::shared_ptr<const boundary> prepared(const face& where, const velocity_set& velocities) const final;
+  /// Returns the wall with any normal. Where specular reflection does not match the energy of what arrives,
+  /// as where f has a few values ≠ 0, such a wall re-emits all of it.
+  std::shared_ptr<const oblique_wall> oblique(const velocity_set& velocities) const final;
   std::array<double, 3> wall_velocity(double t, const position& at) const final;
+  /// Throws as incoming() does. Nothing where nothing is re-emitted.
+  std::optional<double> temperature(const wall_point& where, const velocity_set& velocities,
+                                    const arriving_gas& arriving) const final;
   /// Throws numerical_error if no temperature that the velocities represent balances the heat.
   void incoming(const face& where, double t, const position& at, const double* outgoing,
                 double* incoming) const final;
@@ -47,7 +56,7 @@ class heat_balance_wall : public incoming_boundary {
 
  private:
   class balance;
-  double heat(const double* row, std::size_t j, const std::array<double, 3>& u) const;
+  class oblique_form;
 
   std::string kind_;
   prescribed_state emitted_;

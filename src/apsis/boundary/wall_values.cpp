@@ -30,4 +30,23 @@ std::array<double, 3> velocity_along(const std::vector<face_quantity>& velocity,
   return u;
 }
 
+std::array<double, 3> velocity_along(const std::vector<face_quantity>& velocity, const wall_point& where) {
+  std::array<double, 3> u{};
+  double normal = 0.0, square = 0.0;
+  for (std::size_t k = 0; k < velocity.size(); ++k) {
+    u[k] = velocity[k].at(where.t, where.at);
+    normal += u[k] * where.normal[k];
+    square += u[k] * u[k];
+  }
+  // Pieces are chords of a curved wall, which deviate from it by less.
+  constexpr double most_of_square = 0.25;
+  if (normal * normal > most_of_square * square)
+    throw input_error(
+        fmt::format("the velocity of a diffuse wall is {:g} along its normal at t = {:.10g} (the body would "
+                    "have to move); give a velocity along the wall",
+                    normal, where.t));
+  for (std::size_t k = 0; k < velocity.size(); ++k) u[k] -= normal * where.normal[k];
+  return u;
+}
+
 }  // namespace apsis

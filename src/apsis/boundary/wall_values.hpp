@@ -1,6 +1,7 @@
 #pragma once
 
 #include <apsis/boundary/boundary_registry.hpp>
+#include <apsis/boundary/oblique_wall.hpp>
 #include <apsis/mesh/face.hpp>
 
 #include <array>
@@ -15,5 +16,9 @@ double accommodation_at(const face_quantity& accommodation, double t, const posi
 /// normal.
 std::array<double, 3> velocity_along(const std::vector<face_quantity>& velocity, const face& where, double t,
                                      const position& at);
+
+/// Returns the part of the velocity along a wall with any normal. Throws input_error if more than half of it
+/// is along the normal.
+std::array<double, 3> velocity_along(const std::vector<face_quantity>& velocity, const wall_point& where);
 
 }  // namespace apsis

@@ -58,13 +58,15 @@ class surface_writer {
         invariants_(setup.equation->invariants()),
         loads_(*setup.equation, setup.config().output.reference),
         gas_(*setup.equation),
-        one_way_(*setup.equation) {
+        one_way_(*setup.equation),
+        of_walls_(*setup.equation) {
     for (const dimension& density : setup.equation->invariant_dimensions())
       fluxes_.push_back(density * dimensions::length / dimensions::time);
   }
 
   surface_table table(const std::string& name, const budget_surface& one, std::size_t first) const {
     surface_table table = with_columns(name);
+    of_walls_.add_name(table, boundary_of(one));
     for (const int number : one.surfaces)
       for (std::size_t place = 0; place < space_.surfaces()[at(number)].segments.size(); ++place) {
         table.faces.push_back(face_names[face_beside(space_.surfaces()[at(number)]).index()]);
@@ -83,7 +85,7 @@ class surface_writer {
     for (const int number : one.walls) {
       table.faces.emplace_back("wall");
       table.corners.push_back(space_.mesh().cut()->walls()[at(number)].corners);
-      table.numbers.rows.push_back(row_of_wall(number, *wall, first));
+      table.numbers.rows.push_back(row_of_wall(number, one, *wall, first));
       first += invariants_.size();
     }
     if (one.solid < 0 || !in_plane()) return table;
@@ -125,7 +127,7 @@ class surface_writer {
     const auto given = fluxes_at(first, area);
     std::vector<double> row = place_and_fluxes(s, x, normal_at(one.where), area, given);
     loads_.add_values(row, given, one.where, space_.side(number)->wall_velocity(middle_of_step(), x));
-    add_state(row, first);
+    add_state(row, first, space_.side(number), normal_at(one.where), x);
     return row;
   }
 
@@ -137,16 +139,17 @@ class surface_writer {
     std::vector<double> row = place_and_fluxes(s, one.middle, normal_at(of.where), one.area, given);
     const int side = static_cast<int>(of.where.index());
     loads_.add_values(row, given, of.where, space_.side(side)->wall_velocity(middle_of_step(), one.middle));
-    add_state(row, first);
+    add_state(row, first, boundary_of(of), normal_at(of.where), one.middle);
     return row;
   }
 
-  std::vector<double> row_of_wall(int number, const oblique_wall& wall, std::size_t first) const {
+  std::vector<double> row_of_wall(int number, const budget_surface& of, const oblique_wall& wall,
+                                  std::size_t first) const {
     const wall_segment& one = space_.mesh().cut()->walls()[at(number)];
     const auto given = fluxes_at(first, one.area);
     std::vector<double> row = place_and_fluxes(0.0, one.middle, one.normal, one.area, given);
     loads_.add_values(row, given, one.normal, wall.velocity({one.normal, one.middle, middle_of_step()}));
-    add_state(row, first);
+    add_state(row, first, boundary_of(of), one.normal, one.middle);
     return row;
   }
 
@@ -160,8 +163,16 @@ class surface_writer {
     return given;
   }
 
-  /// Adds the state at the end whose amounts begin at `first`, and what arrives there and leaves.
-  void add_state(std::vector<double>& row, std::size_t first) const {
+  /// Returns the boundary of a surface.
+  const boundary* boundary_of(const budget_surface& one) const {
+    return one.solid < 0 ? space_.side(static_cast<int>(one.where.index()))
+                         : space_.solid_boundary(one.solid).get();
+  }
+
+  /// Adds the state at the end whose amounts begin at `first`, what arrives there and leaves, and the
+  /// temperature of a wall.
+  void add_state(std::vector<double>& row, std::size_t first, const boundary* side,
+                 const std::array<double, 3>& n, const position& x) const {
     const auto moment = [&](std::size_t number) {
       const std::size_t count = invariants_.size();
       return last_.observed.empty()
@@ -171,6 +182,7 @@ class surface_writer {
     };
     gas_.add_values(row, moment(0));
     one_way_.add_values(row, moment(1), moment(2));
+    of_walls_.add_value(row, side, {n, x, last_.t}, moment(1));
   }
 
   /// Returns the normal into the gas at a face of cells.
@@ -231,6 +243,7 @@ class surface_writer {
   load_columns loads_;
   gas_columns gas_;
   one_way_columns one_way_;
+  wall_temperature_column of_walls_;
 };
 
 }  // namespace

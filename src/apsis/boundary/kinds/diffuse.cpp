@@ -2,6 +2,7 @@
 #include <apsis/boundary/mirrored_components.hpp>
 #include <apsis/boundary/oblique_reflection.hpp>
 #include <apsis/boundary/prescribed_state.hpp>
+#include <apsis/boundary/wall_temperature.hpp>
 #include <apsis/boundary/wall_values.hpp>
 #include <apsis/core/errors.hpp>
 
@@ -36,22 +37,7 @@ class oblique_diffuse_wall final : public oblique_wall {
   }
 
   std::array<double, 3> velocity(const wall_point& where) const override {
-    std::array<double, 3> u{};
-    double normal = 0.0, square = 0.0;
-    for (std::size_t k = 0; k < velocity_.size(); ++k) {
-      u[k] = velocity_[k].at(where.t, where.at);
-      normal += u[k] * where.normal[k];
-      square += u[k] * u[k];
-    }
-    // Pieces are chords of a curved wall, which deviate from it by less.
-    constexpr double most_of_square = 0.25;
-    if (normal * normal > most_of_square * square)
-      throw input_error(fmt::format(
-          "the velocity of a diffuse wall is {:g} along its normal at t = {:.10g} (the body would "
-          "have to move); give a velocity along the wall",
-          normal, where.t));
-    for (std::size_t k = 0; k < velocity_.size(); ++k) u[k] -= normal * where.normal[k];
-    return u;
+    return velocity_along(velocity_, where);
   }
 
   void emit(const wall_point& where, const double* inward, const double* arriving,
@@ -115,7 +101,7 @@ class oblique_diffuse_wall final : public oblique_wall {
 /// α leaves with the Maxwellian of the wall and 1 − α is reflected specularly,
 ///   f_in = α ρ_w M[1, u_w, T_w] + (1 − α) f_out(mirrored v_n),  ρ_w = Σ_out w |v_n| f / Σ_in w |v_n| M,
 /// with the discrete sums of the fluxes in the step, so that no mass crosses the wall.
-class diffuse_wall final : public incoming_boundary {
+class diffuse_wall final : public incoming_boundary, public wall_temperature {
  public:
   diffuse_wall(prescribed_state emitted, face_quantity temperature, std::vector<face_quantity> velocity,
                face_quantity accommodation)
@@ -137,6 +123,11 @@ class diffuse_wall final : public incoming_boundary {
   std::shared_ptr<const oblique_wall> oblique(const velocity_set& velocities) const override {
     return std::make_shared<oblique_diffuse_wall>(velocities, emitted_, temperature_, velocity_,
                                                   accommodation_);
+  }
+
+  std::optional<double> temperature(const wall_point& where, const velocity_set&,
+                                    const arriving_gas&) const override {
+    return temperature_.at(where.t, where.at);
   }
 
   std::optional<std::vector<double>> entropy_bound() const override { return entropy_bound_; }

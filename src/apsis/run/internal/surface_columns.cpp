@@ -140,4 +140,31 @@ void one_way_columns::add_values(std::vector<double>& row, std::span<const doubl
       row.push_back(fluxes.empty() ? std::numeric_limits<double>::quiet_NaN() : fluxes[one.invariant]);
 }
 
+wall_temperature_column::wall_temperature_column(const model& equation)
+    : equation_(equation),
+      mass_(place_of_name(equation.invariants(), "mass")),
+      energy_(place_of_name(equation.invariants(), "energy")),
+      momenta_(places_of_momenta(equation)) {}
+
+const wall_temperature* wall_temperature_column::of(const boundary* side) const {
+  return mass_ && energy_ && !momenta_.empty() ? dynamic_cast<const wall_temperature*>(side) : nullptr;
+}
+
+void wall_temperature_column::add_name(surface_table& table, const boundary* side) const {
+  if (of(side) != nullptr) add_column(table, "T_w", dimensions::temperature);
+}
+
+void wall_temperature_column::add_value(std::vector<double>& row, const boundary* side,
+                                        const wall_point& where, std::span<const double> arriving) const {
+  const wall_temperature* wall = of(side);
+  if (wall == nullptr) return;
+  std::optional<double> found;
+  if (!arriving.empty()) {
+    arriving_gas gas{arriving[*mass_], {}, arriving[*energy_]};
+    for (std::size_t k = 0; k < momenta_.size(); ++k) gas.momentum[k] = arriving[momenta_[k]];
+    found = wall->temperature(where, equation_.velocities(), gas);
+  }
+  row.push_back(found.value_or(std::numeric_limits<double>::quiet_NaN()));
+}
+
 }  // namespace apsis

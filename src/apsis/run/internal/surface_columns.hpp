@@ -1,5 +1,7 @@
 #pragma once
 
+#include <apsis/boundary/boundary.hpp>
+#include <apsis/boundary/wall_temperature.hpp>
 #include <apsis/config/reference_values.hpp>
 #include <apsis/mesh/face.hpp>
 #include <apsis/model/gas_model.hpp>
@@ -78,6 +80,27 @@ class one_way_columns {
     std::size_t invariant;
   };
   std::vector<amount> amounts_;
+};
+
+/// The column of the temperature of a wall; only for surfaces whose boundary has one.
+class wall_temperature_column {
+ public:
+  /// `equation` must outlive the object.
+  explicit wall_temperature_column(const model& equation);
+
+  /// Adds the name for a boundary.
+  void add_name(surface_table& table, const boundary* side) const;
+  /// Appends the value at a point, given the fluxes of the invariants that arrive; NaN where these are not
+  /// known or the temperature has no effect.
+  void add_value(std::vector<double>& row, const boundary* side, const wall_point& where,
+                 std::span<const double> arriving) const;
+
+ private:
+  const wall_temperature* of(const boundary* side) const;
+
+  const model& equation_;
+  std::optional<std::size_t> mass_, energy_;
+  std::vector<std::size_t> momenta_;
 };
 
 /// Sorts the rows of a surface by their first column.

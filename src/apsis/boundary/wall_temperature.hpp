@@ -1,0 +1,28 @@
+#pragma once
+
+#include <apsis/boundary/oblique_wall.hpp>
+#include <apsis/velocity/velocity_set.hpp>
+
+#include <array>
+#include <optional>
+
+namespace apsis {
+
+/// The fluxes of the molecules that arrive at a wall, per area and time. Dimensionless.
+struct arriving_gas {
+  double mass = 0.0;                    ///< Σ_out w |v_n| f
+  std::array<double, 3> momentum = {};  ///< the same of v f
+  double energy = 0.0;                  ///< the same of ½|v|² f, with internal energies
+};
+
+/// A boundary condition that is a wall with a temperature, given or found.
+class wall_temperature {
+ public:
+  virtual ~wall_temperature() = default;
+  /// Returns T_w at a point of a face or of a wall with any normal, given what arrives; nothing where it has
+  /// no effect. Throws as the wall does when it emits.
+  virtual std::optional<double> temperature(const wall_point& where, const velocity_set& velocities,
+                                            const arriving_gas& arriving) const = 0;
+};
+
+}  // namespace apsis

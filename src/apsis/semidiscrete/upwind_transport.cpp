@@ -293,12 +293,17 @@ bool upwind_transport::sweep(double t, const field& u, targets_view targets, con
   });
   const sweep_plan plan{boxes, columns, by_boxes};
   if (cut_) cut_->prepare(u);
-  // Rows of other processes arrive while the boxes that do not need them are swept.
-  space_->begin_ghosts(t, u);
-  sweep_boxes(t, u, targets, plan, scratch_->waves[0], then);
-  space_->finish_ghosts(t, u);
-  sweep_boxes(t, u, targets, plan, scratch_->waves[1], then);
-  if (cut_) cut_->add(t, u, targets, by_boxes ? then : cells_job());
+  first_error failure;
+  failure.run([&] {
+    // Rows of other processes arrive while the boxes that do not need them are swept.
+    space_->begin_ghosts(t, u);
+    sweep_boxes(t, u, targets, plan, scratch_->waves[0], then);
+    space_->finish_ghosts(t, u);
+    sweep_boxes(t, u, targets, plan, scratch_->waves[1], then);
+  });
+  // Other processes wait for the values at cut cells, even if a boundary of this one has failed.
+  if (cut_) failure.run([&] { cut_->add(t, u, targets, by_boxes && !failure ? then : cells_job()); });
+  failure.rethrow();
   return by_boxes && then;
 }
 

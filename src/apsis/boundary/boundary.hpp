@@ -44,9 +44,6 @@ class boundary {
   /// Fills the ghost rows of a pencil at time t. Called before every evaluation of T, and of Q if it depends
   /// on neighbouring cells, concurrently for different pencils.
   virtual void fill(const face& where, double t, const pencil_end& rows) const = 0;
-  /// Whether ghost row g is the image of row g inside, beyond the other end of a short pencil too. fill() is
-  /// then called once more for such rows, with one ghost row and the row that it mirrors.
-  virtual bool mirrors() const { return false; }
   /// Whether incoming() gives the values of the components that enter through the face. Transport then uses
   /// them in the fluxes in place of the edge values of ghost cells.
   virtual bool prescribes_incoming() const { return false; }

@@ -148,20 +148,6 @@ void domain::reserve(int components, int width) {
     for (int row = 0; row < needed; ++row) beyond.push_back(ghosts.row(row));
     inside.assign(at(ends) * at(rows_inside()), nullptr);
   }
-  find_short_mirrors();
-}
-
-void domain::find_short_mirrors() {
-  short_mirrors_.clear();
-  for (int surface = 0; surface < static_cast<int>(sides_.size()); ++surface) {
-    if (repeats(surface) || !sides_[at(surface)]->mirrors()) continue;
-    const face& where = surfaces()[at(surface)].where;
-    const std::vector<int>& ends = surfaces()[at(surface)].segments;
-    for (std::size_t place = 0; place < ends.size(); ++place) {
-      const int seen = visible(where.direction, segment_at(where.direction, ends[place]), where.upper);
-      if (seen < width_) short_mirrors_.push_back({surface, static_cast<int>(place), seen});
-    }
-  }
 }
 
 int domain::cell_at(int surface, int place) const {
@@ -214,14 +200,6 @@ const double* domain::inside_row(const field& u, int direction, const segment& o
   return u.row(one.first + (upper ? one.cells - 1 - cell : cell) * mesh().stride(direction));
 }
 
-/// The row that is `cell` rows inwards from an end, which may be a ghost row of the other end.
-const double* domain::mirrored_row(const field& u, int direction, int number, bool upper, int cell) const {
-  const segment& one = segment_at(direction, number);
-  const int own = one.beyond[upper ? 1 : 0] + one.cells;
-  return cell < own ? inside_row(u, direction, one, upper, cell)
-                    : ghost_row(u, direction, number, !upper, cell - own);
-}
-
 /// Whether the ghost rows of an end depend on cells of other processes. A boundary reads as many rows inside
 /// as there are ghost rows, and at least three, if there are so many.
 bool domain::needs_others(int direction, const segment& one, bool upper) const {
@@ -256,31 +234,6 @@ void domain::fill_surface(int surface, double t, const field& u, end_kind which)
 void domain::fill_surfaces(double t, const field& u, end_kind which) {
   for (int surface = 0; surface < static_cast<int>(sides_.size()); ++surface)
     if (!repeats(surface)) fill_surface(surface, t, u, which);
-  complete_mirrors(t, u, which);
-}
-
-/// Fills the ghost rows of mirrors that are images of ghost rows of the other end. Ghost rows are filled one
-/// after the other at all mirrors, since between two mirrors each is the image of an earlier one.
-void domain::complete_mirrors(double t, const field& u, end_kind which) {
-  constexpr int ends_at_once = 16;
-  if (short_mirrors_.empty()) return;
-  for (int ghost = 0; ghost < width_; ++ghost)
-    parallel_blocks(static_cast<int>(short_mirrors_.size()), ends_at_once, [&](int begin, int end) {
-      for (int k = begin; k < end; ++k) {
-        const auto& [surface, place, seen] = short_mirrors_[at(k)];
-        if (ghost < seen) continue;
-        const face& where = surfaces()[at(surface)].where;
-        const int number = surfaces()[at(surface)].segments[at(place)];
-        const segment& one = segment_at(where.direction, number);
-        if (which != end_kind::all &&
-            needs_others(where.direction, one, where.upper) != (which == end_kind::of_others))
-          continue;
-        const std::array inside = {mirrored_row(u, where.direction, number, where.upper, ghost)};
-        const std::span row(end_rows_[at(surface)].beyond.data() + at(place) * at(width_) + at(ghost), 1);
-        sides_[at(surface)]->fill(
-            where, t, {inside, row, space_.velocities, u.components(), meeting_point(surface, place)});
-      }
-    });
 }
 
 void domain::fill_ghosts(double t, const field& u) {

@@ -144,18 +144,10 @@ class domain : public construction_count<domain> {
   int pencil_of(int direction, const segment& one) const;
   int visible(int direction, const segment& one, bool upper) const;
   const double* inside_row(const field& u, int direction, const segment& one, bool upper, int cell) const;
-  const double* mirrored_row(const field& u, int direction, int segment, bool upper, int cell) const;
   const double* ghost_row(const field& u, int direction, int segment, bool upper, int ghost) const;
   bool needs_others(int direction, const segment& one, bool upper) const;
   void fill_surfaces(double t, const field& u, end_kind which);
   void fill_surface(int surface, double t, const field& u, end_kind which);
-  void find_short_mirrors();
-  void complete_mirrors(double t, const field& u, end_kind which);
-
-  /// An end at a mirror that sees fewer cells than it has ghost rows.
-  struct short_mirror {
-    int surface, place, seen;
-  };
 
   /// The rows on both sides of the ends at a surface. The pointers are stored as well, so that filling
   /// allocates nothing.
@@ -175,7 +167,6 @@ class domain : public construction_count<domain> {
       solids_;                                          ///< of boxes and bodies
   std::vector<budget_surface> budget_surfaces_;
   std::vector<end_rows> end_rows_;  ///< [surface]
-  std::vector<short_mirror> short_mirrors_;
   int width_ = 0;
 };
 

@@ -27,8 +27,9 @@ class oblique_mirror final : public oblique_wall {
 };
 
 /// A plane of symmetry, or a wall that reflects particles specularly: ghost cells are the mirror images of
-/// the cells inside, with the normal velocity reversed. Mass, energy and tangential momentum do not cross the
-/// face.
+/// the cells inside, with the normal velocity reversed. The values that enter are images of those that leave,
+/// as they enter the fluxes: mass, energy and tangential momentum do not cross the face, to rounding. Edge
+/// values of ghost cells would not do, since a pencil may have fewer cells than ghost cells.
 class symmetry_boundary final : public boundary {
  public:
   /// A description that prepared() turns into a boundary of a face; without a model, all sets of components
@@ -60,7 +61,11 @@ class symmetry_boundary final : public boundary {
     }
   }
 
-  bool mirrors() const override { return true; }
+  bool prescribes_incoming() const override { return true; }
+
+  void incoming(const face&, double, const position&, const double* outgoing, double* values) const override {
+    for (std::size_t k = 0; k < mirrored_.size(); ++k) values[k] = signs_[k] * outgoing[mirrored_[k]];
+  }
 
   /// Mirrored components have the same entropy.
   std::optional<std::vector<double>> entropy_bound() const override {

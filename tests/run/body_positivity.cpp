@@ -62,7 +62,13 @@ class random_bodies {
                      : "semi_axes = " + vector(d, 0.35, 0.8) + "\n";
     if (!is_round && d == 2) text += fmt::format("angle = {:.1f}\n", number(0.0, 180.0));
     if (number(0.0, 1.0) < 0.2) return text + "kind = \"symmetry\"\n";
-    text += fmt::format("T = {:.3f}\n", number(0.4, 2.0));
+    const double T = number(0.4, 2.0), kind = number(0.0, 1.0);
+    if (kind < 0.2)
+      text += "kind = \"adiabatic\"\n";
+    else if (kind < 0.4)
+      text += fmt::format("kind = \"radiating\"\nsigma = 0.3\nsurroundings = {:.3f}\n", T);
+    else
+      text += fmt::format("T = {:.3f}\n", T);
     return text + "accommodation = " + pick({"1", "1", "0.4"}) + "\n";
   }
 
@@ -88,9 +94,10 @@ void expect_nonnegative(int dimensions, int steps, double point_stages, unsigned
       done += static_cast<double>(run.step()) * static_cast<double>(run.state().size()) *
               static_cast<double>(apsis::find_method(method).stages());
     } catch (const apsis::numerical_error& failure) {
-      // A gas that becomes too hot or too cold for the velocities ends a run.
+      // A gas or a wall that becomes too hot or too cold for the velocities ends a run.
       ASSERT_THAT(failure.what(), testing::AnyOf(testing::HasSubstr("no Maxwellian has the state outside"),
-                                                 testing::HasSubstr("is too small for the gas")))
+                                                 testing::HasSubstr("is too small for the gas"),
+                                                 testing::HasSubstr("has no temperature that balances")))
           << text;
       ++ended;
     } catch (const apsis::input_error& failure) {

@@ -36,8 +36,8 @@ struct surface_values {
 ///   rho, u_x … or u, T   density, bulk velocity and temperature, NaN where they are unknown
 /// and of every model with these invariants
 ///   mass_arriving, mass_leaving, energy_arriving, energy_leaving   face_fluxes::observed(), both ≥ 0
-/// and of a wall with a temperature, given or found by its heat balance,
-///   T_w        that temperature, NaN where nothing arrives or all is reflected
+/// and of a wall with a given temperature, or with one from its heat balance,
+///   T_w        this temperature; NaN where nothing arrives or all is reflected.
 /// In the plane and in space the table also has the corners of each row.
 /// Rows of a box or body in the plane are in the order of s, others in that of the ends.
 std::vector<surface_table> compute_surfaces(const run_setup& setup, const surface_values& last);

@@ -90,8 +90,8 @@ class wall_temperature_column {
 
   /// Adds the name for a boundary.
   void add_name(surface_table& table, const boundary* side) const;
-  /// Appends the value at a point, given the fluxes of the invariants that arrive; NaN where these are not
-  /// known or the temperature has no effect.
+  /// Appends the value at a point where the fluxes `arriving` of the invariants arrive. It is NaN where these
+  /// are not known, or where the temperature has no effect.
   void add_value(std::vector<double>& row, const boundary* side, const wall_point& where,
                  std::span<const double> arriving) const;
 

@@ -183,7 +183,7 @@ TEST(vacuum, lets_nothing_enter) {
         if (enters[k] != 0.0) {
           EXPECT_EQ(f[k], 0.0);
         }
-      EXPECT_TRUE(boundary->prescribes_incoming());
+      EXPECT_TRUE(boundary->prescribes_incoming(9, 3));
       EXPECT_FALSE(boundary->entropy_bound().has_value());
     }
   }

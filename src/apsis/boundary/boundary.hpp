@@ -44,9 +44,10 @@ class boundary {
   /// Fills the ghost rows of a pencil at time t. Called before every evaluation of T, and of Q if it depends
   /// on neighbouring cells, concurrently for different pencils.
   virtual void fill(const face& where, double t, const pencil_end& rows) const = 0;
-  /// Whether incoming() gives the values of the components that enter through the face. Transport then uses
-  /// them in the fluxes in place of the edge values of ghost cells.
-  virtual bool prescribes_incoming() const { return false; }
+  /// Whether incoming() gives the values of the components that enter through the face, for a pencil of
+  /// `cells` cells with `ghosts` ghost rows. Transport then uses them in the fluxes in place of the edge
+  /// values of ghost cells.
+  virtual bool prescribes_incoming(int /*cells*/, int /*ghosts*/) const { return false; }
   /// For every component k that enters, incoming[k] ← its value at the face at time t. outgoing[k] is the
   /// value of a component that leaves, as it enters the flux v_k outgoing[k] of the step; 0 for others. The
   /// other components of incoming[], which does not overlap outgoing[], are free for scratch. Called
@@ -84,7 +85,7 @@ class repeating_boundary : public boundary {
 /// smooth solution inside.
 class incoming_boundary : public boundary {
  public:
-  bool prescribes_incoming() const final { return true; }
+  bool prescribes_incoming(int, int) const final { return true; }
   void fill(const face& where, double t, const pencil_end& rows) const final;
 };
 

@@ -190,6 +190,12 @@ int domain::visible(int direction, const segment& one, bool upper) const {
   return std::min(seen, upper ? wrapped + 1 : n - wrapped);
 }
 
+bool domain::prescribes_incoming(int surface, int place) const {
+  const auto& [where, solid, ends, own] = surfaces()[at(surface)];
+  const segment& one = segment_at(where.direction, ends[at(place)]);
+  return sides_[at(surface)]->prescribes_incoming(visible(where.direction, one, where.upper), width_);
+}
+
 /// The row of a cell counted inwards from an end.
 const double* domain::inside_row(const field& u, int direction, const segment& one, bool upper,
                                  int cell) const {

@@ -122,6 +122,8 @@ class domain : public construction_count<domain> {
   /// Returns the ghost rows beyond an end at a surface, counted outwards, of the last fill_ghosts(). The
   /// boundary of the surface must fill them.
   std::span<const double* const> ghost_rows(int surface, int place) const;
+  /// Whether the boundary prescribes the components that enter at such an end.
+  bool prescribes_incoming(int surface, int place) const;
   /// Returns the row of the cell at such an end, as of the last fill_ghosts().
   const double* row_at(int surface, int place) const;
 

@@ -108,7 +108,7 @@ void block_sweep::empty_beyond_surface(bool upper, const place& at) {
   int distance = (upper ? segment_->cells - at.end : at.begin) + segment_->beyond[side];
   for (const segment* one = segment_; distance < halo_;) {
     const segment_end& end = one->ends[side];
-    if (end.surface >= 0 && !of_->faces.prescribes(end.surface)) return;
+    if (end.surface >= 0 && !of_->faces.prescribes(end.surface, end.place)) return;
     if (end.surface >= 0) break;
     one = &of_->space.segment_at(at.direction, end.place);
     distance += one->cells + one->beyond[side];

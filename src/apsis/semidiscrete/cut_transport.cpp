@@ -183,7 +183,8 @@ void cut_transport::domain_values(double t, const way& one, double* values, scra
   side.fill(where, t, {{&inside, 1}, own.ghosts, space_->space().velocities, n, x});
   const double* entering = own.ghosts.front();
   double* outgoing = own.rows.row(inward_row);
-  if (side.prescribes_incoming()) {
+  // The cell itself is all that the boundary sees.
+  if (side.prescribes_incoming(1, static_cast<int>(own.ghosts.size()))) {
     std::copy_n(values, n, outgoing);
     face_rows::keep_leaving(inward_[where.index()].data(), n, outgoing);
     double* made = own.rows.row(made_row);

@@ -34,7 +34,8 @@ face_fluxes::face_fluxes(const model& equation, std::shared_ptr<domain> space)
         made.inward.push_back(of.where.upper ? -v : v);
       const auto ends = index(of.own);
       made.values = field(static_cast<int>(ends), equation.components());
-      made.incoming = field(prescribes(surface) ? static_cast<int>(ends) : 0, equation.components());
+      const bool may_prescribe = space_->side(surface)->prescribes_incoming(0, 1);
+      made.incoming = field(may_prescribe ? static_cast<int>(ends) : 0, equation.components());
       made.first = ends_;
       ends_ += ends;
     }
@@ -59,7 +60,7 @@ void face_fluxes::complete(int surface, int place, double t, std::span<const tar
   const face where = space_->surfaces()[index(surface)].where;
   double* values = here.values.row(place);
   const int width = equation_.components();
-  if (prescribes(surface)) {
+  if (prescribes(surface, place)) {
     face_rows::keep_leaving(here.inward.data(), width, values);
     double* incoming = here.incoming.row(place);
     space_->side(surface)->incoming_given_outgoing(where, t, space_->meeting_point(surface, place), values,
@@ -87,7 +88,7 @@ void face_fluxes::complete(int surface, int place, double t, std::span<const tar
 void face_fluxes::continue_along(int surface, int place) {
   side& here = at(surface);
   double* values = here.values.row(place);
-  if (!prescribes(surface)) return;
+  if (!prescribes(surface, place)) return;
   const double *cell = space_->row_at(surface, place), *ghost = space_->ghost_rows(surface, place)[0];
   for (std::size_t k = 0; k < here.inward.size(); ++k)
     if (here.inward[k] == 0.0) values[k] = 0.5 * (cell[k] + ghost[k]);

@@ -21,8 +21,8 @@ class face_fluxes {
   /// `equation` must outlive the object.
   face_fluxes(const model& equation, std::shared_ptr<domain> space);
 
-  /// Whether the boundary of a surface prescribes the incoming components.
-  bool prescribes(int surface) const { return space_->side(surface)->prescribes_incoming(); }
+  /// Whether the boundary prescribes the components that enter at an end of a segment.
+  bool prescribes(int surface, int place) const { return space_->prescribes_incoming(surface, place); }
   /// Returns the row that takes the upwind values at an end of a segment, of outgoing components alone if the
   /// boundary prescribes the others.
   double* recorded(int surface, int place);

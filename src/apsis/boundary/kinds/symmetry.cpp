@@ -27,9 +27,9 @@ class oblique_mirror final : public oblique_wall {
 };
 
 /// A plane of symmetry, or a wall that reflects particles specularly: ghost cells are the mirror images of
-/// the cells inside, with the normal velocity reversed. The values that enter are images of those that leave,
-/// as they enter the fluxes: mass, energy and tangential momentum do not cross the face, to rounding. Edge
-/// values of ghost cells would not do, since a pencil may have fewer cells than ghost cells.
+/// the cells inside, with the normal velocity reversed. Mass, energy and tangential momentum do not cross the
+/// face. In a pencil of fewer cells than ghost rows, as between the plane and a body, some images are
+/// missing. The values that enter are then images of those that leave, as they enter the fluxes.
 class symmetry_boundary final : public boundary {
  public:
   /// A description that prepared() turns into a boundary of a face; without a model, all sets of components
@@ -61,7 +61,7 @@ class symmetry_boundary final : public boundary {
     }
   }
 
-  bool prescribes_incoming() const override { return true; }
+  bool prescribes_incoming(int cells, int ghosts) const override { return cells < ghosts; }
 
   void incoming(const face&, double, const position&, const double* outgoing, double* values) const override {
     for (std::size_t k = 0; k < mirrored_.size(); ++k) values[k] = signs_[k] * outgoing[mirrored_[k]];

@@ -290,7 +290,8 @@ std::vector<position> mesh_cutter::corners_of_closed(int cell, int direction, bo
 /// Adds the pieces of wall of a cell: what its open faces lack, and the faces of solid boxes.
 void mesh_cutter::add_walls(int cell, gas_of_cell& to) {
   const open_parts::corner corner = lowest_corner(cell);
-  const bool whole = is_whole(cell);
+  // A plane through corners of a cell leaves its faces open or closed, and cuts off half of its volume.
+  const bool whole = is_whole(cell) && to.volume > all_gas * mesh_.cell_volume();
   std::array<double, 3> vector{};
   double size = 0.0;
   for (int k = 0; k < mesh_.dimensions(); ++k)

@@ -205,8 +205,8 @@ TEST(cut_cells, close_the_surface_of_every_body) {
         length += wall.area;
         for (std::size_t k = 0; k < 2; ++k) sum[k] += wall.area * wall.normal[k];
       }
-    // Chords of the disc are shorter than arcs by (h/r)^2/24 of them. At a sharp corner a chord is shorter than
-    // its two legs by some 0.6 h.
+    // Chords of the disc are shorter than arcs by (h/r)^2/24 of them. At a sharp corner a chord is shorter
+    // than its two legs by some 0.6 h.
     EXPECT_NEAR(length, body == 0 ? std::numbers::pi : 4.8, body == 0 ? 0.008 : 2.4 * mesh.spacing(0));
     for (const double x : sum) EXPECT_NEAR(x, 0.0, 1e-14);
   }

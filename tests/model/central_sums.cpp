@@ -26,8 +26,12 @@ double number(double from, double to) {
   return from + (to - from) * *rc::gen::inRange(0, 10'001) / 1e4;
 }
 
-/// Lines of different lengths, uniform or with unequal spacing and weights.
+/// Lines of different lengths, uniform or with unequal spacing and weights; or rings about an axis.
 apsis::velocity_grid any_grid(int dimensions) {
+  if (dimensions == 3 && *rc::gen::arbitrary<bool>())
+    return {apsis::velocity_line(*rc::gen::inRange(4, 11), number(3.0, 8.0)),
+            apsis::polar_rings(*rc::gen::inRange(4, 8), 4 * *rc::gen::inRange(3, 5), number(3.0, 8.0)),
+            *rc::gen::element(0, 2)};
   const bool uniform = *rc::gen::arbitrary<bool>();
   std::vector<apsis::velocity_line> lines;
   for (int k = 0; k < dimensions; ++k) {

@@ -34,7 +34,11 @@ RC_GTEST_PROP(correlated_gaussian, is_its_formula_at_every_velocity, ()) {
   const double width = *rc::gen::element(0.02, 0.3, 1.0);
   std::vector<apsis::velocity_line> lines;
   for (int k = 0; k < d; ++k) lines.emplace_back(*rc::gen::inRange(4, 14), number(3.0, 8.0));
-  const apsis::velocity_grid grid(lines);
+  const bool rings = d == 3 && *rc::gen::arbitrary<bool>();
+  const apsis::velocity_grid grid =
+      rings ? apsis::velocity_grid(lines.front(), {*rc::gen::inRange(4, 8), 12, number(3.0, 8.0)},
+                                   *rc::gen::element(0, 2))
+            : apsis::velocity_grid(lines);
   apsis::fluid_state state;
   state.rho = number(0.1, 3.0);
   state.T = width * width;

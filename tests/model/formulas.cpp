@@ -455,6 +455,10 @@ TEST(formulas, gaussians_are_those_of_single_numbers) {
       for (std::size_t j = 0; j < n; ++j)
         RC_ASSERT(same_bits(one[j], value_of(scalar::gaussian_start(N(of[0].a), N(places[j]) - N(of[0].u),
                                                                     N(0.5 / of[0].T)))));
+      auto powers = places;
+      apsis::velocity_rows::exponentials(of[0].u, line.n, powers.data());
+      for (std::size_t j = 0; j < n; ++j)
+        RC_ASSERT(same_bits(powers[j], value_of(scalar::exp_of(N(places[j]) - N(of[0].u)))));
     });
   });
 }

@@ -42,6 +42,7 @@ void central_sums::add(const velocity_grid& grid, const double* g, const double*
     for (std::size_t p = 0; p <= most; ++p) of_[p][0][0] = grid.weight() * sums[0][p];
     return;
   }
+  if (grid.is_polar()) return add_on_rings(grid, g, u, degree);
   find_powers(grid, 0, u[0], degree, first);
   if (grid.dimensions() == 2) {
     grid_sums::sum(last_axis(grid), grid.lines(), g, u[1], first.data(), degree + 1, sums.data());
@@ -58,6 +59,37 @@ void central_sums::add(const velocity_grid& grid, const double* g, const double*
                    second.data(), static_cast<int>(most - p) + 1, sums.data());
     for (std::size_t q = 0; p + q <= most; ++q)
       for (std::size_t r = 0; p + q + r <= most; ++r) of_[p][q][r] = grid.weight() * sums[q][r];
+  }
+}
+
+/// For each power c_1^p c_2^q across the axis, p + q ≤ degree, one pass over the row sums along it.
+void central_sums::add_on_rings(const velocity_grid& grid, const double* g, const double* u, int degree) {
+  const auto n = static_cast<std::size_t>(grid.lines()), most = static_cast<std::size_t>(degree);
+  const auto first = static_cast<std::size_t>(grid.component_across(0)),
+             second = static_cast<std::size_t>(grid.component_across(1)),
+             last = static_cast<std::size_t>(grid.last_component());
+  thread_local aligned_vector<double> factors;
+  factors.resize((most + 1) * n);
+  std::array<grid_sums::six_powers, grid_sums::most_functions> sums;  // NOLINT
+  for (std::size_t p = 0; p <= most; ++p) {
+    for (std::size_t l = 0; l < n; ++l) {
+      double power = grid.functions_of_lines()[l];
+      for (std::size_t k = 0; k < p; ++k) power *= grid.component_of_lines(0)[l] - u[first];
+      for (std::size_t q = 0; p + q <= most; ++q) {
+        factors[q * n + l] = power;
+        power *= grid.component_of_lines(1)[l] - u[second];
+      }
+    }
+    grid_sums::sum(last_axis(grid), grid.lines(), g, u[last], factors.data(), static_cast<int>(most - p) + 1,
+                   sums.data());
+    for (std::size_t q = 0; p + q <= most; ++q)
+      for (std::size_t r = 0; p + q + r <= most; ++r) {
+        exponents of{};
+        of[first] = p;
+        of[second] = q;
+        of[last] = r;
+        of_[of[0]][of[1]][of[2]] = sums[q][r];
+      }
   }
 }
 

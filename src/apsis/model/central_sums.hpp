@@ -30,6 +30,7 @@ class central_sums {
  private:
   template <class Powers>
   void add(const velocity_grid& grid, const double* g, const double* u, int degree);
+  void add_on_rings(const velocity_grid& grid, const double* g, const double* u, int degree);
 
   static constexpr std::size_t size = highest_degree + 1;
   std::array<std::array<std::array<double, size>, size>, size> of_{};

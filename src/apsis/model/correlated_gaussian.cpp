@@ -12,25 +12,28 @@
 namespace apsis {
 namespace {
 
-/// The Gaussian in its last component c: a(c') exp(−(c − s·c')²/(2V)), where c' are the other components, a
-/// is a Gaussian in them, s the slopes of the mean and V its variance.
+/// The Gaussian in the component c of the last line: a(c') exp(−(c − s·c')²/(2V)), where c' are the other
+/// components, a is a Gaussian in them, s the slopes of the mean and V its variance.
 struct conditional {
   conditional(const velocity_grid& grid, const fluid_state& state, const direction_matrix& covariance,
               const direction_matrix& inverse)
-      : last(grid.dimensions() - 1), variance(1.0 / inverse[at(last)][at(last)]) {
+      : last(grid.last_component()), variance(1.0 / inverse[at(last)][at(last)]) {
     const auto& of = covariance;
+    const int others = grid.dimensions() - 1;
+    const std::size_t i = at(grid.component_across(0)), j = at(grid.component_across(1));
     double determinant = variance * 2.0 * std::numbers::pi;
-    if (last == 1) {
-      outer[0][0] = 1.0 / of[0][0];
-      determinant *= of[0][0] * 2.0 * std::numbers::pi;
-    } else if (last == 2) {
-      const double of_others = of[0][0] * of[1][1] - of[0][1] * of[1][0];
+    if (others == 1) {
+      outer[0][0] = 1.0 / of[i][i];
+      determinant *= of[i][i] * 2.0 * std::numbers::pi;
+    } else if (others == 2) {
+      const double of_others = of[i][i] * of[j][j] - of[i][j] * of[j][i];
       outer = {
-          {{of[1][1] / of_others, -of[0][1] / of_others}, {-of[1][0] / of_others, of[0][0] / of_others}}};
+          {{of[j][j] / of_others, -of[i][j] / of_others}, {-of[j][i] / of_others, of[i][i] / of_others}}};
       determinant *= of_others * (2.0 * std::numbers::pi) * (2.0 * std::numbers::pi);
     }
     height = state.rho / std::sqrt(determinant);
-    for (int k = 0; k < last; ++k) slope[at(k)] = -inverse[at(last)][at(k)] * variance;
+    for (int k = 0; k < others; ++k)
+      slope[at(k)] = -inverse[at(last)][at(grid.component_across(k))] * variance;
   }
 
   /// −½ c'ᵀ(outer)c'.
@@ -53,7 +56,7 @@ struct conditional {
 std::array<double, 2> place(const velocity_grid& grid, const fluid_state& state, int line) {
   std::array<double, 2> c{};
   for (int k = 0; k + 1 < grid.dimensions(); ++k)
-    c[static_cast<std::size_t>(k)] = grid.component_of_lines(k)[line] - state.u[k];
+    c[static_cast<std::size_t>(k)] = grid.component_of_lines(k)[line] - state.u[grid.component_across(k)];
   return c;
 }
 
@@ -169,7 +172,7 @@ class tables {
 void correlated_gaussian(const velocity_grid& grid, const fluid_state& state,
                          const direction_matrix& covariance, const direction_matrix& inverse, double* m) {
   const conditional of(grid, state, covariance, inverse);
-  if (grid.dimensions() == 3)
+  if (grid.dimensions() == 3 && !grid.is_polar())
     if (const tables product(grid, state, of); product.fit()) return product.fill(m);
   fill_lines(grid, state, of, m);
 }

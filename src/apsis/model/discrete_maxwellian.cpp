@@ -1,6 +1,7 @@
 #include <apsis/model/line_family.hpp>
 #include <apsis/model/maxwellian.hpp>
 #include <apsis/model/nearby_maxwellian.hpp>
+#include <apsis/model/polar_maxwellian.hpp>
 #include <apsis/model/realizable_moments.hpp>
 #include <apsis/model/tensor_product.hpp>
 
@@ -204,6 +205,7 @@ class entropy_dual {
 }  // namespace
 
 bool discrete_maxwellian(const velocity_grid& grid, const double* omega, double* m, line_moments* of_m) {
+  if (grid.is_polar()) return discrete_maxwellian_on_rings(grid, omega, m);
   const fluid_state state = to_fluid_state(omega, grid.dimensions());
   return (state.admissible() && nearby_maxwellian(grid, state, m, of_m)) ||
          general_maxwellian(grid, omega, m);

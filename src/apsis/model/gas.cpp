@@ -18,6 +18,13 @@ namespace {
 
 int velocity_dimensions_of(const model_config& config) {
   const int given = static_cast<int>(config.parameters.at("velocity_dimensions"));
+  if (config.velocity.rings > 0) {
+    if (given == 0 || given == 3) return 3;
+    throw input_error(
+        fmt::format("model.velocity_dimensions = {} with rings about an axis (they resolve 3); give 3 or "
+                    "leave it out",
+                    given));
+  }
   if (given == 0) return config.space_dimensions;
   if (given < config.space_dimensions)
     throw input_error(
@@ -57,6 +64,21 @@ variances variances_at(const velocity_line& line, double u) {
   return {(u - *(after - 1)) * (*after - u), farthest};
 }
 
+/// The component along the axis is the first of (x, r, θ) in the plane (x, r), and the last of (r, θ, x)
+/// where all depends on r alone.
+velocity_grid make_grid(const model_config& config) {
+  const velocity_config& of = config.velocity;
+  const int dimensions = velocity_dimensions_of(config);
+  if (of.rings == 0) return velocity_grid(make_lines(of, dimensions));
+  if (config.space_dimensions > 2)
+    throw input_error(fmt::format(
+        "axisymmetric flow in {} space dimensions (its coordinates are x and r, or r alone); give one or two",
+        config.space_dimensions));
+  const velocity_line axial = make_lines(of, 1).front();
+  const double across = of.max_across > 0.0 ? of.max_across : axial.max();
+  return {axial, polar_rings(of.rings, of.angles, across), config.space_dimensions == 1 ? 2 : 0};
+}
+
 velocity_set points_of(const velocity_grid& grid, int sets) {
   if (sets == 1) return grid.set();
   std::vector<aligned_vector<double>> coordinates;
@@ -68,7 +90,7 @@ velocity_set points_of(const velocity_grid& grid, int sets) {
 }  // namespace
 
 gas::gas(const model_config& config)
-    : grid_(make_lines(config.velocity, velocity_dimensions_of(config))),
+    : grid_(make_grid(config)),
       degrees_(degrees_of(config, grid_.dimensions())),
       choice_(config.velocity.equilibrium),
       velocities_(points_of(grid_, reduced() ? 2 : 1)) {}
@@ -114,8 +136,12 @@ double gas::moments_of_g(const double* omega, double* of_g) const {
   const fluid_state s = state(omega);
   double square = 0.0, least = 0.0, greatest = 0.0;
   std::copy_n(omega, d + 1, of_g);
+  for (int k = 0; k < d; ++k) square += s.u[k] * s.u[k];
+  if (grid_.is_polar()) {
+    of_g[d + 1] = omega[0] > 0.0 ? 0.5 * s.rho * (square + d * s.T) : omega[d + 1];
+    return omega[0] > 0.0 ? (degrees_ - d) * s.T : 0.0;
+  }
   for (int k = 0; k < d; ++k) {
-    square += s.u[k] * s.u[k];
     const auto [nearest, farthest] = variances_at(grid_.line(k), s.u[k]);
     least += nearest;
     greatest += farthest;

@@ -83,6 +83,7 @@ double gas_model::relative_change(const double* omega, const double* s, double r
 
 velocity_lattice gas_model::lattice() const {
   velocity_lattice found;
+  if (gas_.grid().is_polar()) return found;
   for (int k = 0; k < gas_.dimensions(); ++k) {
     const velocity_line& line = gas_.grid().line(k);
     found.points.push_back(line.points());
@@ -93,8 +94,7 @@ velocity_lattice gas_model::lattice() const {
 
 double gas_model::cfl_rate(std::span<const double> spacing) const {
   double rate = 0.0;
-  for (std::size_t k = 0; k < spacing.size(); ++k)
-    rate += gas_.grid().line(static_cast<int>(k)).max() / spacing[k];
+  for (std::size_t k = 0; k < spacing.size(); ++k) rate += gas_.grid().max(static_cast<int>(k)) / spacing[k];
   return rate;
 }
 

@@ -35,6 +35,8 @@ class gas_model : public relaxation_model {
   int space_dimensions() const override { return space_dimensions_; }
   const velocity_set& velocities() const override { return gas_.velocities(); }
   velocity_lattice lattice() const override;
+  polar_layout polar() const override { return gas_.grid().polar(); }
+  bool rate_is_proportional_to_density() const override { return by_viscosity_; }
   /// Returns Σ_k v_max,k/Δx_k with the ends of the velocity lines, that of a uniform one half an interval
   /// beyond its last point.
   double cfl_rate(std::span<const double> spacing) const override;

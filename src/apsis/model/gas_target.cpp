@@ -2,6 +2,7 @@
 
 #include <apsis/model/central_sums.hpp>
 #include <apsis/model/internal/target_moments.hpp>
+#include <apsis/model/polar_maxwellian.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -13,13 +14,13 @@ namespace {
 /// Lines that a loop passes together.
 constexpr int together = 16;
 
-/// The components of c = v − u of some lines of the last direction but for the last, 0 from d − 1 on.
+/// The components of c = v − u that are constant on some of the last lines, 0 from d − 1 on.
 struct line_batch {
   int first, count;  ///< lines
   std::array<std::array<double, 2>, together> c;
 };
 
-/// Calls body(line_batch) for all lines of the last direction.
+/// Calls body(line_batch) for all last lines.
 template <class Body>
 void for_lines(const velocity_grid& grid, const fluid_state& state, const Body& body) {
   const int d = grid.dimensions();
@@ -29,23 +30,27 @@ void for_lines(const velocity_grid& grid, const fluid_state& state, const Body& 
     for (int k = 0; k + 1 < d; ++k)
       for (int i = 0; i < some.count; ++i)
         some.c[static_cast<std::size_t>(i)][static_cast<std::size_t>(k)] =
-            grid.component_of_lines(k)[some.first + i] - state.u[k];
+            grid.component_of_lines(k)[some.first + i] - state.u[grid.component_across(k)];
     body(some);
   }
 }
 
-/// P along the last direction of d, the other components of c given.
+/// P along the last line of a grid of d dimensions, the other components of c given.
 template <std::size_t d>
-target_rows::cubic along_last(const target_polynomial& p, const std::array<double, 2>& c) {
-  constexpr std::size_t last = d - 1;
+target_rows::cubic along_last(const velocity_grid& grid, const target_polynomial& p,
+                              const std::array<double, 2>& c) {
+  const auto last = static_cast<std::size_t>(grid.last_component());
   double square = 0.0, along = 0.0;
   target_rows::cubic of_line{p.k, p.l[last], p.a[last][last], p.w[last]};
-  for (std::size_t i = 0; i < last; ++i) {
-    square += c[i] * c[i];
-    along += p.w[i] * c[i];
-    of_line.k0 += p.l[i] * c[i];
-    of_line.k1 += 2.0 * p.a[i][last] * c[i];
-    for (std::size_t j = 0; j < last; ++j) of_line.k0 += p.a[i][j] * c[i] * c[j];
+  for (std::size_t k = 0; k + 1 < d; ++k) {
+    const auto i = static_cast<std::size_t>(grid.component_across(static_cast<int>(k)));
+    square += c[k] * c[k];
+    along += p.w[i] * c[k];
+    of_line.k0 += p.l[i] * c[k];
+    of_line.k1 += 2.0 * p.a[i][last] * c[k];
+    for (std::size_t l = 0; l + 1 < d; ++l)
+      of_line.k0 +=
+          p.a[i][static_cast<std::size_t>(grid.component_across(static_cast<int>(l)))] * c[k] * c[l];
   }
   of_line.k0 += along * square;
   of_line.k1 += p.w[last] * square;
@@ -62,10 +67,10 @@ bool weigh_lines(const velocity_grid& grid, const fluid_state& state, const targ
   for_lines(grid, state, [&](const line_batch& some) {
     std::array<target_rows::cubic, together> of_lines;  // NOLINT(cppcoreguidelines-pro-type-member-init)
     for (int i = 0; i < some.count; ++i)
-      of_lines[static_cast<std::size_t>(i)] = along_last<d>(p, some.c[static_cast<std::size_t>(i)]);
+      of_lines[static_cast<std::size_t>(i)] = along_last<d>(grid, p, some.c[static_cast<std::size_t>(i)]);
     const std::ptrdiff_t first = static_cast<std::ptrdiff_t>(some.first) * n;
-    raised |= target_rows::weigh(base + first, grid.last_line().v().data(), state.u[d - 1], of_lines.data(),
-                                 some.count, f + first, keep, n, e + first);
+    raised |= target_rows::weigh(base + first, grid.last_line().v().data(), state.u[grid.last_component()],
+                                 of_lines.data(), some.count, f + first, keep, n, e + first);
   });
   return raised;
 }
@@ -89,6 +94,7 @@ constexpr double narrowest = 0.25;
 
 /// Returns Δv² or, of other lines, the square of the largest distance of velocities within a thermal speed.
 double widest_gap(const velocity_grid& grid, const fluid_state& state) {
+  if (grid.is_polar()) return gap_square_on_rings(grid, state);
   double widest = 0.0;
   for (int k = 0; k < grid.dimensions(); ++k) {
     const velocity_line& line = grid.line(k);

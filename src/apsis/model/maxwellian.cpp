@@ -2,6 +2,7 @@
 
 #include <apsis/core/errors.hpp>
 #include <apsis/model/grid_sums.hpp>
+#include <apsis/model/polar_maxwellian.hpp>
 #include <apsis/model/tensor_product.hpp>
 #include <apsis/model/velocity_rows.hpp>
 
@@ -53,8 +54,9 @@ void kinetic_moments(const velocity_grid& grid, const double* f, double* omega) 
   grid_sums::sum(last_axis(grid), grid.lines(), f, 0.0, grid.functions_of_lines().data(), functions,
                  sums.data());
   omega[0] = grid.weight() * sums[0][0];
-  for (int k = 0; k + 1 < d; ++k) omega[1 + k] = grid.weight() * sums[static_cast<std::size_t>(k) + 1][0];
-  omega[d] = grid.weight() * sums[0][1];
+  for (int k = 0; k + 1 < d; ++k)
+    omega[1 + grid.component_across(k)] = grid.weight() * sums[static_cast<std::size_t>(k) + 1][0];
+  omega[1 + grid.last_component()] = grid.weight() * sums[0][1];
   omega[d + 1] = grid.weight() * (0.5 * sums[0][2] + (d > 1 ? sums[static_cast<std::size_t>(d)][0] : 0.0));
 }
 
@@ -114,6 +116,7 @@ void gaussians_on(const velocity_line& line, const velocity_rows::gaussian* of_r
 }
 
 void formula_maxwellian(const velocity_grid& grid, const fluid_state& state, double* m) {
+  if (grid.is_polar()) return formula_maxwellian_on_rings(grid, state, m);
   const double factor = height(state, grid.dimensions());
   if (grid.dimensions() == 1) return gaussian_on(grid.line(0), {factor, state.u[0], state.T}, m);
   auto& lines = line_buffers(grid);
@@ -161,6 +164,7 @@ bool formula_has_exact_moments(const velocity_grid& grid, const line_state& stat
 }
 
 bool formula_has_exact_moments(const velocity_grid& grid, const fluid_state& state) {
+  if (grid.is_polar()) return false;
   for (int k = 0; k < grid.dimensions(); ++k)
     if (!has_exact_moments(grid.line(k), {state.rho, state.u[k], state.T})) return false;
   return true;

@@ -4,6 +4,7 @@
 #include <apsis/model/data_form.hpp>
 #include <apsis/model/dimension.hpp>
 #include <apsis/model/point_collision.hpp>
+#include <apsis/velocity/polar_layout.hpp>
 #include <apsis/velocity/position.hpp>
 #include <apsis/velocity/velocity_set.hpp>
 
@@ -97,6 +98,11 @@ class model : public construction_count<model> {
   std::span<const double> speeds(int direction) const { return velocities().speeds(direction); }
   /// Returns the lattice of the velocities, along which forces act; none by default.
   virtual velocity_lattice lattice() const { return {}; }
+  /// Returns the rings of the velocities, which axisymmetric flow needs; none by default.
+  virtual polar_layout polar() const { return {}; }
+  /// Whether Q(cu) = c²Q(u) for c > 0, as where the rate of collisions is proportional to the density. The
+  /// alternative, the default, is Q(cu) = c Q(u). Used for models with rings of velocities alone.
+  virtual bool rate_is_proportional_to_density() const { return false; }
   /// Returns R of the CFL number R Δt on cells of the given sizes Δx_k: by default max_j Σ_k |v_jk|/Δx_k,
   /// since every component moves with one velocity.
   virtual double cfl_rate(std::span<const double> spacing) const;

@@ -1,5 +1,7 @@
 #include <apsis/model/realizable_moments.hpp>
 
+#include <apsis/model/polar_maxwellian.hpp>
+
 #include <algorithm>
 #include <cmath>
 
@@ -103,6 +105,7 @@ std::optional<realizable_moments> compute_realizable(const velocity_grid& grid, 
 }
 
 std::string why_unrealizable(const velocity_grid& grid, const double* omega) {
+  if (grid.is_polar()) return why_unrealizable_on_rings(grid, omega);
   const int d = grid.dimensions();
   if (!std::isfinite(omega[0])) return "density is not finite";
   if (!all_finite(omega, d + 2)) return "a moment is not finite";

@@ -72,6 +72,11 @@ void gaussian_at(const double* v, int n, const velocity_rows::gaussian& of, doub
   }
 }
 
+void exponentials(double shift, int n, double* x) {
+  const int length = static_cast<int>(hn::Lanes(wide()));
+  for (int j = 0; j < n; j += length) store_some(exp_of(load_some(x + j, n - j) - N(shift)), n - j, x + j);
+}
+
 /// A Gaussian seen from one vector of points: what the vectors to the right and to the left are multiplied
 /// with.
 struct outwards {
@@ -179,6 +184,7 @@ namespace {
 HWY_EXPORT(moments);
 HWY_EXPORT(gaussians);
 HWY_EXPORT(gaussian_at);
+HWY_EXPORT(exponentials);
 }  // namespace
 
 void velocity_rows::moments(const double* f, std::ptrdiff_t pitch, int rows, const double* v,
@@ -204,6 +210,10 @@ void velocity_rows::moments(const double* f, std::ptrdiff_t pitch, int rows, con
 void velocity_rows::gaussians(const points& line, const gaussian* of_rows, int rows, double* m,
                               std::ptrdiff_t pitch) {
   HWY_DYNAMIC_DISPATCH(gaussians)(line, of_rows, rows, m, pitch);
+}
+
+void velocity_rows::exponentials(double shift, int n, double* x) {
+  HWY_DYNAMIC_DISPATCH(exponentials)(shift, n, x);
 }
 
 void velocity_rows::gaussian_at(const double* v, int n, const gaussian& of, double* m) {

@@ -43,5 +43,8 @@ void gaussians(const points& line, const gaussian* of_rows, int rows, double* m,
 /// The values of a Gaussian at any n points v, as exponentials; below 1e-300 they are 0.
 void gaussian_at(const double* v, int n, const gaussian& of, double* m);
 
+/// x ← e^(x − shift) for n numbers with x − shift ≤ 700.
+void exponentials(double shift, int n, double* x);
+
 }  // namespace velocity_rows
 }  // namespace apsis

@@ -3,6 +3,7 @@
 #include <apsis/model/gas_model.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -62,27 +63,69 @@ std::string with_unit(const std::string& number, double value, const dimension& 
              : fmt::format("{} [{:.4g} {}]", number, value * scales->unit(measure), unit_of(measure));
 }
 
+/// The same defect of the sums over rings, in both directions across the axis.
+double missed_on_rings(const velocity_grid& grid, const fluid_state& state) {
+  const double width = std::sqrt(state.T), norm = 1.0 / (2.0 * std::numbers::pi * state.T);
+  double mass = 0.0;
+  std::array<double, 2> mean{}, energy{};
+  for (std::size_t l = 0; l < static_cast<std::size_t>(grid.lines()); ++l) {
+    std::array<double, 2> c{};
+    for (int k = 0; k < 2; ++k)
+      c[static_cast<std::size_t>(k)] =
+          (grid.component_of_lines(k)[l] - state.u[grid.component_across(k)]) / width;
+    const double part = norm * grid.functions_of_lines()[l] * std::exp(-0.5 * (c[0] * c[0] + c[1] * c[1]));
+    mass += part;
+    for (std::size_t k = 0; k < 2; ++k) {
+      mean[k] += part * c[k];
+      energy[k] += part * c[k] * c[k];
+    }
+  }
+  return std::max({std::abs(mass - 1.0), std::abs(mean[0]), std::abs(mean[1]), std::abs(energy[0] - 1.0),
+                   std::abs(energy[1] - 1.0)});
+}
+
 }  // namespace
 
+velocity_support::line velocity_support::line_of(const velocity_line& from) {
+  const ends at = ends_of(from);
+  line made{at.lower, at.upper, from.v().front(), 0.0, {from.spacing() * from.spacing()}};
+  if (from.uniform()) return made;
+  const double length = from.v().back() - from.v().front();
+  made.set_gaps(4 * from.points(), length,
+                [&](double left, double right) { return from.widest_gap(left, right); });
+  return made;
+}
+
+/// A direction across the axis, as along a diameter of the rings.
+velocity_support::line velocity_support::line_of(const polar_layout& rings) {
+  const double fastest = rings.speeds.back(), angle = 2.0 * std::numbers::pi / rings.angles;
+  line made{-fastest, fastest, -fastest, 0.0, {}};
+  made.set_gaps(8 * rings.rings, 2.0 * fastest, [&](double left, double right) {
+    const double speed = std::max(std::abs(left), std::abs(right));
+    const auto above = std::upper_bound(rings.speeds.begin(), rings.speeds.end() - 1, speed);
+    const double inner = above == rings.speeds.begin() ? -*above : *(above - 1);
+    return std::max(*above - inner, *above * angle);
+  });
+  return made;
+}
+
 velocity_support::velocity_support(const gas& of) : gas_(of) {
-  for (int k = 0; k < of.dimensions(); ++k) {
-    const velocity_line& from = of.grid().line(k);
-    const ends at = ends_of(from);
-    line made{at.lower, at.upper, from.v().front(), 0.0, {from.spacing() * from.spacing()}};
-    if (!from.uniform()) {
-      constexpr int per_point = 4;
-      const int entries = per_point * from.points();
-      const double length = from.v().back() - from.v().front();
-      made.per_gap = entries / length;
-      made.gaps.clear();
-      for (int j = 0; j < entries; ++j) {
-        const double left = made.first + j / made.per_gap,
-                     gap = from.widest_gap(left, left + 1.0 / made.per_gap);
-        made.gaps.push_back(gap * gap);
-      }
-    }
-    lines_.push_back(std::move(made));
-  }
+  const velocity_grid& grid = of.grid();
+  for (int k = 0; k < of.dimensions(); ++k)
+    lines_.push_back(is_across(k)                 ? line_of(grid.polar())
+                     : k == grid.last_component() ? line_of(grid.last_line())
+                                                  : line_of(grid.line(k)));
+}
+
+bool velocity_support::is_across(int direction) const {
+  return gas_.grid().is_polar() && direction != gas_.grid().last_component();
+}
+
+double velocity_support::missed_along(int direction, const fluid_state& state) const {
+  const velocity_grid& grid = gas_.grid();
+  if (is_across(direction)) return missed_on_rings(grid, state);
+  const velocity_line& points = direction == grid.last_component() ? grid.last_line() : grid.line(direction);
+  return missed_by(points, state.u[direction], std::sqrt(state.T));
 }
 
 double velocity_support::gap_square(const line& of, double u, double T) {
@@ -121,13 +164,12 @@ velocity_fit velocity_support::fit(const fluid_state& state) const {
   velocity_fit worst;
   const double width = std::sqrt(state.T);
   for (int k = 0; k < gas_.dimensions(); ++k) {
-    const velocity_line& points = gas_.grid().line(k);
     const auto& own = lines_[static_cast<std::size_t>(k)];
     const double u = state.u[k];
     const tail below = tail_beyond((u - own.lower) / width), above = tail_beyond((own.upper - u) / width);
     worst.beyond = std::max(worst.beyond, std::min(below.mass + above.mass, 1.0));
     const double outside = below.energy + above.energy;
-    const double missed = missed_by(points, u, width);
+    const double missed = missed_along(k, state);
     if (!(missed > worst.missed)) continue;
     worst.missed = missed;
     worst.direction = k;
@@ -157,14 +199,23 @@ std::string of_state(const fluid_state& state, int direction, const gas_scales* 
                      with_unit(fmt::format("{:.3g}", state.T), state.T, dimensions::temperature, scales));
 }
 
+/// The velocities of a direction; rings end where those along their axis do.
+const velocity_line& line_along(const velocity_grid& grid, int direction) {
+  return grid.is_polar() ? grid.last_line() : grid.line(direction);
+}
+
 /// Names the share beyond the ends and the velocities that would do.
 std::string too_narrow(const gas& of, const fluid_state& state, const velocity_fit& fit,
                        const velocity_words& words) {
-  const velocity_line& line = of.grid().line(fit.direction);
+  const velocity_line& line = line_along(of.grid(), fit.direction);
   const double needed = std::max(velocity_needed(state.u[fit.direction], state.T), words.needed);
   const std::string value = with_unit(at_least(needed), needed, dimensions::velocity, words.scales);
   const std::string missed = fmt::format("a fraction {:.2g} of the energy of the Maxwellian with {}",
                                          fit.missed, of_state(state, fit.direction, words.scales));
+  if (of.grid().is_polar() && fit.direction != of.grid().last_component())
+    return fmt::format(
+        "velocity.max_across = {:.6g} is too small for {} ({} lies beyond it); give at least {}",
+        of.grid().max(fit.direction), words.subject, missed, value);
   if (words.from_file)
     return fmt::format("the velocities end too early for {} ({} lies beyond {:.4g}); give them up to {}",
                        words.subject, missed, line.max(), value);
@@ -174,8 +225,8 @@ std::string too_narrow(const gas& of, const fluid_state& state, const velocity_f
         "least {}",
         words.subject, line.points(), line.max(), missed, value);
   std::string same_spacing;
-  bool equal = true;
-  for (int k = 0; k < of.dimensions(); ++k) equal = equal && of.grid().line(k).points() == line.points();
+  bool equal = !of.grid().is_polar();
+  for (int k = 0; k < of.dimensions() && equal; ++k) equal = of.grid().line(k).points() == line.points();
   if (equal)
     same_spacing = fmt::format(", and velocity.points = {:.0f} for the same spacing",
                                std::ceil(line.points() * needed / line.max()));
@@ -188,8 +239,14 @@ std::string too_narrow(const gas& of, const fluid_state& state, const velocity_f
 /// Names the share that the spacing misses and the number of velocities that would do.
 std::string too_coarse(const gas& of, const fluid_state& state, const velocity_fit& fit,
                        const velocity_words& words) {
-  const velocity_line& line = of.grid().line(fit.direction);
+  const velocity_line& line = line_along(of.grid(), fit.direction);
   const double width = std::sqrt(state.T);
+  if (of.grid().is_polar() && fit.direction != of.grid().last_component())
+    return fmt::format(
+        "velocity.rings is too small for {} ({} rings of {} velocities miss a fraction {:.2g} of the mass or "
+        "the energy of the Maxwellian with {}); give more rings or angles",
+        words.subject, of.grid().polar().rings, of.grid().polar().angles, fit.missed,
+        of_state(state, fit.direction, words.scales));
   if (line.uniform())
     return fmt::format(
         "velocity.points = {} is too few for {} (the spacing {:.3g} is {:.2g} times the thermal speed "
@@ -211,7 +268,11 @@ unsupported_initial_data velocity_problem(const gas& of, const fluid_state& stat
   const std::string problem =
       fit.ends ? too_narrow(of, state, fit, words) : too_coarse(of, state, fit, words);
   if (words.from_file) return {"velocity.set", problem};
-  return {fit.ends ? "velocity.max" : "velocity.points", problem};
+  const bool of_rings = of.grid().is_polar() && fit.direction != of.grid().last_component();
+  return {fit.ends   ? (of_rings ? "velocity.max_across" : "velocity.max")
+          : of_rings ? "velocity.rings"
+                     : "velocity.points",
+          problem};
 }
 
 std::string why_beyond_velocities(const model& equation, const double* omega) {
@@ -219,8 +280,15 @@ std::string why_beyond_velocities(const model& equation, const double* omega) {
   if (found == nullptr || !(omega[0] > 0.0)) return "";
   const velocity_grid& grid = found->molecules().grid();
   for (int k = 0; k < grid.dimensions(); ++k) {
-    const auto& v = grid.line(k).v();
     const double u = omega[1 + k] / omega[0];
+    if (grid.is_polar() && k != grid.last_component()) {
+      const auto& rings = grid.polar().speeds;
+      if (std::abs(u) > *(rings.end() - 2))
+        return fmt::format("its bulk velocity {:.6g} is at the outermost ring {:.6g} of the velocities", u,
+                           rings.back());
+      continue;
+    }
+    const auto& v = line_along(grid, k).v();
     const std::size_t last = v.size() - 1;
     if (!(u > v[last - 1] || u < v[1])) continue;
     const double end = u > 0.0 ? v[last] : v[0];

@@ -60,7 +60,22 @@ class velocity_support {
     double lower, upper;       ///< ends
     double first, per_gap;     ///< first velocity, and entries of `gaps` per unit of velocity
     std::vector<double> gaps;  ///< squares of the spacing; one of a uniform line
+
+    /// Sets `gaps` to the squares of gap(left, right) of equal parts of a length from the first velocity on.
+    template <class Gap>
+    void set_gaps(int entries, double length, const Gap& gap) {
+      per_gap = entries / length;
+      gaps.clear();
+      for (int j = 0; j < entries; ++j) {
+        const double left = first + j / per_gap, widest = gap(left, left + 1.0 / per_gap);
+        gaps.push_back(widest * widest);
+      }
+    }
   };
+  static line line_of(const velocity_line& from);
+  static line line_of(const polar_layout& rings);
+  bool is_across(int direction) const;
+  double missed_along(int direction, const fluid_state& state) const;
   /// Square of the widest spacing at u and at u ± 2 √T.
   static double gap_square(const line& of, double u, double T);
 

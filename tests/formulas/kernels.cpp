@@ -17,6 +17,7 @@
 #include <apsis/semidiscrete/formulas/cut_cell.hpp>
 #include <apsis/semidiscrete/formulas/face.hpp>
 #include <apsis/semidiscrete/formulas/lattice.hpp>
+#include <apsis/semidiscrete/formulas/rotation.hpp>
 #include <apsis/semidiscrete/formulas/upwind.hpp>
 #include <apsis/steady/formulas/mixture.hpp>
 #include <apsis/steady/formulas/sweep.hpp>
@@ -60,6 +61,13 @@ extern "C" void boundaries(const double* u, double* to) {
   to[3] = scalar::with_change(to[3], u[0], u[1]);
   to[4] =
       scalar::limited_edge(u[0], u[1], scalar::limited_fraction(u[0], u[1], u[2], u[3], u[4], u[5]), u[6]);
+}
+
+extern "C" void rotations(const double* u, double* to) {
+  const auto in = scalar::fluxes_of_rotation(u[6], true, u[0], u[1], u[2], u[3], u[4]),
+             out = scalar::fluxes_of_rotation(u[7], true, u[1], u[2], u[3], u[4], u[5]);
+  to[0] = scalar::fraction_of_rotation(in, out, u[3], u[8]);
+  to[1] = in.high_order - out.high_order;
 }
 
 extern "C" void cut_cells(const double* u, double* to) {

@@ -1,0 +1,42 @@
+// The formulas of semidiscrete/rotation_rows.hpp.
+#if defined(APSIS_SEMIDISCRETE_FORMULAS_ROTATION) == defined(HWY_TARGET_TOGGLE)
+#ifdef APSIS_SEMIDISCRETE_FORMULAS_ROTATION
+#undef APSIS_SEMIDISCRETE_FORMULAS_ROTATION
+#else
+#define APSIS_SEMIDISCRETE_FORMULAS_ROTATION
+#endif
+
+#include <apsis/exec/number.hpp>
+#include <apsis/semidiscrete/formulas/upwind.hpp>
+
+APSIS_BEFORE_FORMULAS();
+namespace apsis::APSIS_NUMBERS {
+
+/// Fluxes out of an angle, of first order and by the reconstruction.
+template <class N>
+struct rotation_fluxes {
+  N low_order, high_order;
+
+  APSIS_FORMULA N correction() const { return high_order - low_order; }
+};
+
+/// The fluxes out of the angle c of five in the direction of motion, of which d and e lie downstream. `speed`
+/// is that of the edge behind c.
+template <class N>
+APSIS_FORMULA rotation_fluxes<N> fluxes_of_rotation(N speed, bool fifth_order, N a, N b, N c, N d, N e) {
+  const N low = speed * upwind1_edge(c);
+  return {low, fifth_order ? speed * upwind5_edge(a, b, c, d, e) : low};
+}
+
+/// The fraction of the corrections that leaves a value u ≥ 0 nonnegative, as limited_fraction(), where edges
+/// have different speeds. `inverse` = 1/τ: u − τ (out − in) ≥ 0.
+template <class N>
+APSIS_FORMULA N fraction_of_rotation(const rotation_fluxes<N>& in, const rotation_fluxes<N>& out, N u,
+                                     N inverse) {
+  return limited_fraction(in.low_order, out.low_order, u, in.correction(), out.correction(), inverse);
+}
+
+}  // namespace apsis::APSIS_NUMBERS
+APSIS_AFTER_FORMULAS();
+
+#endif

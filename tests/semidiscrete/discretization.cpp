@@ -189,6 +189,9 @@ class plain_upwind final : public apsis::transport {
   void set_force(apsis::acceleration) override {
     throw apsis::input_error("a force (no such term); leave it out");
   }
+  void set_rotation(int) override {
+    throw apsis::input_error("axisymmetric flow (no such term); leave it out");
+  }
   void set_source(apsis::source_rate) override {
     throw apsis::input_error("a source (no such term); leave it out");
   }

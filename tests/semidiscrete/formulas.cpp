@@ -10,8 +10,10 @@
 #include <apsis/semidiscrete/formulas/cut_cell.hpp>
 #include <apsis/semidiscrete/formulas/face.hpp>
 #include <apsis/semidiscrete/formulas/lattice.hpp>
+#include <apsis/semidiscrete/formulas/rotation.hpp>
 #include <apsis/semidiscrete/formulas/upwind.hpp>
 #include <apsis/semidiscrete/lattice_rows.hpp>
+#include <apsis/semidiscrete/rotation_rows.hpp>
 #include <apsis/semidiscrete/upwind_rows.hpp>
 
 #include <algorithm>
@@ -252,6 +254,79 @@ TEST(formulas, changes_along_a_lattice_are_those_of_single_numbers) {
   });
 }
 
+namespace {
+
+/// Half of a ring of random values, seen in the direction of rotation.
+template <class N>
+struct half_of_ring {
+  const apsis::rotation_rows::half& of;
+  const apsis::rotation_rows::flux_rule& rule;
+  const double* ring;
+
+  /// Angle j of the half, counted downstream from the one at ω = π; −1 is beyond it.
+  int angle(int j) const { return of.lower ? of.angles / 2 + j : of.angles / 2 - 1 - j; }
+  std::size_t place(int j, int column) const {
+    return static_cast<std::size_t>((angle(j) + of.angles) % of.angles * of.apart + column);
+  }
+  /// Place in the arrays of the half.
+  std::size_t in_half(int j, int column) const {
+    return place(j, column) - static_cast<std::size_t>(of.first());
+  }
+  N value(int j, int column) const { return N(ring[place(j, column)]); }
+  scalar::rotation_fluxes<N> out(int j, int column) const {
+    if (j < 0 || j >= of.angles / 2) return {N(0.0), N(0.0)};
+    return scalar::fluxes_of_rotation(N(rule.speeds[in_half(j, column)]), rule.fifth_order,
+                                      value(j - 2, column), value(j - 1, column), value(j, column),
+                                      value(j + 1, column), value(j + 2, column));
+  }
+  N fraction(int j, int column) const {
+    if (j >= of.angles / 2) return N(0.0);
+    return scalar::fraction_of_rotation(out(j - 1, column), out(j, column), value(j, column),
+                                        N(rule.scale) * N(rule.inverse[in_half(j, column)]));
+  }
+  N flux(int j, int column) const {
+    const auto of_angle = out(j, column);
+    if (!rule.limited || j < 0) return of_angle.high_order;
+    return scalar::limited_edge(of_angle.low_order, of_angle.high_order, fraction(j, column),
+                                fraction(j + 1, column));
+  }
+};
+
+}  // namespace
+
+TEST(formulas, changes_along_a_ring_are_those_of_single_numbers) {
+  check_property("ring", [] {
+    namespace rows_of_ring = apsis::rotation_rows;
+    random_source random(*rc::gen::arbitrary<std::uint32_t>());
+    const rows_of_ring::half of{4 * *rc::gen::inRange(1, 6), *rc::gen::inRange(1, 14), random.one_in(2)};
+    const auto n = static_cast<std::size_t>(of.count());
+    rows ring(1, 2 * n, random, any_size);
+    // Some rings vary little: most of their angles are not limited.
+    if (random.one_in(2))
+      for (double& one : ring.all) one = 1.0 + 0.1 * random.uniform(0.0, 1.0);
+    const auto speeds = drawn(n, random, [](random_source& r) { return r.uniform(0.0, 1.0); });
+    const auto inverse = drawn(n, random, [](random_source& r) { return r.uniform(0.0, 5.0); });
+    const rows_of_ring::flux_rule rule{random.one_in(2), random.one_in(2), speeds.data(), inverse.data(),
+                                       random.uniform(1.0, 20.0)};
+    const double rate = random.uniform(0.0, 3.0);
+    for_each_number([&](auto number, int) {
+      using N = decltype(number);
+      std::array<std::vector<double>, 4> all;
+      for (auto& one : all) one.resize(rows_of_ring::places::size(of));
+      std::vector<double> values(2 * n + 2 * rows_of_ring::halo * static_cast<std::size_t>(of.apart));
+      std::vector<double> change(n);
+      rows_of_ring::continue_ring(ring.at[0], of.angles, of.apart, values.data());
+      rows_of_ring::turn(of, rule, values.data(), rate,
+                         {all[0].data(), all[1].data(), all[2].data(), all[3].data()}, change.data());
+      const half_of_ring<N> half{of, rule, ring.at[0]};
+      for (int j = 0; j < of.angles / 2; ++j)
+        for (int column = 0; column < of.apart; ++column)
+          RC_ASSERT(same_bits(change[half.in_half(j, column)],
+                              value_of(N(rate) * (half.flux(j - 1, column) - half.flux(j, column)))));
+    });
+  });
+}
+
 TEST(formulas, values_at_faces_are_those_of_single_numbers) {
   check_property("face", [] {
     random_source random(*rc::gen::arbitrary<std::uint32_t>());
@@ -386,11 +461,12 @@ TEST(cut_rows, limit_lines_as_the_formula_does) {
     const apsis::cut_rows::gradient gradient = {slopes.all.data(), slopes.all.data() + n, nullptr};
     const apsis::cut_rows::demand_rows demand{size.data(), outflow.data(), increase.data()};
     const std::array<std::array<double, 3>, 2> at = {{{0.3, -0.2, 0.0}, {-0.4, 0.1, 0.0}}};
-    constexpr double step = 0.01, kept = 0.95;
+    constexpr double step = 0.01;
+    const auto kept = drawn(n, random, [](random_source& r) { return r.uniform(0.8, 1.0); });
     const int width = static_cast<int>(n);
     for (std::size_t f = 0; f < 2; ++f)
       apsis::cut_rows::add_demand(outward.at[f], step, gradient, at[f], 2, width, demand);
-    apsis::cut_rows::limit(u.at[0], demand, kept, 2, width, gradient);
+    apsis::cut_rows::limit(u.at[0], demand, kept.data(), 2, width, gradient);
     apsis::cut_rows::leave(u.at[0], outward.at[0], gradient, at[0], k % 2 == 0, 2, width, values.data());
     for (std::size_t j = 0; j < n; ++j) {
       scalar::cut_demand<double> sums{0.0, 0.0, 0.0};
@@ -398,7 +474,7 @@ TEST(cut_rows, limit_lines_as_the_formula_does) {
         const double first = x[j] * at[f][0], second = x[n + j] * at[f][1];
         sums.add(step * outward.at[f][j], first + second, std::abs(first) + std::abs(second));
       }
-      const double factor = sums.factor(u.at[0][j], kept);
+      const double factor = sums.factor(u.at[0][j], kept[j]);
       ASSERT_EQ(slopes.all[j], factor * x[j]);
       ASSERT_EQ(slopes.all[n + j], factor * x[n + j]);
       const double correction = scalar::fma(slopes.all[n + j], at[0][1], slopes.all[j] * at[0][0]);

@@ -38,13 +38,22 @@ std::vector<line_speeds> line_speeds::of(const model& equation, const grid& mesh
   return all;
 }
 
-aligned_vector<double> line_speeds::inverse_cfl_numbers(const std::vector<line_speeds>& speeds, double share,
-                                                        double rate_of_force, double kappa) {
+aligned_vector<double> line_speeds::rates(const std::vector<line_speeds>& speeds,
+                                          std::span<const double> of_rotation) {
   aligned_vector<double> rates;
   for (const auto& line : speeds) {
     rates.resize(line.per_cell.size());
     for (std::size_t k = 0; k < rates.size(); ++k) rates[k] += line.per_cell[k];
   }
+  if (of_rotation.empty()) return rates;
+  const auto stride = static_cast<std::size_t>(field(1, static_cast<int>(of_rotation.size())).stride());
+  for (std::size_t k = 0; k < rates.size(); ++k)
+    if (k % stride < of_rotation.size()) rates[k] += of_rotation[k % stride];
+  return rates;
+}
+
+aligned_vector<double> line_speeds::inverse_cfl_numbers(aligned_vector<double> rates, double share,
+                                                        double rate_of_force, double kappa) {
   if (rates.empty()) return rates;
   const double longest = *std::max_element(rates.begin(), rates.end()) + kappa * rate_of_force;
   for (double& rate : rates)

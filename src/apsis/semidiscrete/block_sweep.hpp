@@ -20,10 +20,14 @@ struct line_speeds {
 
   /// Returns the speeds along each direction of a mesh.
   static std::vector<line_speeds> of(const model& equation, const grid& mesh);
+  /// Returns R = Σ_k |v_k|/Δx_k + (rate of a rotation, rotation::rates(), empty without one) of all
+  /// components.
+  static aligned_vector<double> rates(const std::vector<line_speeds>& speeds,
+                                      std::span<const double> of_rotation);
   /// Returns 1/C of all components for forward Euler steps of `share` times the longest, Δt =
-  /// share κ/(max Σ_k |v_k|/Δx_k + κ a): C = Δt (Σ_k |v_k|/Δx_k + a) of each component,
-  /// limiter::least_cfl_number at least, with the rate a of a force.
-  static aligned_vector<double> inverse_cfl_numbers(const std::vector<line_speeds>& speeds, double share,
+  /// share κ/(max R + κ a): C = Δt (R + a) of each component, limiter::least_cfl_number at least, with the
+  /// rates() R and the rate a of a force.
+  static aligned_vector<double> inverse_cfl_numbers(aligned_vector<double> rates, double share,
                                                     double rate_of_force, double kappa);
 };
 

@@ -69,11 +69,11 @@ void add_demand(const double* outward, double step, const gradient& slopes,
   });
 }
 
-void limit(const double* u, const demand_rows& demand, double kept, int directions, int n,
+void limit(const double* u, const demand_rows& demand, const double* kept, int directions, int n,
            const gradient& slopes) {
   for_packs(n, [&](auto lanes, int k) APSIS_PACKED {
     using N = pack<decltype(lanes)>;
-    const N factor = demand_at<N>(demand, k).factor(N::load(u + k), N(kept));
+    const N factor = demand_at<N>(demand, k).factor(N::load(u + k), N::load(kept + k));
     for (std::size_t d = 0; d < static_cast<std::size_t>(directions); ++d)
       (factor * N::load(slopes[d] + k)).store(slopes[d] + k);
   });
@@ -135,7 +135,7 @@ void add_demand(const double* outward, double step, const gradient& slopes,
   HWY_DYNAMIC_DISPATCH(add_demand)(outward, step, slopes, vector, directions, n, demand);
 }
 
-void limit(const double* u, const demand_rows& demand, double kept, int directions, int n,
+void limit(const double* u, const demand_rows& demand, const double* kept, int directions, int n,
            const gradient& slopes) {
   HWY_DYNAMIC_DISPATCH(limit)(u, demand, kept, directions, n, slopes);
 }

@@ -37,8 +37,9 @@ struct demand_rows {
 void add_demand(const double* outward, double step, const gradient& slopes,
                 const std::array<double, 3>& vector, int directions, int n, const demand_rows& demand);
 
-/// Multiplies the slopes by the factor of the limiter. `kept`: the share of u that transport may take.
-void limit(const double* u, const demand_rows& demand, double kept, int directions, int n,
+/// Multiplies the slopes by the factor of the limiter. `kept`: the shares of u that transport may take,
+/// a row.
+void limit(const double* u, const demand_rows& demand, const double* kept, int directions, int n,
            const gradient& slopes);
 
 /// values ← u + slopes·vector where outward > 0, and 0 for negligible u; elsewhere they stay as they are.

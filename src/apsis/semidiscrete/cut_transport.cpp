@@ -6,6 +6,7 @@
 #include <apsis/semidiscrete/face_rows.hpp>
 
 #include <algorithm>
+#include <utility>
 
 namespace apsis {
 namespace {
@@ -27,9 +28,9 @@ constexpr int groups_of_task = 4;
 
 }  // namespace
 
-void cut_transport::limit_for_steps(double step, double kept) {
+void cut_transport::limit_for_steps(double step, aligned_vector<double> kept) {
   step_ = step;
-  kept_ = kept;
+  kept_ = std::move(kept);
 }
 
 cut_rows::gradient cut_transport::lines_of(int number) {
@@ -74,7 +75,7 @@ void cut_transport::fit_group(const field& u, int number, scratch& own) {
     cut_rows::project(one.normal, one.rate, speeds_, directions(), n, outward);
     cut_rows::add_demand(outward, step_, slopes, one.from_centre, directions(), n, demand);
   }
-  cut_rows::limit(here, demand, kept_, directions(), n, slopes);
+  cut_rows::limit(here, demand, kept_.data(), directions(), n, slopes);
 }
 
 void cut_transport::complete(int surface, int place, const field& u,

@@ -2,6 +2,7 @@
 
 #include <apsis/boundary/domain.hpp>
 #include <apsis/boundary/oblique_wall.hpp>
+#include <apsis/exec/aligned.hpp>
 #include <apsis/exec/parallel.hpp>
 #include <apsis/integrate/problem.hpp>
 #include <apsis/mesh/cut_cells.hpp>
@@ -40,8 +41,9 @@ class cut_transport {
   cut_transport(const model& equation, std::shared_ptr<domain> space, const limited_reconstruction& edges,
                 face_fluxes& faces);
 
-  /// For steps of at most this length, in which transport may take the share `kept` of a value.
-  void limit_for_steps(double step, double kept);
+  /// For steps of at most this length, in which transport may take the share `kept` of a value of each
+  /// component.
+  void limit_for_steps(double step, aligned_vector<double> kept);
   /// Computes the lines of u. Collective.
   void prepare(const field& u);
   /// Adds what enters a whole cell from a cut one, at an end of a segment. Concurrent calls must differ in
@@ -103,7 +105,8 @@ class cut_transport {
   local_groups here_;
   bool flat_, limited_;
   int ghosts_;
-  double step_ = 0.0, kept_ = 1.0;
+  double step_ = 0.0;
+  aligned_vector<double> kept_;
   std::array<const double*, 3> speeds_ = {};
   std::array<std::vector<double>, 6> inward_;               ///< speed away from each face of a cell
   std::vector<std::shared_ptr<const oblique_wall>> walls_;  ///< of boxes and bodies

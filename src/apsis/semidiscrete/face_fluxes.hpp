@@ -48,7 +48,8 @@ class face_fluxes {
   /// n being the normal into the gas: per area, that arrives at the surface and that leaves it.
   const std::vector<double>& observed() const { return observed_; }
 
-  /// Stores what a force and a source give per unit of time, after the rates of all ends.
+  /// Stores what a force, the rotation of axisymmetric flow and a source give per unit of time, after the
+  /// rates of all ends.
   void set_inside(std::span<const double> inside);
   /// Returns what is received per unit of time, in the layout of a boundary_budget: by the last complete() of
   /// every end, and by the last set_inside().

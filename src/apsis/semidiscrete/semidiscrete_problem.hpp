@@ -40,6 +40,10 @@ class semidiscrete_problem {
   /// Adds a force to the transport. Throws input_error as force does.
   void set_force(acceleration of) { transport_->set_force(std::move(of)); }
 
+  /// Adds the rotation of the velocities in axisymmetric flow, where `radial` is the direction of r. Throws
+  /// input_error as rotation does.
+  void set_rotation(int radial) { transport_->set_rotation(radial); }
+
   /// Adds a source to the transport, of a model with space.
   void set_source(source_rate rate) { transport_->set_source(std::move(rate)); }
 
@@ -86,8 +90,8 @@ class semidiscrete_problem {
     guarded(u, [&] { collision_->add_collision(t, u, targets); });
   }
   /// Returns the rates of a boundary_budget in the last evaluation of T, by add_transport() or
-  /// add_transport_and_solve(). On several processes each has those of its own ends, and one those of force
-  /// and source.
+  /// add_transport_and_solve(). On several processes each has those of its own ends, and one those of force,
+  /// rotation and source.
   std::span<const double> budget_rates() const { return transport_->budget_rates(); }
   /// Rethrows on all processes the first error since the last call, with the number of the cell in the whole
   /// mesh.

@@ -31,7 +31,8 @@ struct cells_job {
 };
 
 /// The transport operator T(t, u) = −Σ_k ∂_xk(v_k u) − a·∇_v u + S(t, x, u) of a model on a mesh, with a
-/// discretization. One call evaluates all cells, so that its loops are those of the derived class.
+/// discretization; in axisymmetric flow also the rotation of the velocities. One call evaluates all cells, so
+/// that its loops are those of the derived class.
 ///
 /// It has scratch memory: one call at a time. On several processes every member function is collective,
 /// except those that return a time step or a growth.
@@ -57,11 +58,14 @@ class transport {
 
   /// Adds a force. Throws input_error as force does.
   virtual void set_force(acceleration of) = 0;
+  /// Adds the rotation of the velocities in axisymmetric flow, where `radial` is the direction of r. Throws
+  /// input_error as rotation does.
+  virtual void set_rotation(int radial) = 0;
   /// Adds a source.
   virtual void set_source(source_rate rate) = 0;
 
-  /// Returns Δt_FE of advection and force: a step within it preserves what the discretization preserves.
-  /// +infinity without space.
+  /// Returns Δt_FE of advection, rotation and force: a step within it preserves what the discretization
+  /// preserves. +infinity without space.
   virtual double forward_euler_step() const = 0;
   /// Tells the limiter that β ≤ share α Δt_FE in all calls to come, 0 < share ≤ 1 (initially 1): it then
   /// changes less, and preserves the same.

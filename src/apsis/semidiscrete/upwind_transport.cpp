@@ -1,6 +1,5 @@
 #include <apsis/semidiscrete/upwind_transport.hpp>
 
-#include <apsis/core/first_error.hpp>
 #include <apsis/exec/parallel.hpp>
 #include <apsis/exec/profile.hpp>
 #include <apsis/model/vector_math.hpp>
@@ -39,7 +38,7 @@ int first_component(int width, int columns, int column) {
 struct upwind_transport::scratch {
   per_thread<block_sweep> sweeps;
   per_thread<std::vector<upwind::row_target>> rows;
-  std::vector<double> given;  ///< by force and source
+  std::vector<double> given;  ///< by force, rotation and source
 
   /// The boxes of a mesh, rebuilt only for another width or number of threads.
   const tiling& boxes(const domain& space, int longest, int parts) {
@@ -93,6 +92,11 @@ void upwind_transport::set_force(acceleration of) {
   limit_for_steps(share_);
 }
 
+void upwind_transport::set_rotation(int radial) {
+  rotation_ = std::make_unique<rotation>(equation_, space_, radial, edges_);
+  limit_for_steps(share_);
+}
+
 void upwind_transport::set_source(source_rate rate) {
   source_ = std::make_unique<source>(equation_, space_, std::move(rate), unknown_);
 }
@@ -101,10 +105,18 @@ void upwind_transport::limit_for_steps(double share) {
   share_ = share;
   // Of 1/Δt_FE, in units of 1/κ.
   const double rate = force_ ? force_->rate() : 0.0;
-  inverse_cfl_ = line_speeds::inverse_cfl_numbers(speeds_, share, rate, kappa_);
+  aligned_vector<double> rates =
+      line_speeds::rates(speeds_, rotation_ ? rotation_->rates() : std::span<const double>());
+  // Every component moves with one velocity.
+  fastest_ = rates.empty() ? 0.0 : *std::max_element(rates.begin(), rates.end());
+  inverse_cfl_ = line_speeds::inverse_cfl_numbers(std::move(rates), share, rate, kappa_);
+  if (rotation_) rotation_->limit_for_steps(inverse_cfl_);
   if (cut_) {
     const double step = share * forward_euler_step();
-    cut_->limit_for_steps(step, 1.0 - step * rate);
+    aligned_vector<double> kept(static_cast<std::size_t>(equation_.components()), 1.0 - step * rate);
+    for (std::size_t k = 0; rotation_ && k < kept.size(); ++k)
+      kept[k] -= step * inverse_cfl_[k] * rotation_->rates()[k];
+    cut_->limit_for_steps(step, std::move(kept));
   }
   if (force_) force_->limit_for_steps(share);
 }
@@ -114,13 +126,7 @@ double upwind_transport::growth_of_source(double t, const field& u) const {
 }
 
 double upwind_transport::forward_euler_step() const {
-  double fastest = 0.0;  // every component moves with one velocity
-  for (std::size_t k = 0; !speeds_.empty() && k < speeds_.front().per_cell.size(); ++k) {
-    double each = 0.0;
-    for (const auto& line : speeds_) each += line.per_cell[k];
-    fastest = std::max(fastest, each);
-  }
-  const double rate = fastest + kappa_ * (force_ ? force_->rate() : 0.0);
+  const double rate = fastest_ + kappa_ * (force_ ? force_->rate() : 0.0);
   return rounding_allowance * kappa_ / rate;  // 1/0 is the infinity of a model without space
 }
 
@@ -137,16 +143,26 @@ bool upwind_transport::add_transport(double t, const field& u, targets_view targ
     return false;
   }
   // Cells are complete box by box only where sweeps are all there is.
-  const bool alone = !force_ && !source_;
+  const bool alone = !force_ && !rotation_ && !source_;
   bool done = false;
-  std::vector<double>& given = scratch_->given;
-  given.clear();
   first_error failure;
   failure.run([&] { done = sweep(t, u, targets, alone ? then : cells_job()); });
-  // The sums of force and source are those of all processes, even if this one has failed.
+  add_inside(t, u, targets, failure);
+  return done;
+}
+
+/// Adds force, rotation and source. Their sums are those of all processes, even if this one has failed.
+void upwind_transport::add_inside(double t, const field& u, targets_view targets,
+                                  first_error& failure) const {
+  std::vector<double>& given = scratch_->given;
+  given.clear();
   if (force_) {
     failure.run([&] { force_->add(t, u, targets); });
     given = force_->given();
+  }
+  if (rotation_) {
+    failure.run([&] { rotation_->add(u, targets); });
+    given.insert(given.end(), rotation_->given().begin(), rotation_->given().end());
   }
   if (source_) {
     failure.run([&] { source_->add(t, u, targets); });
@@ -157,7 +173,6 @@ bool upwind_transport::add_transport(double t, const field& u, targets_view targ
   // One process keeps what all have received together.
   if (!space_->processes().is_root()) std::fill(given.begin(), given.end(), 0.0);
   faces_->set_inside(given);
-  return done;
 }
 
 void upwind_transport::combine(std::span<const linear_term<field, double>> terms, field& sum) const {

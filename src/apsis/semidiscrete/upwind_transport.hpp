@@ -1,6 +1,7 @@
 #pragma once
 
 #include <apsis/boundary/domain.hpp>
+#include <apsis/core/first_error.hpp>
 #include <apsis/integrate/problem.hpp>
 #include <apsis/model/model.hpp>
 #include <apsis/semidiscrete/block_sweep.hpp>
@@ -8,6 +9,7 @@
 #include <apsis/semidiscrete/cut_transport.hpp>
 #include <apsis/semidiscrete/face_fluxes.hpp>
 #include <apsis/semidiscrete/force.hpp>
+#include <apsis/semidiscrete/rotation.hpp>
 #include <apsis/semidiscrete/source.hpp>
 #include <apsis/semidiscrete/transport.hpp>
 
@@ -27,7 +29,7 @@ class upwind_transport final : public transport {
                    const cell_unknown& unknown);
   ~upwind_transport() override;
 
-  /// Fused where cells are complete box by box: without force and source, in many boxes.
+  /// Fused where cells are complete box by box: without force, rotation and source, in many boxes.
   bool add_transport(double t, const field& u, std::span<const target<field, double>> targets,
                      const cells_job& then = {}) const override;
   void combine(std::span<const linear_term<field, double>> terms, field& sum) const override;
@@ -35,16 +37,19 @@ class upwind_transport final : public transport {
   std::vector<double> observe_surfaces(double t, const field& u) const override;
 
   void set_force(acceleration of) override;
+  void set_rotation(int radial) override;
   void set_source(source_rate rate) override;
 
-  /// 1/Δt_FE = max_j Σ_k |v_jk|/Δx_k / κ + force::rate(), κ = limited_reconstruction::kappa(), at most
-  /// cut_cells::cfl_number with bodies.
+  /// 1/Δt_FE = max_j (Σ_k |v_jk|/Δx_k + rotation::rates()) / κ + force::rate(), κ =
+  /// limited_reconstruction::kappa(), at most cut_cells::cfl_number with bodies.
   double forward_euler_step() const override;
   void limit_for_steps(double share) override;
   double growth_of_source(double t, const field& u) const override;
   bool source_depends_on_state() const override { return source_ && source_->depends_on_state(); }
 
  private:
+  void add_inside(double t, const field& u, std::span<const target<field, double>> targets,
+                  first_error& failure) const;
   void add_source(const field& u, std::span<const target<field, double>> targets) const;
   void add_weighted(const field& u, std::span<const target<field, double>> targets,
                     const cells_job& then) const;
@@ -69,9 +74,11 @@ class upwind_transport final : public transport {
   const cell_unknown& unknown_;
   double share_ = 1.0;  ///< of Δt_FE that the limiter is for
   double kappa_ = 1.0;
+  double fastest_ = 0.0;  ///< largest of line_speeds::rates()
   std::unique_ptr<face_fluxes> faces_;
   std::unique_ptr<cut_transport> cut_;  ///< null without bodies
   std::unique_ptr<force> force_;        ///< null without
+  std::unique_ptr<rotation> rotation_;  ///< null without
   std::unique_ptr<source> source_;      ///< null without
   struct scratch;
   std::vector<line_speeds> speeds_;     ///< of each direction

@@ -1,0 +1,151 @@
+#include <apsis/semidiscrete/rotation.hpp>
+
+#include <apsis/core/errors.hpp>
+#include <apsis/exec/profile.hpp>
+#include <apsis/semidiscrete/block_sweep.hpp>
+#include <apsis/semidiscrete/global_integrals.hpp>
+#include <apsis/semidiscrete/lattice_rows.hpp>
+#include <apsis/semidiscrete/rotation_rows.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <numbers>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace apsis {
+namespace {
+
+constexpr int cells_of_rotation = 16;  // of a task
+
+/// s |sin ω_e| at an edge. Angles in the first quadrant give all of them, so that symmetric rows stay
+/// symmetric to the last bit.
+double speed_at_edge(int edge, int angles) {
+  const int half = angles / 2, folded = edge % half;
+  const double width = 2.0 * std::numbers::pi / angles;
+  return 0.5 * width / std::sin(0.5 * width) * std::sin(std::min(folded, half - folded) * width);
+}
+
+}  // namespace
+
+/// Buffers of one thread.
+struct rotation::workspace {
+  std::array<aligned_vector<double>, 4> places;  ///< of rotation_rows::places
+  aligned_vector<double> values;                 ///< a ring with its halo
+  aligned_vector<double> change;                 ///< of the row of a cell
+};
+
+rotation::~rotation() = default;
+rotation::rotation(rotation&&) noexcept = default;
+
+rotation::rotation(const model& equation, std::shared_ptr<domain> space, int radial,
+                   const limited_reconstruction& edges)
+    : equation_(equation),
+      space_(std::move(space)),
+      layout_(equation.polar()),
+      radial_(radial),
+      limited_(edges.keeps_sign()),
+      fifth_order_(edges.scheme->order() > 1),
+      smallest_radius_(smallest_radius()),
+      invariants_(equation.invariants().size()),
+      workspaces_(std::make_unique<per_thread<workspace>>()) {
+  if (layout_.empty())
+    throw input_error(
+        "the flow cannot be axisymmetric (the velocities of the model have no rings around the axis); choose "
+        "polar velocities");
+  if (layout_.angles < 4 || layout_.angles % 4 != 0)
+    throw input_error(
+        fmt::format("{} angles of velocities (images at the axis need a multiple of 4); give a multiple of 4",
+                    layout_.angles));
+  if (!(smallest_radius_ > 0.0))
+    throw input_error(fmt::format(
+        "the centre of a cell has r = {:g} (the distance from the axis must be positive); begin the mesh at "
+        "r >= 0",
+        smallest_radius_));
+  of_cells_.resize(static_cast<std::size_t>(space_->mesh().size()) * invariants_);
+  given_.resize(invariants_);
+  find_speeds();
+}
+
+/// Of all processes, since all take the same steps.
+double rotation::smallest_radius() const {
+  const grid& whole = space_->shared_mesh() != nullptr ? space_->shared_mesh()->whole : space_->mesh();
+  double smallest = std::numeric_limits<double>::infinity();
+  for (const auto& [begin, end] : whole.fluid())
+    for (int cell = begin; cell < end; ++cell)
+      smallest = std::min(smallest, whole.centre(cell)[static_cast<std::size_t>(radial_)]);
+  return smallest;
+}
+
+void rotation::find_speeds() {
+  const int angles = layout_.angles;
+  for (int angle = 0; angle < angles; ++angle) {
+    const int downstream = angle < angles / 2 ? angle : angle + 1;
+    const double below = speed_at_edge(angle, angles), above = speed_at_edge(angle + 1, angles);
+    for (int k = 0; k < layout_.apart; ++k) {
+      speeds_.push_back(downstream == angle ? below : above);
+      largest_.push_back(std::max(below, above));
+    }
+  }
+  const double per_radian = angles / (2.0 * std::numbers::pi * smallest_radius_);
+  for (int k = 0; k < equation_.components(); ++k) {
+    const int of_ring = angles * layout_.apart, ring = k / of_ring % layout_.rings;
+    rates_.push_back(layout_.speeds[static_cast<std::size_t>(ring)] * per_radian *
+                     largest_[static_cast<std::size_t>(k % of_ring)]);
+  }
+  limit_for_steps(std::vector<double>(rates_.size(), 1.0));
+}
+
+void rotation::limit_for_steps(std::span<const double> inverse_cfl) {
+  inverse_.resize(rates_.size());
+  for (std::size_t k = 0; k < inverse_.size(); ++k)
+    inverse_[k] = inverse_cfl[k] * largest_[k % largest_.size()];
+}
+
+void rotation::add(const field& u, std::span<const target<field, double>> targets) const {
+  const std::size_t ring = speeds_.size(), apart = static_cast<std::size_t>(layout_.apart);
+  workspaces_->prepare([&](workspace& here) {
+    for (auto& places : here.places)
+      places.resize(rotation_rows::places::size({layout_.angles, layout_.apart, false}));
+    here.values.resize(ring + 2 * rotation_rows::halo * apart);
+    here.change.resize(static_cast<std::size_t>(u.stride()));
+  });
+  parallel_blocks(u.cells(), cells_of_rotation, [&](int begin, int end) {
+    const profile::section timed(kernel::forces, static_cast<double>(end - begin) * u.stride(),
+                                 traffic(targets));
+    for_cells_in(space_->mesh().fluid(), begin, end, [&](int from, int to) {
+      for (int cell = from; cell < to; ++cell) add_cell(u, targets, cell, workspaces_->here());
+    });
+  });
+  given_ = global_integrals(*space_, of_cells_, invariants_);
+}
+
+void rotation::add_cell(const field& u, std::span<const target<field, double>> targets, int cell,
+                        workspace& here) const {
+  const double r = space_->mesh().centre(cell)[static_cast<std::size_t>(radial_)];
+  const int of_ring = layout_.angles * layout_.apart, rings = u.components() / of_ring;
+  const rotation_rows::places places{here.places[0].data(), here.places[1].data(), here.places[2].data(),
+                                     here.places[3].data()};
+  const double per_radian = layout_.angles / (2.0 * std::numbers::pi * r), scale = r / smallest_radius_;
+  for (int ring = 0; ring < rings; ++ring) {
+    const int first = ring * of_ring;
+    rotation_rows::continue_ring(u.row(cell) + first, layout_.angles, layout_.apart, here.values.data());
+    const double rate = layout_.speeds[static_cast<std::size_t>(ring % layout_.rings)] * per_radian;
+    for (const bool lower : {false, true}) {
+      const rotation_rows::half half{layout_.angles, layout_.apart, lower};
+      const rotation_rows::flux_rule rule{fifth_order_, limited_, speeds_.data() + half.first(),
+                                          inverse_.data() + first + half.first(), scale};
+      rotation_rows::turn(half, rule, here.values.data(), rate, places,
+                          here.change.data() + first + half.first());
+    }
+  }
+  equation_.invariant_densities(here.change.data(),
+                                of_cells_.data() + static_cast<std::size_t>(cell) * invariants_);
+  for (const auto& to : targets)
+    lattice_rows::add(here.change.data(), to.beta, u.components(), to.acc->row(cell));
+}
+
+}  // namespace apsis

@@ -159,7 +159,8 @@ std::string matching_values(int dimensions, const std::string& kind) {
 TEST(every_face, keeps_a_gas_at_rest_that_matches_it) {
   for (const int dimensions : {2, 3})
     for (const std::string& kind : apsis::boundary_names()) {
-      if (kind == "vacuum") continue;  // no gas matches it
+      // No gas matches a vacuum, and an axis needs axisymmetric flow.
+      if (kind == "vacuum" || kind == "axis") continue;
       const std::string text = at_rest(dimensions, kind, matching_values(dimensions, kind));
       std::vector<std::string> all = {"0.01"};
       if (dimensions == 2) all.insert(all.end(), {"0", "1e12"});

@@ -189,6 +189,7 @@ long allocations_beside(const apsis::boundary_entry& kind, bool in_plane, bool c
 TEST(allocations, are_none_after_the_first_steps_at_ends_of_every_kind) {
   for (const apsis::boundary_entry* kind : apsis::boundary_entries())
     for (const bool constant : {true, false}) {
+      if (kind->name == "axis") continue;  // it needs axisymmetric flow
       for (const auto what : {unknowns::points, unknowns::averages})
         EXPECT_EQ(allocations_beside(*kind, false, constant, what), 0) << kind->name << constant;
       EXPECT_EQ(allocations_beside(*kind, true, constant, unknowns::points), 0) << kind->name << constant;

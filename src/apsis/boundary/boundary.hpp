@@ -62,6 +62,10 @@ class boundary {
   /// Returns the velocity of the wall, which does the work u_w · (force) on it; 0, the default, of a wall at
   /// rest and of an open end.
   virtual std::array<double, 3> wall_velocity(double /*t*/, const position& /*at*/) const { return {}; }
+  /// Whether this is the axis of axisymmetric flow, r = 0.
+  virtual bool is_axis() const { return false; }
+  /// Returns the condition that a decorator applies; this object, the default, unless it is a decorator.
+  virtual const boundary& undecorated() const { return *this; }
   /// Whether the domain continues at the opposite face; both faces of a direction must agree.
   virtual bool periodic() const { return false; }
   /// Returns c such that the entropy that enters through the face in a sweep of first order is at most Σ_k

@@ -7,6 +7,7 @@
 #include <apsis/core/suggest.hpp>
 #include <apsis/exec/interruption.hpp>
 #include <apsis/mesh/cut_cells.hpp>
+#include <apsis/semidiscrete/axisymmetric.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -146,6 +147,12 @@ problem_builder& problem_builder::with_source(source_rate rate) {
   return *this;
 }
 
+problem_builder& problem_builder::with_axis(int radial) {
+  radial_ = radial;
+  forget_spaces();
+  return *this;
+}
+
 const discretization& problem_builder::of_space() const {
   const bool chosen = has_space() && discretization_ != nullptr;
   return (chosen ? *discretization_ : default_discretization(equation_->space_dimensions())).instance();
@@ -202,9 +209,24 @@ void problem_builder::check_discretization() const {
 std::shared_ptr<domain> problem_builder::make_space() const {
   check_solids();
   if (!has_space()) return std::make_shared<domain>(domain::point());
-  const phase_space space{mesh_, equation_->velocities()};
-  return distribution_ ? std::make_shared<domain>(space, sides_, solids_, *distribution_)
-                       : std::make_shared<domain>(space, sides_, solids_);
+  return make_domain_of(mesh_, distribution_ ? &*distribution_ : nullptr);
+}
+
+/// Throws as axisymmetric::check() does, before boundaries are prepared.
+void problem_builder::check_axis() const {
+  if (radial_) return axisymmetric::check(*equation_, whole_mesh(), *radial_, sides_, of_space().unknown());
+  for (const auto& [lower, upper] : sides_)
+    if (lower->is_axis() || upper->is_axis())
+      throw input_error("the boundary 'axis' in a flow that is not axisymmetric; choose another boundary");
+}
+
+std::shared_ptr<domain> problem_builder::make_domain_of(const grid& mesh, const distribution* shared) const {
+  check_axis();
+  const auto sides = radial_ ? axisymmetric::sides_of(sides_, *radial_, mesh) : sides_;
+  const auto solids = radial_ ? axisymmetric::walls_of(solids_, *radial_, mesh) : solids_;
+  const phase_space space{mesh, equation_->velocities()};
+  return shared ? std::make_shared<domain>(space, sides, solids, *shared)
+                : std::make_shared<domain>(space, sides, solids);
 }
 
 const domain& problem_builder::space() const {
@@ -215,20 +237,20 @@ const domain& problem_builder::space() const {
 const domain& problem_builder::whole_space() const {
   if (!distribution_) return space();
   check_solids();
-  if (!whole_)
-    whole_ = std::make_shared<domain>(phase_space{whole_mesh(), equation_->velocities()}, sides_, solids_);
+  if (!whole_) whole_ = make_domain_of(whole_mesh(), nullptr);
   return *whole_;
 }
 
 /// In every cell at its points along the first direction.
-std::vector<double> problem_builder::epsilon_at(std::span<const weighted_point> points) const {
+std::vector<double> problem_builder::epsilon_at(std::span<const weighted_point> points,
+                                                const scale& epsilon) const {
   std::vector<double> values;
   for (int cell = 0; cell < mesh_.size(); ++cell)
     for (const auto& [offset, weight] : points) {
       interruptible::poll();
       position x = has_space() ? mesh_.centre(cell) : position{};
       x[0] += offset * mesh_.spacing(0);
-      values.push_back(epsilon_(x));
+      values.push_back(epsilon(x));
       if (!(values.back() >= 0.0) || !std::isfinite(values.back()))
         throw input_error(fmt::format(
             "epsilon is {} at x = {:.6g} (a finite number >= 0 is needed); change it", values.back(), x[0]));
@@ -237,7 +259,7 @@ std::vector<double> problem_builder::epsilon_at(std::span<const weighted_point> 
 }
 
 std::vector<double> problem_builder::epsilon_at_centres() const {
-  return epsilon_at(point_values().points());
+  return epsilon_at(point_values().points(), epsilon_);
 }
 
 std::unique_ptr<semidiscrete_problem> problem_builder::build() const {
@@ -248,6 +270,7 @@ std::unique_ptr<semidiscrete_problem> problem_builder::build() const {
   this->space();
   // Ghost rows belong to one problem.
   const auto space = space_.use_count() > 1 ? make_space() : space_;
+  const scale epsilon = radial_ ? axisymmetric::epsilon_of(epsilon_, *equation_, *radial_) : epsilon_;
   const problem_parts parts{.equation = *equation_,
                             .space = space,
                             .scheme = scheme_,
@@ -255,12 +278,13 @@ std::unique_ptr<semidiscrete_problem> problem_builder::build() const {
                             .smooth_collisions = smooth_collisions_,
                             .collisions = collisions_,
                             .stages = stages_,
-                            .epsilon_at = [this](auto points) { return epsilon_at(points); }};
+                            .epsilon_at = [&](auto points) { return epsilon_at(points, epsilon); }};
   const discretization& chosen = of_space();
   auto problem = std::make_unique<semidiscrete_problem>(*equation_, space, chosen.make_transport(parts),
                                                         chosen.make_collision(parts), stages_);
   if (force_) problem->set_force(*force_);
-  if (source_) problem->set_source(*source_);
+  if (radial_) problem->set_rotation(*radial_);
+  if (source_) problem->set_source(radial_ ? axisymmetric::source_of(*source_, *radial_) : *source_);
   if (explicit_collision_) problem->treat_collision_explicitly();
   return problem;
 }
@@ -269,11 +293,12 @@ field problem_builder::sample(const data& value, const std::vector<double>& jump
   field u(mesh_.size(), equation_->components());
   std::vector<double> values(static_cast<std::size_t>(u.components()));
   const cell_unknown& unknown = of_space().unknown();
+  const data unknowns = radial_ ? axisymmetric::data_of(value, *radial_) : value;
   for (int cell = 0; cell < u.cells(); ++cell) {
     interruptible::poll();
     if (mesh_.solid(cell) >= 0) continue;
     const position centre = has_space() ? mesh_.centre(cell) : position{};
-    unknown.sample(value, jumps, centre, mesh_.spacing(0), values, u.row(cell));
+    unknown.sample(unknowns, jumps, centre, mesh_.spacing(0), values, u.row(cell));
   }
   return u;
 }

@@ -67,6 +67,10 @@ class problem_builder {
   problem_builder& with_force(acceleration of);
   /// Adds a source S(t, x) of rows, on models with space.
   problem_builder& with_source(source_rate rate);
+  /// Makes the flow axisymmetric. The coordinate along the direction `radial` of the mesh is then the
+  /// distance r from the axis, the last direction of one or two, and the unknowns are F = r f. Data, ε,
+  /// boundaries and sources are still those of f. The lower end of r is the boundary "axis" if it is r = 0.
+  problem_builder& with_axis(int radial);
   /// For methods that keep no signs: collisions at centres are not limited then. Limited averages are no
   /// smooth function of the data, as small errors need, and their Q is not that of the stage.
   problem_builder& with_smooth_collisions();
@@ -83,10 +87,12 @@ class problem_builder {
   /// - ε is not a finite number ≥ 0;
   /// - only one face of a direction is periodic;
   /// - the discretization does not serve the dimensions, the solid boxes or the place of collisions;
-  /// - the force is not possible (force.hpp).
+  /// - the force is not possible (force.hpp);
+  /// - axisymmetric flow is not possible (axisymmetric.hpp), or there is an axis without it.
   std::unique_ptr<semidiscrete_problem> build() const;
   /// Returns the unknowns of data (cell_unknown), [cells][components], 0 in solid cells; averages are exact
-  /// to rounding if the data are smooth between the `jumps` (in increasing order).
+  /// to rounding if the data are smooth between the `jumps` (in increasing order). In axisymmetric flow they
+  /// are those of r f.
   field sample(const data& value, const std::vector<double>& jumps = {}) const;
 
   /// Whether the model has space.
@@ -116,11 +122,14 @@ class problem_builder {
   const std::optional<acceleration>& force() const { return force_; }
   /// Returns the source of with_source(); nothing without one.
   const std::optional<source_rate>& source() const { return source_; }
+  /// Returns the direction of r in axisymmetric flow; nothing in other flows.
+  const std::optional<int>& axis() const { return radial_; }
   /// Returns the discretization of space; that of a point without space.
   const discretization& of_space() const;
   /// Returns where cells collide. Requires a reconstruction if the model has space.
   collision_layout collisions() const;
-  /// Returns ε at the cell centres. Throws input_error if it is not a finite number ≥ 0.
+  /// Returns ε at the cell centres, as it is set, also in axisymmetric flow. Throws input_error if it is not
+  /// a finite number ≥ 0.
   std::vector<double> epsilon_at_centres() const;
 
  private:
@@ -128,7 +137,9 @@ class problem_builder {
   void check_solids() const;
   void check_cells() const;
   void check_discretization() const;
-  std::vector<double> epsilon_at(std::span<const weighted_point> points) const;
+  void check_axis() const;
+  std::shared_ptr<domain> make_domain_of(const grid& mesh, const distribution* shared) const;
+  std::vector<double> epsilon_at(std::span<const weighted_point> points, const scale& epsilon) const;
 
   const model* equation_;
   grid mesh_;
@@ -144,6 +155,7 @@ class problem_builder {
   scale epsilon_;
   std::optional<acceleration> force_;
   std::optional<source_rate> source_;
+  std::optional<int> radial_;
   mutable std::shared_ptr<domain> space_, whole_;  ///< made when first asked for; none after a change
 };
 

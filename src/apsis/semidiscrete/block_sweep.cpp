@@ -38,28 +38,24 @@ std::vector<line_speeds> line_speeds::of(const model& equation, const grid& mesh
   return all;
 }
 
-aligned_vector<double> line_speeds::rates(const std::vector<line_speeds>& speeds,
-                                          std::span<const double> of_rotation) {
+aligned_vector<double> line_speeds::rates(const std::vector<line_speeds>& speeds) {
   aligned_vector<double> rates;
   for (const auto& line : speeds) {
     rates.resize(line.per_cell.size());
     for (std::size_t k = 0; k < rates.size(); ++k) rates[k] += line.per_cell[k];
   }
-  if (of_rotation.empty()) return rates;
-  const auto stride = static_cast<std::size_t>(field(1, static_cast<int>(of_rotation.size())).stride());
-  for (std::size_t k = 0; k < rates.size(); ++k)
-    if (k % stride < of_rotation.size()) rates[k] += of_rotation[k % stride];
   return rates;
 }
 
-aligned_vector<double> line_speeds::inverse_cfl_numbers(aligned_vector<double> rates, double share,
-                                                        double rate_of_force, double kappa) {
-  if (rates.empty()) return rates;
+void line_speeds::limit_for_steps(std::vector<line_speeds>& speeds, double share, double rate_of_force,
+                                  double kappa) {
+  aligned_vector<double> rates = line_speeds::rates(speeds);
+  if (rates.empty()) return;
   const double longest = *std::max_element(rates.begin(), rates.end()) + kappa * rate_of_force;
   for (double& rate : rates)
     rate = 1.0 / std::max(limiter::least_cfl_number,
                           longest > 0.0 ? share * kappa * ((rate + rate_of_force) / longest) : 1.0);
-  return rates;
+  for (auto& line : speeds) line.inverse_cfl = rates;
 }
 
 void block_sweep::reserve(const context& of, int cells, int width, std::size_t targets) {
@@ -143,7 +139,7 @@ void block_sweep::record(const segment_end& end, bool upper, const place& at) {
                           width_,
                           line_->forward.data() + at.first,
                           line_->per_cell.data() + at.first,
-                          of_->inverse_cfl_numbers.data() + at.first,
+                          line_->inverse_cfl.data() + at.first,
                           nullptr};
   upwind::fluxes_of_cell(one, of_->edges.limits_fluxes(), in_.data(), out_.data());
   double* values = of_->faces.recorded(end.surface, end.place) + at.first;
@@ -230,7 +226,7 @@ void block_sweep::add(int i, const run_of_cells& run, const place& at, targets_v
                            run.joined * width_,
                            line_->forward.data() + at.first,
                            line_->per_cell.data() + at.first,
-                           of_->inverse_cfl_numbers.data() + at.first,
+                           line_->inverse_cfl.data() + at.first,
                            first && of_->equation.has_source() ? source(i, run) : nullptr};
   if (of_->edges.limits_fluxes()) {
     upwind::add_limited(some, targets_);

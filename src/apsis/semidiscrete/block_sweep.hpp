@@ -15,20 +15,19 @@ namespace apsis {
 
 /// Speeds of the components along a direction, for as many cells as are joined into one row.
 struct line_speeds {
-  aligned_vector<double> per_cell;  ///< |v|/Δx per component
-  aligned_vector<double> forward;   ///< 1 if v > 0, else 0
+  aligned_vector<double> per_cell;     ///< |v|/Δx per component
+  aligned_vector<double> forward;      ///< 1 if v > 0, else 0
+  aligned_vector<double> inverse_cfl;  ///< 1/C of limited fluxes
 
-  /// Returns the speeds along each direction of a mesh.
+  /// Returns the speeds along each direction of a mesh, without C.
   static std::vector<line_speeds> of(const model& equation, const grid& mesh);
-  /// Returns R = Σ_k |v_k|/Δx_k + (rate of a rotation, rotation::rates(), empty without one) of all
-  /// components.
-  static aligned_vector<double> rates(const std::vector<line_speeds>& speeds,
-                                      std::span<const double> of_rotation);
-  /// Returns 1/C of all components for forward Euler steps of `share` times the longest, Δt =
-  /// share κ/(max R + κ a): C = Δt (R + a) of each component, limiter::least_cfl_number at least, with the
-  /// rates() R and the rate a of a force.
-  static aligned_vector<double> inverse_cfl_numbers(aligned_vector<double> rates, double share,
-                                                    double rate_of_force, double kappa);
+  /// Returns Σ_k |v_k|/Δx_k of all components; empty without space.
+  static aligned_vector<double> rates(const std::vector<line_speeds>& speeds);
+  /// Sets C for forward Euler steps of `share` times the longest, Δt = share κ/(max Σ_k |v_k|/Δx_k + κ a):
+  /// C = Δt (Σ_k |v_k|/Δx_k + a) of each component, limiter::least_cfl_number at least, with the rate a of a
+  /// force.
+  static void limit_for_steps(std::vector<line_speeds>& speeds, double share, double rate_of_force,
+                              double kappa);
 };
 
 /// T along one direction for some components of some cells of a segment. A workspace of one thread.
@@ -40,9 +39,7 @@ class block_sweep {
     const domain& space;                     ///< cells and ghost rows
     const limited_reconstruction& edges;     ///< edge values and limiter
     const std::vector<line_speeds>& speeds;  ///< of each direction
-    const aligned_vector<double>&
-        inverse_cfl_numbers;  ///< 1/C of limited fluxes per component, for as many cells as the speeds
-    face_fluxes& faces;       ///< takes the fluxes at surfaces
+    face_fluxes& faces;                      ///< takes the fluxes at surfaces
   };
   /// The part of the phase space that a sweep changes.
   struct place {

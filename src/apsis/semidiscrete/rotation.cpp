@@ -2,7 +2,7 @@
 
 #include <apsis/core/errors.hpp>
 #include <apsis/exec/profile.hpp>
-#include <apsis/semidiscrete/block_sweep.hpp>
+#include <apsis/scheme/limiter.hpp>
 #include <apsis/semidiscrete/global_integrals.hpp>
 #include <apsis/semidiscrete/lattice_rows.hpp>
 #include <apsis/semidiscrete/rotation_rows.hpp>
@@ -50,6 +50,7 @@ rotation::rotation(const model& equation, std::shared_ptr<domain> space, int rad
       limited_(edges.keeps_sign()),
       fifth_order_(edges.scheme->order() > 1),
       smallest_radius_(smallest_radius()),
+      at_edge_(limited_ ? 1.0 + 0.5 * space_->mesh().spacing(radial) / smallest_radius_ : 1.0),
       invariants_(equation.invariants().size()),
       workspaces_(std::make_unique<per_thread<workspace>>()) {
   if (layout_.empty())
@@ -96,13 +97,36 @@ void rotation::find_speeds() {
     rates_.push_back(layout_.speeds[static_cast<std::size_t>(ring)] * per_radian *
                      largest_[static_cast<std::size_t>(k % of_ring)]);
   }
-  limit_for_steps(std::vector<double>(rates_.size(), 1.0));
+  inverse_.resize(rates_.size());
+  left_.resize(rates_.size());
 }
 
-void rotation::limit_for_steps(std::span<const double> inverse_cfl) {
-  inverse_.resize(rates_.size());
-  for (std::size_t k = 0; k < inverse_.size(); ++k)
-    inverse_[k] = inverse_cfl[k] * largest_[k % largest_.size()];
+aligned_vector<double> rotation::rates_with(const std::vector<line_speeds>& speeds) const {
+  aligned_vector<double> rates(speeds.front().per_cell.size());
+  for (std::size_t d = 0; d < speeds.size(); ++d)
+    for (std::size_t k = 0; k < rates.size(); ++k) rates[k] += factor_along(d) * speeds[d].per_cell[k];
+  const auto stride = static_cast<std::size_t>(field(1, equation_.components()).stride());
+  for (std::size_t k = 0; k < rates.size(); ++k)
+    if (k % stride < rates_.size()) rates[k] += rates_[k % stride];
+  return rates;
+}
+
+void rotation::limit_for_steps(double step, std::vector<line_speeds>& speeds) {
+  const auto rates = rates_with(speeds);
+  const auto stride = static_cast<std::size_t>(field(1, equation_.components()).stride());
+  for (auto& line : speeds) line.inverse_cfl.resize(rates.size());
+  for (std::size_t k = 0; k < rates.size(); ++k) {
+    const std::size_t j = k % stride;
+    const double x = step * rates[k], of_rotation = j < rates_.size() ? step * rates_[j] : 0.0;
+    const double cfl_of_rotation = std::max(limiter::least_cfl_number, std::sqrt(x)),
+                 left = 1.0 - of_rotation / cfl_of_rotation;
+    for (std::size_t d = 0; d < speeds.size(); ++d)
+      speeds[d].inverse_cfl[k] =
+          1.0 / std::max(limiter::least_cfl_number, (x - of_rotation) / (left * factor_along(d)));
+    if (k >= rates_.size()) continue;
+    inverse_[k] = largest_[k % largest_.size()] / cfl_of_rotation;
+    left_[k] = left;
+  }
 }
 
 void rotation::add(const field& u, std::span<const target<field, double>> targets) const {

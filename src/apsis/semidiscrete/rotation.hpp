@@ -6,6 +6,7 @@
 #include <apsis/integrate/problem.hpp>
 #include <apsis/mesh/field.hpp>
 #include <apsis/model/model.hpp>
+#include <apsis/semidiscrete/block_sweep.hpp>
 #include <apsis/semidiscrete/limited_reconstruction.hpp>
 
 #include <array>
@@ -36,16 +37,28 @@ class rotation {
   void add(const field& u, std::span<const target<field, double>> targets) const;
   /// Returns the invariants that the last add() gave per unit of time and β: radial and azimuthal momentum.
   const std::vector<double>& given() const { return given_; }
-  /// Returns (v_⊥/r) s |sin ω_e|/Δω of every component, with the smallest r of all cells and the larger of
-  /// both edges: the share that leaves per unit of time is at most this number.
-  std::span<const double> rates() const { return rates_; }
-  /// Sets 1/C of every component for the limiter, C = Δt (Σ_k |v_k|/Δx_k + rates()): the share of a value
-  /// that transport through cells may take is C less that of rates().
-  void limit_for_steps(std::span<const double> inverse_cfl);
+  /// Returns the rate of each component that limits the step, for as many cells as the speeds,
+  ///     q |v_r|/Δr + |v_x|/Δx + (v_⊥/r) s |sin ω_e|/Δω
+  /// with the smallest r of all cells and the larger one of both edges. q = 1 without limiter. With one, q =
+  /// 1 + Δr/(2r): in uniform gas F = r f is larger by this factor at the outer edge of a cell, 2 at the axis,
+  /// and its outflow must not be limited.
+  aligned_vector<double> rates_with(const std::vector<line_speeds>& speeds) const;
+  /// Divides the values among transport and rotation for forward Euler steps of a length, such that both keep
+  /// their parts nonnegative; sets C of transport. A step of Δt with x = Δt rates_with() ≤ 1, to which
+  /// rotation contributes R, gives it the share R/√x, and the rest to transport, with
+  ///     C = (x − R)/(1 − R/√x) ≤ 1,  divided by q along r.
+  /// Both limiters are then weak for short steps, and that of transport everywhere for components that
+  /// hardly rotate: one C serves all cells.
+  void limit_for_steps(double step, std::vector<line_speeds>& speeds);
+  /// Returns the share of the values of each component that is left to transport.
+  const aligned_vector<double>& left() const { return left_; }
 
  private:
   struct workspace;
   void find_speeds();
+  double factor_along(std::size_t direction) const {
+    return direction == static_cast<std::size_t>(radial_) ? at_edge_ : 1.0;
+  }
   double smallest_radius() const;
   void add_cell(const field& u, std::span<const target<field, double>> targets, int cell,
                 workspace& here) const;
@@ -55,10 +68,11 @@ class rotation {
   polar_layout layout_;
   int radial_;
   bool limited_, fifth_order_;
-  double smallest_radius_;
-  aligned_vector<double> speeds_,  ///< s |sin ω| of the edge downstream of every number of a ring
-      largest_,                    ///< the larger one of both edges
-      rates_, inverse_;            ///< of every component
+  double smallest_radius_, at_edge_;  ///< and q
+  aligned_vector<double> speeds_,     ///< s |sin ω| of the edge downstream of every number of a ring
+      largest_,                       ///< the larger one of both edges
+      rates_,                         ///< of every component, without transport
+      inverse_, left_;  ///< 1/τ of the limiter for the smallest r, and the share left to transport
   std::size_t invariants_;
   mutable std::vector<double> of_cells_;  ///< invariants given to a cell
   mutable std::vector<double> given_;

@@ -103,21 +103,18 @@ void upwind_transport::set_source(source_rate rate) {
 
 void upwind_transport::limit_for_steps(double share) {
   share_ = share;
-  // Of 1/Δt_FE, in units of 1/κ.
-  const double rate = force_ ? force_->rate() : 0.0;
-  aligned_vector<double> rates =
-      line_speeds::rates(speeds_, rotation_ ? rotation_->rates() : std::span<const double>());
   // Every component moves with one velocity.
+  const auto rates = rotation_ ? rotation_->rates_with(speeds_) : line_speeds::rates(speeds_);
   fastest_ = rates.empty() ? 0.0 : *std::max_element(rates.begin(), rates.end());
-  inverse_cfl_ = line_speeds::inverse_cfl_numbers(std::move(rates), share, rate, kappa_);
-  if (rotation_) rotation_->limit_for_steps(inverse_cfl_);
-  if (cut_) {
-    const double step = share * forward_euler_step();
-    aligned_vector<double> kept(static_cast<std::size_t>(equation_.components()), 1.0 - step * rate);
-    for (std::size_t k = 0; rotation_ && k < kept.size(); ++k)
-      kept[k] -= step * inverse_cfl_[k] * rotation_->rates()[k];
-    cut_->limit_for_steps(step, std::move(kept));
-  }
+  const double of_force = force_ ? force_->rate() : 0.0;  // of 1/Δt_FE
+  const double step = share * forward_euler_step();
+  if (rotation_)
+    rotation_->limit_for_steps(step / rounding_allowance, speeds_);
+  else
+    line_speeds::limit_for_steps(speeds_, share, of_force, kappa_);
+  if (cut_)
+    cut_->limit_for_steps(
+        step, rotation_ ? rotation_->left() : aligned_vector<double>(rates.size(), 1.0 - step * of_force));
   if (force_) force_->limit_for_steps(share);
 }
 
@@ -251,7 +248,7 @@ void upwind_transport::for_segments(int direction, const cell_box& box, const Bo
 
 void upwind_transport::sweep_box(const field& u, targets_view targets, const cell_box& box, int first,
                                  int last) const {
-  const block_sweep::context all{equation_, *space_, edges_, speeds_, inverse_cfl_, *faces_};
+  const block_sweep::context all{equation_, *space_, edges_, speeds_, *faces_};
   for (int direction = 0; direction < mesh().dimensions(); ++direction)
     for_segments(direction, box, [&](int segment, int begin, int end) {
       scratch_->sweeps.here().run(all, u, {direction, segment, begin, end, first, last}, targets);
@@ -301,7 +298,7 @@ bool upwind_transport::sweep(double t, const field& u, targets_view targets, con
     columns = std::max(columns, width / least_columns);
   if (!by_boxes) columns = static_cast<int>(std::clamp<long>(most_tasks / boxes.count(), 1, columns));
   const int widest = (width / packet_length / columns + 1) * packet_length;
-  const block_sweep::context all{equation_, *space_, edges_, speeds_, inverse_cfl_, *faces_};
+  const block_sweep::context all{equation_, *space_, edges_, speeds_, *faces_};
   scratch_->sweeps.prepare([&](auto& sweep) {
     sweep.reserve(all, std::min(std::max({mesh().cells(0), mesh().cells(1), mesh().cells(2)}), longest),
                   std::min(width, widest + width % packet_length), targets.size());

@@ -40,8 +40,8 @@ class upwind_transport final : public transport {
   void set_rotation(int radial) override;
   void set_source(source_rate rate) override;
 
-  /// 1/Δt_FE = max_j (Σ_k |v_jk|/Δx_k + rotation::rates()) / κ + force::rate(), κ =
-  /// limited_reconstruction::kappa(), at most cut_cells::cfl_number with bodies.
+  /// 1/Δt_FE = max_j Σ_k |v_jk|/Δx_k / κ + force::rate(), κ = limited_reconstruction::kappa(), at most
+  /// cut_cells::cfl_number with bodies; in axisymmetric flow max_j rotation::rates_with() / κ.
   double forward_euler_step() const override;
   void limit_for_steps(double share) override;
   double growth_of_source(double t, const field& u) const override;
@@ -74,16 +74,15 @@ class upwind_transport final : public transport {
   const cell_unknown& unknown_;
   double share_ = 1.0;  ///< of Δt_FE that the limiter is for
   double kappa_ = 1.0;
-  double fastest_ = 0.0;  ///< largest of line_speeds::rates()
+  double fastest_ = 0.0;  ///< largest rate of transport and rotation of a component
   std::unique_ptr<face_fluxes> faces_;
   std::unique_ptr<cut_transport> cut_;  ///< null without bodies
   std::unique_ptr<force> force_;        ///< null without
   std::unique_ptr<rotation> rotation_;  ///< null without
   std::unique_ptr<source> source_;      ///< null without
   struct scratch;
-  std::vector<line_speeds> speeds_;     ///< of each direction
-  aligned_vector<double> inverse_cfl_;  ///< 1/κ of limited fluxes
-  std::unique_ptr<scratch> scratch_;    ///< scratch memory of loops; one loop at a time
+  std::vector<line_speeds> speeds_;   ///< of each direction
+  std::unique_ptr<scratch> scratch_;  ///< scratch memory of loops; one loop at a time
 };
 
 }  // namespace apsis

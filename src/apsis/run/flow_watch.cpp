@@ -25,8 +25,9 @@ flow_watch::flow_watch(const run_setup& setup) : setup_(setup) {
   if (!setup.has_space()) return;
   const domain& space = setup.builder().space();
   for (std::size_t k = 0; k < space.surfaces().size(); ++k)
-    if (const auto* end = dynamic_cast<const limited_flow*>(space.side(static_cast<int>(k))))
-      ends_.emplace_back(number_of_side(space.surfaces()[k]), end);
+    if (const boundary* side = space.side(static_cast<int>(k)))
+      if (const auto* end = dynamic_cast<const limited_flow*>(&side->undecorated()))
+        ends_.emplace_back(number_of_side(space.surfaces()[k]), end);
   std::array<double, 1> any = {ends_.empty() ? 0.0 : -1.0};
   setup.processes().lowest(any);
   if (any[0] < 0.0) warned_.assign(face_names.size() + setup.config().solids.size(), false);

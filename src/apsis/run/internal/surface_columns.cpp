@@ -147,7 +147,8 @@ wall_temperature_column::wall_temperature_column(const model& equation)
       momenta_(places_of_momenta(equation)) {}
 
 const wall_temperature* wall_temperature_column::of(const boundary* side) const {
-  return mass_ && energy_ && !momenta_.empty() ? dynamic_cast<const wall_temperature*>(side) : nullptr;
+  if (side == nullptr || !mass_ || !energy_ || momenta_.empty()) return nullptr;
+  return dynamic_cast<const wall_temperature*>(&side->undecorated());
 }
 
 void wall_temperature_column::add_name(surface_table& table, const boundary* side) const {

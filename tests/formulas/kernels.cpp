@@ -64,9 +64,11 @@ extern "C" void boundaries(const double* u, double* to) {
 }
 
 extern "C" void rotations(const double* u, double* to) {
-  const auto in = scalar::fluxes_of_rotation(u[6], true, u[0], u[1], u[2], u[3], u[4]),
-             out = scalar::fluxes_of_rotation(u[7], true, u[1], u[2], u[3], u[4], u[5]);
-  to[0] = scalar::fraction_of_rotation(in, out, u[3], u[8]);
+  const scalar::rotation_factors factors{u[6], u[7], u[8]};
+  const scalar::rotation_edge<double> before{u[9], u[10]}, behind{u[11], u[12]};
+  const auto in = scalar::fluxes_of_rotation(before, factors, true, u[0], u[1], u[2], u[3], u[4]),
+             out = scalar::fluxes_of_rotation(behind, factors, true, u[1], u[2], u[3], u[4], u[5]);
+  to[0] = scalar::fraction_of_rotation(in, out, u[3], u[13]);
   to[1] = in.high_order - out.high_order;
 }
 

@@ -256,39 +256,46 @@ TEST(formulas, changes_along_a_lattice_are_those_of_single_numbers) {
 
 namespace {
 
-/// Half of a ring of random values, seen in the direction of rotation.
+/// A ring of random values.
 template <class N>
-struct half_of_ring {
-  const apsis::rotation_rows::half& of;
+struct ring_of_numbers {
+  const apsis::rotation_rows::ring& of;
   const apsis::rotation_rows::flux_rule& rule;
   const double* ring;
+  int column;
 
-  /// Angle j of the half, counted downstream from the one at ω = π; −1 is beyond it.
-  int angle(int j) const { return of.lower ? of.angles / 2 + j : of.angles / 2 - 1 - j; }
-  std::size_t place(int j, int column) const {
-    return static_cast<std::size_t>((angle(j) + of.angles) % of.angles * of.apart + column);
+  bool lower(int angle) const { return angle >= of.angles / 2; }
+  std::size_t place(int angle) const {
+    return static_cast<std::size_t>((angle + of.angles) % of.angles * of.apart + column);
   }
-  /// Place in the arrays of the half.
-  std::size_t in_half(int j, int column) const {
-    return place(j, column) - static_cast<std::size_t>(of.first());
+  N value(int angle) const { return N(ring[place(angle)]); }
+  /// The fluxes through an edge between the angles edge − 1 and edge, in the direction of a half.
+  scalar::rotation_fluxes<N> through(int edge, bool upwards) const {
+    const int from = upwards ? edge - 1 : edge, step = upwards ? 1 : -1;
+    const auto v = [&](int i) { return value(from + i * step); };
+    const auto k = static_cast<std::size_t>(edge * of.apart + column);
+    return scalar::fluxes_of_rotation(scalar::rotation_edge<N>{N(rule.speeds[k]), N(rule.slopes[k])},
+                                      {rule.first, rule.third, rule.second}, rule.fifth_order, v(-2), v(-1),
+                                      v(0), v(1), v(2));
   }
-  N value(int j, int column) const { return N(ring[place(j, column)]); }
-  scalar::rotation_fluxes<N> out(int j, int column) const {
-    if (j < 0 || j >= of.angles / 2) return {N(0.0), N(0.0)};
-    return scalar::fluxes_of_rotation(N(rule.speeds[in_half(j, column)]), rule.fifth_order,
-                                      value(j - 2, column), value(j - 1, column), value(j, column),
-                                      value(j + 1, column), value(j + 2, column));
+  int edge_behind(int angle) const { return lower(angle) ? angle + 1 : angle; }
+  int edge_before(int angle) const { return lower(angle) ? angle : angle + 1; }
+  N fraction(int angle) const {
+    return scalar::fraction_of_rotation(through(edge_before(angle), lower(angle)),
+                                        through(edge_behind(angle), lower(angle)), value(angle),
+                                        N(rule.scale) * N(rule.inverse[place(angle)]));
   }
-  N fraction(int j, int column) const {
-    if (j >= of.angles / 2) return N(0.0);
-    return scalar::fraction_of_rotation(out(j - 1, column), out(j, column), value(j, column),
-                                        N(rule.scale) * N(rule.inverse[in_half(j, column)]));
+  /// The flux through an edge in the direction of a half.
+  N flux(int edge, bool upwards) const {
+    const auto found = through(edge, upwards);
+    if (!rule.limited) return found.high_order;
+    const int below = (edge - 1 + of.angles) % of.angles, above = edge % of.angles;
+    return scalar::limited_edge(found.low_order, found.high_order, fraction(upwards ? below : above),
+                                fraction(upwards ? above : below));
   }
-  N flux(int j, int column) const {
-    const auto of_angle = out(j, column);
-    if (!rule.limited || j < 0) return of_angle.high_order;
-    return scalar::limited_edge(of_angle.low_order, of_angle.high_order, fraction(j, column),
-                                fraction(j + 1, column));
+  N change(int angle, double rate) const {
+    const bool upwards = lower(angle);
+    return N(rate) * (flux(edge_before(angle), upwards) - flux(edge_behind(angle), upwards));
   }
 };
 
@@ -298,31 +305,33 @@ TEST(formulas, changes_along_a_ring_are_those_of_single_numbers) {
   check_property("ring", [] {
     namespace rows_of_ring = apsis::rotation_rows;
     random_source random(*rc::gen::arbitrary<std::uint32_t>());
-    const rows_of_ring::half of{4 * *rc::gen::inRange(1, 6), *rc::gen::inRange(1, 14), random.one_in(2)};
-    const auto n = static_cast<std::size_t>(of.count());
-    rows ring(1, 2 * n, random, any_size);
+    const rows_of_ring::ring of{4 * *rc::gen::inRange(1, 6), *rc::gen::inRange(1, 14)};
+    const auto n = static_cast<std::size_t>(of.size());
+    rows ring(1, n, random, any_size);
     // Some rings vary little: most of their angles are not limited.
     if (random.one_in(2))
       for (double& one : ring.all) one = 1.0 + 0.1 * random.uniform(0.0, 1.0);
-    const auto speeds = drawn(n, random, [](random_source& r) { return r.uniform(0.0, 1.0); });
+    const auto edges = static_cast<std::size_t>(of.edges());
+    const auto speeds = drawn(edges, random, [](random_source& r) { return r.uniform(0.0, 1.0); });
+    const auto slopes = drawn(edges, random, [](random_source& r) { return r.uniform(-0.5, 0.5); });
     const auto inverse = drawn(n, random, [](random_source& r) { return r.uniform(0.0, 5.0); });
-    const rows_of_ring::flux_rule rule{random.one_in(2), random.one_in(2), speeds.data(), inverse.data(),
-                                       random.uniform(1.0, 20.0)};
+    const rows_of_ring::flux_rule rule{
+        random.one_in(2), random.one_in(2),         speeds.data(), slopes.data(), 0.1, -0.01, -0.001,
+        inverse.data(),   random.uniform(1.0, 20.0)};
     const double rate = random.uniform(0.0, 3.0);
     for_each_number([&](auto number, int) {
       using N = decltype(number);
       std::array<std::vector<double>, 4> all;
-      for (auto& one : all) one.resize(rows_of_ring::places::size(of));
-      std::vector<double> values(2 * n + 2 * rows_of_ring::halo * static_cast<std::size_t>(of.apart));
-      std::vector<double> change(n);
-      rows_of_ring::continue_ring(ring.at[0], of.angles, of.apart, values.data());
+      for (auto& one : all) one.resize(of.places());
+      std::vector<double> values(of.continued()), change(n);
+      rows_of_ring::continue_ring(of, ring.at[0], values.data());
       rows_of_ring::turn(of, rule, values.data(), rate,
                          {all[0].data(), all[1].data(), all[2].data(), all[3].data()}, change.data());
-      const half_of_ring<N> half{of, rule, ring.at[0]};
-      for (int j = 0; j < of.angles / 2; ++j)
-        for (int column = 0; column < of.apart; ++column)
-          RC_ASSERT(same_bits(change[half.in_half(j, column)],
-                              value_of(N(rate) * (half.flux(j - 1, column) - half.flux(j, column)))));
+      for (int column = 0; column < of.apart; ++column) {
+        const ring_of_numbers<N> numbers{of, rule, ring.at[0], column};
+        for (int angle = 0; angle < of.angles; ++angle)
+          RC_ASSERT(same_bits(change[numbers.place(angle)], value_of(numbers.change(angle, rate))));
+      }
     });
   });
 }

@@ -21,12 +21,10 @@ namespace {
 
 constexpr int cells_of_rotation = 16;  // of a task
 
-/// s |sin ω_e| at an edge. Angles in the first quadrant give all of them, so that symmetric rows stay
-/// symmetric to the last bit.
-double speed_at_edge(int edge, int angles) {
-  const int half = angles / 2, folded = edge % half;
-  const double width = 2.0 * std::numbers::pi / angles;
-  return 0.5 * width / std::sin(0.5 * width) * std::sin(std::min(folded, half - folded) * width);
+/// sin of the angle of an edge 0 … M/2, which gives all sines and cosines by symmetry: symmetric rows then
+/// stay symmetric to the last bit.
+double sine(int edge, int angles) {
+  return std::sin(std::min(edge, angles / 2 - edge) * (2.0 * std::numbers::pi / angles));
 }
 
 }  // namespace
@@ -82,21 +80,20 @@ double rotation::smallest_radius() const {
 }
 
 void rotation::find_speeds() {
-  const int angles = layout_.angles;
-  for (int angle = 0; angle < angles; ++angle) {
-    const int downstream = angle < angles / 2 ? angle : angle + 1;
-    const double below = speed_at_edge(angle, angles), above = speed_at_edge(angle + 1, angles);
-    for (int k = 0; k < layout_.apart; ++k) {
-      speeds_.push_back(downstream == angle ? below : above);
-      largest_.push_back(std::max(below, above));
-    }
+  const int angles = layout_.angles, apart = layout_.apart;
+  const double width = 2.0 * std::numbers::pi / angles;
+  stretch_ = 0.5 * width / std::sin(0.5 * width);
+  for (int edge = 0; edge <= angles; ++edge) {
+    const int folded = edge % (angles / 2), cosine = (edge + angles / 4) % angles;
+    const double sign = cosine < angles / 2 ? 1.0 : -1.0;
+    speeds_.insert(speeds_.end(), apart, stretch_ * sine(folded, angles));
+    slopes_.insert(slopes_.end(), apart, sign * width * sine(cosine % (angles / 2), angles));
   }
-  const double per_radian = angles / (2.0 * std::numbers::pi * smallest_radius_);
-  for (int k = 0; k < equation_.components(); ++k) {
-    const int of_ring = angles * layout_.apart, ring = k / of_ring % layout_.rings;
-    rates_.push_back(layout_.speeds[static_cast<std::size_t>(ring)] * per_radian *
-                     largest_[static_cast<std::size_t>(k % of_ring)]);
-  }
+  const std::size_t of_ring = size_of_ring();
+  for (std::size_t k = 0; k < of_ring; ++k)
+    largest_.push_back(std::max(speeds_[k], speeds_[k + static_cast<std::size_t>(apart)]));
+  for (std::size_t k = 0; k < static_cast<std::size_t>(equation_.components()); ++k)
+    rates_.push_back(speed_of(k / of_ring) / (width * smallest_radius_) * largest_[k % of_ring]);
   inverse_.resize(rates_.size());
   left_.resize(rates_.size());
 }
@@ -130,11 +127,10 @@ void rotation::limit_for_steps(double step, std::vector<line_speeds>& speeds) {
 }
 
 void rotation::add(const field& u, std::span<const target<field, double>> targets) const {
-  const std::size_t ring = speeds_.size(), apart = static_cast<std::size_t>(layout_.apart);
+  const rotation_rows::ring ring{layout_.angles, layout_.apart};
   workspaces_->prepare([&](workspace& here) {
-    for (auto& places : here.places)
-      places.resize(rotation_rows::places::size({layout_.angles, layout_.apart, false}));
-    here.values.resize(ring + 2 * rotation_rows::halo * apart);
+    for (auto& places : here.places) places.resize(ring.places());
+    here.values.resize(ring.continued());
     here.change.resize(static_cast<std::size_t>(u.stride()));
   });
   parallel_blocks(u.cells(), cells_of_rotation, [&](int begin, int end) {
@@ -150,21 +146,24 @@ void rotation::add(const field& u, std::span<const target<field, double>> target
 void rotation::add_cell(const field& u, std::span<const target<field, double>> targets, int cell,
                         workspace& here) const {
   const double r = space_->mesh().centre(cell)[static_cast<std::size_t>(radial_)];
-  const int of_ring = layout_.angles * layout_.apart, rings = u.components() / of_ring;
+  const rotation_rows::ring ring{layout_.angles, layout_.apart};
   const rotation_rows::places places{here.places[0].data(), here.places[1].data(), here.places[2].data(),
                                      here.places[3].data()};
-  const double per_radian = layout_.angles / (2.0 * std::numbers::pi * r), scale = r / smallest_radius_;
-  for (int ring = 0; ring < rings; ++ring) {
-    const int first = ring * of_ring;
-    rotation_rows::continue_ring(u.row(cell) + first, layout_.angles, layout_.apart, here.values.data());
-    const double rate = layout_.speeds[static_cast<std::size_t>(ring % layout_.rings)] * per_radian;
-    for (const bool lower : {false, true}) {
-      const rotation_rows::half half{layout_.angles, layout_.apart, lower};
-      const rotation_rows::flux_rule rule{fifth_order_, limited_, speeds_.data() + half.first(),
-                                          inverse_.data() + first + half.first(), scale};
-      rotation_rows::turn(half, rule, here.values.data(), rate, places,
-                          here.change.data() + first + half.first());
-    }
+  const double width = 2.0 * std::numbers::pi / layout_.angles;
+  rotation_rows::flux_rule rule{.fifth_order = fifth_order_,
+                                .limited = limited_,
+                                .speeds = speeds_.data(),
+                                .slopes = slopes_.data(),
+                                .first = 1.0 / 12.0 + 7.0 / 1440.0 * width * width,
+                                .third = -1.0 / 120.0,
+                                .second = -width * width / (180.0 * stretch_),
+                                .inverse = nullptr,
+                                .scale = r / smallest_radius_};
+  for (std::size_t first = 0; first < rates_.size(); first += size_of_ring()) {
+    rule.inverse = inverse_.data() + first;
+    rotation_rows::continue_ring(ring, u.row(cell) + first, here.values.data());
+    rotation_rows::turn(ring, rule, here.values.data(), speed_of(first / size_of_ring()) / (r * width),
+                        places, here.change.data() + first);
   }
   equation_.invariant_densities(here.change.data(),
                                 of_cells_.data() + static_cast<std::size_t>(cell) * invariants_);

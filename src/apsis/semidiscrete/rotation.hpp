@@ -18,12 +18,15 @@ namespace apsis {
 
 /// The part (1/r) ∂_ω(v_⊥ sin ω F) of T in axisymmetric flow, for F = r f with the distance r from the axis:
 /// a molecule in free flight keeps its velocity, while the radial direction at its place turns. Conservative
-/// upwind differences along each ring of velocities (polar_layout), periodic in ω, of the linear fifth-order
-/// reconstruction, with limited fluxes where positivity is kept (limited_reconstruction).
+/// upwind differences along each ring of velocities (polar_layout), periodic in ω, with limited fluxes where
+/// positivity is kept (limited_reconstruction).
 ///
-/// The speed at the edge ω_e = e Δω is −(v_⊥/r) s sin ω_e, s = ½Δω/sin ½Δω, so that the change of a row that
-/// does not depend on ω is v_⊥ cos ω_a F/r to rounding. Mass, energy and the momentum along the axis are
-/// conserved to rounding. Dimensionless.
+/// The flux at the edge ω_e = e Δω is −v_⊥ ĝ/r of the point values F_a with
+///     ĝ = s sin ω F̂ − Δω cos ω ((1/12 + 7Δω²/1440) Δω ∂F − Δω³ ∂³F/120) − sin ω Δω² (Δω² ∂²F)/180,
+/// s = ½Δω/sin ½Δω: the linear reconstruction F̂ of fifth order of F alone would be of second order, as ĝ is
+/// that of sin ω F. Derivatives are differences of the four values around the edge. The change of a row that
+/// does not depend on ω is thus v_⊥ cos ω_a F/r to rounding. At first order ĝ = s sin ω F_a. Mass, energy and
+/// the momentum along the axis are conserved to rounding. Dimensionless.
 class rotation {
  public:
   /// `equation` must outlive the object; `radial`: the direction of r in the mesh. Throws input_error if its
@@ -56,6 +59,11 @@ class rotation {
  private:
   struct workspace;
   void find_speeds();
+  std::size_t size_of_ring() const {
+    return static_cast<std::size_t>(layout_.angles) * static_cast<std::size_t>(layout_.apart);
+  }
+  /// Rings of a second set of components repeat those of the first.
+  double speed_of(std::size_t ring) const { return layout_.speeds[ring % layout_.speeds.size()]; }
   double factor_along(std::size_t direction) const {
     return direction == static_cast<std::size_t>(radial_) ? at_edge_ : 1.0;
   }
@@ -69,8 +77,10 @@ class rotation {
   int radial_;
   bool limited_, fifth_order_;
   double smallest_radius_, at_edge_;  ///< and q
-  aligned_vector<double> speeds_,     ///< s |sin ω| of the edge downstream of every number of a ring
-      largest_,                       ///< the larger one of both edges
+  double stretch_ = 1.0;              ///< s
+  aligned_vector<double> speeds_,     ///< s |sin ω| of the edges of a ring, `apart` numbers each
+      slopes_,                        ///< Δω cos ω of the edges
+      largest_,                       ///< the larger speed of both edges of every number of a ring
       rates_,                         ///< of every component, without transport
       inverse_, left_;  ///< 1/τ of the limiter for the smallest r, and the share left to transport
   std::size_t invariants_;

@@ -20,12 +20,30 @@ struct rotation_fluxes {
   APSIS_FORMULA N correction() const { return high_order - low_order; }
 };
 
-/// The fluxes out of the angle c of five in the direction of motion, of which d and e lie downstream. `speed`
-/// is that of the edge behind c.
+/// The edge between two angles downstream of one of them: the speed s |sin ω|, and Δω cos ω.
 template <class N>
-APSIS_FORMULA rotation_fluxes<N> fluxes_of_rotation(N speed, bool fifth_order, N a, N b, N c, N d, N e) {
-  const N low = speed * upwind1_edge(c);
-  return {low, fifth_order ? speed * upwind5_edge(a, b, c, d, e) : low};
+struct rotation_edge {
+  N speed, slope;
+};
+
+/// Factors of the derivatives in the flux of fifth order, of angles Δω apart (rotation.hpp): those of Δω ∂F,
+/// Δω³ ∂³F, and of Δω² ∂²F beside `speed`.
+struct rotation_factors {
+  double first, third, second;
+};
+
+/// The fluxes out of the angle c of five in the direction of motion, of which d and e lie downstream.
+template <class N>
+APSIS_FORMULA rotation_fluxes<N> fluxes_of_rotation(const rotation_edge<N>& edge,
+                                                    const rotation_factors& factors, bool fifth_order, N a,
+                                                    N b, N c, N d, N e) {
+  const N low = edge.speed * upwind1_edge(c);
+  if (!fifth_order) return {low, low};
+  const N first = d - c, outer = e - b, third = fma(N(-3.0), first, outer);
+  const N second = N(0.5) * ((b - c) + (e - d));
+  const N along = fma(N(factors.first), first, N(factors.third) * third);
+  const N upwind = fma(N(factors.second), second, upwind5_edge(a, b, c, d, e));
+  return {low, fma(edge.slope, along, edge.speed * upwind)};
 }
 
 /// The fraction of the corrections that leaves a value u ≥ 0 nonnegative, as limited_fraction(), where edges

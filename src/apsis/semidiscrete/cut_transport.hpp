@@ -41,6 +41,10 @@ class cut_transport {
   cut_transport(const model& equation, std::shared_ptr<domain> space, const limited_reconstruction& edges,
                 face_fluxes& faces);
 
+  /// Evaluates lines at walls in the plane half-way between the corners of their pieces, in place of a point
+  /// of the body: the flux of a linear function through the surface of a cell is then exact to rounding. In
+  /// axisymmetric flow uniform gas is such a function.
+  void use_chords();
   /// For steps of at most this length, in which transport may take the share `kept` of a value of each
   /// component.
   void limit_for_steps(double step, aligned_vector<double> kept);

@@ -80,6 +80,17 @@ void cut_transport::add_ways(int number) {
   }
 }
 
+void cut_transport::use_chords() {
+  for (group& one : groups_)
+    for (way& wall : one.ways) {
+      if (wall.to != way::kind::wall) continue;
+      const wall_segment& piece = cut().walls()[at(wall.number)];
+      for (int d = 0; d < directions(); ++d)
+        wall.from_centre[at(d)] = piece.from_centre[at(d)] - piece.middle[at(d)] +
+                                  0.5 * (piece.corners.front()[at(d)] + piece.corners.back()[at(d)]);
+    }
+}
+
 /// Returns the surface at which segments end beside cut cells.
 int cut_transport::border_at(int direction, bool cut_is_below) const {
   return 2 * directions() * (space_->mesh().obstacles() + 1) +

@@ -90,38 +90,49 @@ void rotation::find_speeds() {
     slopes_.insert(slopes_.end(), apart, sign * width * sine(cosine % (angles / 2), angles));
   }
   const std::size_t of_ring = size_of_ring();
-  for (std::size_t k = 0; k < of_ring; ++k)
-    largest_.push_back(std::max(speeds_[k], speeds_[k + static_cast<std::size_t>(apart)]));
-  for (std::size_t k = 0; k < static_cast<std::size_t>(equation_.components()); ++k)
-    rates_.push_back(speed_of(k / of_ring) / (width * smallest_radius_) * largest_[k % of_ring]);
+  for (std::size_t k = 0; k < static_cast<std::size_t>(equation_.components()); ++k) {
+    const std::size_t number = k % of_ring;
+    const double below = speeds_[number], above = speeds_[number + static_cast<std::size_t>(apart)];
+    per_speed_.push_back(width * smallest_radius_ / speed_of(k / of_ring));
+    rates_.push_back((2 * number < of_ring ? below : above) / per_speed_.back());
+    largest_.push_back(std::max(below, above) / per_speed_.back());
+  }
   inverse_.resize(rates_.size());
   left_.resize(rates_.size());
 }
 
-aligned_vector<double> rotation::rates_with(const std::vector<line_speeds>& speeds) const {
+aligned_vector<double> rotation::rates_through_cells(const std::vector<line_speeds>& speeds) const {
   aligned_vector<double> rates(speeds.front().per_cell.size());
   for (std::size_t d = 0; d < speeds.size(); ++d)
-    for (std::size_t k = 0; k < rates.size(); ++k) rates[k] += factor_along(d) * speeds[d].per_cell[k];
-  const auto stride = static_cast<std::size_t>(field(1, equation_.components()).stride());
+    for (std::size_t k = 0; k < rates.size(); ++k)
+      rates[k] += factor_of(speeds[d], d, k) * speeds[d].per_cell[k];
+  return rates;
+}
+
+aligned_vector<double> rotation::rates_with(const std::vector<line_speeds>& speeds) const {
+  auto rates = rates_through_cells(speeds);
   for (std::size_t k = 0; k < rates.size(); ++k)
-    if (k % stride < rates_.size()) rates[k] += rates_[k % stride];
+    if (const std::size_t j = k % stride(); j < rates_.size()) rates[k] += rates_[j];
   return rates;
 }
 
 void rotation::limit_for_steps(double step, std::vector<line_speeds>& speeds) {
-  const auto rates = rates_with(speeds);
-  const auto stride = static_cast<std::size_t>(field(1, equation_.components()).stride());
-  for (auto& line : speeds) line.inverse_cfl.resize(rates.size());
-  for (std::size_t k = 0; k < rates.size(); ++k) {
-    const std::size_t j = k % stride;
-    const double x = step * rates[k], of_rotation = j < rates_.size() ? step * rates_[j] : 0.0;
+  const auto through_cells = rates_through_cells(speeds), all = rates_with(speeds);
+  const double fastest = *std::max_element(all.begin(), all.end());
+  for (auto& line : speeds) line.inverse_cfl.resize(all.size());
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    const std::size_t j = k % stride();
+    const double of_rotation =
+        j < rates_.size() ? std::max(rates_[j], std::min(largest_[j], fastest - through_cells[k])) : 0.0;
+    const double x = step * (through_cells[k] + of_rotation);
     const double cfl_of_rotation = std::max(limiter::least_cfl_number, std::sqrt(x)),
-                 left = 1.0 - of_rotation / cfl_of_rotation;
+                 left = 1.0 - step * of_rotation / cfl_of_rotation;
     for (std::size_t d = 0; d < speeds.size(); ++d)
       speeds[d].inverse_cfl[k] =
-          1.0 / std::max(limiter::least_cfl_number, (x - of_rotation) / (left * factor_along(d)));
+          1.0 /
+          std::max(limiter::least_cfl_number, step * through_cells[k] / (left * factor_of(speeds[d], d, k)));
     if (k >= rates_.size()) continue;
-    inverse_[k] = largest_[k % largest_.size()] / cfl_of_rotation;
+    inverse_[k] = of_rotation * per_speed_[k] / cfl_of_rotation;
     left_[k] = left;
   }
 }

@@ -42,16 +42,16 @@ class rotation {
   const std::vector<double>& given() const { return given_; }
   /// Returns the rate of each component that limits the step, for as many cells as the speeds,
   ///     q |v_r|/Δr + |v_x|/Δx + (v_⊥/r) s |sin ω_e|/Δω
-  /// with the smallest r of all cells and the larger one of both edges. q = 1 without limiter. With one, q =
-  /// 1 + Δr/(2r): in uniform gas F = r f is larger by this factor at the outer edge of a cell, 2 at the axis,
-  /// and its outflow must not be limited.
+  /// with the smallest r of all cells and the edge of outflow. q = 1 without limiter. With one, q = 1 +
+  /// Δr/(2r) for v_r > 0: in uniform gas F = r f is larger by this factor at the outer edge of a cell, 2 at
+  /// the axis, and its outflow must not be limited. The largest rate is that of a velocity with v_r < 0.
   aligned_vector<double> rates_with(const std::vector<line_speeds>& speeds) const;
   /// Divides the values among transport and rotation for forward Euler steps of a length, such that both keep
   /// their parts nonnegative; sets C of transport. A step of Δt with x = Δt rates_with() ≤ 1, to which
   /// rotation contributes R, gives it the share R/√x, and the rest to transport, with
   ///     C = (x − R)/(1 − R/√x) ≤ 1,  divided by q along r.
-  /// Both limiters are then weak for short steps, and that of transport everywhere for components that
-  /// hardly rotate: one C serves all cells.
+  /// Both limiters are then weak for short steps, and that of transport everywhere for components that hardly
+  /// rotate: one C serves all cells. R is that of the faster edge where the largest rate leaves it room.
   void limit_for_steps(double step, std::vector<line_speeds>& speeds);
   /// Returns the share of the values of each component that is left to transport.
   const aligned_vector<double>& left() const { return left_; }
@@ -64,9 +64,12 @@ class rotation {
   }
   /// Rings of a second set of components repeat those of the first.
   double speed_of(std::size_t ring) const { return layout_.speeds[ring % layout_.speeds.size()]; }
-  double factor_along(std::size_t direction) const {
-    return direction == static_cast<std::size_t>(radial_) ? at_edge_ : 1.0;
+  std::size_t stride() const { return static_cast<std::size_t>(field(1, equation_.components()).stride()); }
+  /// Returns q of component k along a direction.
+  double factor_of(const line_speeds& line, std::size_t direction, std::size_t k) const {
+    return direction == static_cast<std::size_t>(radial_) && line.forward[k] != 0.0 ? at_edge_ : 1.0;
   }
+  aligned_vector<double> rates_through_cells(const std::vector<line_speeds>& speeds) const;
   double smallest_radius() const;
   void add_cell(const field& u, std::span<const target<field, double>> targets, int cell,
                 workspace& here) const;
@@ -80,9 +83,10 @@ class rotation {
   double stretch_ = 1.0;              ///< s
   aligned_vector<double> speeds_,     ///< s |sin ω| of the edges of a ring, `apart` numbers each
       slopes_,                        ///< Δω cos ω of the edges
-      largest_,                       ///< the larger speed of both edges of every number of a ring
-      rates_,                         ///< of every component, without transport
-      inverse_, left_;  ///< 1/τ of the limiter for the smallest r, and the share left to transport
+      per_speed_,                     ///< r Δω/v_⊥ of every component with the smallest r
+      rates_,                         ///< of outflow of every component by rotation there
+      largest_,                       ///< with the larger speed of both edges
+      inverse_, left_;                ///< 1/τ of the limiter there, and the share left to transport
   std::size_t invariants_;
   mutable std::vector<double> of_cells_;  ///< invariants given to a cell
   mutable std::vector<double> given_;

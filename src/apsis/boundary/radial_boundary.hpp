@@ -10,9 +10,9 @@
 namespace apsis {
 
 /// Any boundary condition but the axis in axisymmetric flow, where the unknowns are F = r f. The condition
-/// sees f. What leaves is divided by r, and so are ghost rows where the condition reads them; what enters is
-/// multiplied by r, that of the point at the face. A value at the face that a condition extrapolates from
-/// ghost rows is then that of F divided by r.
+/// sees f. Outgoing values are divided by r, and so are ghost rows where the condition reads them; what
+/// enters is multiplied by r, that of the point at the face. A value at the face that a condition
+/// extrapolates from ghost rows is then that of F divided by r.
 ///
 /// Conditions that prescribe what enters continue F as they continue f. Where a condition repeats the cell at
 /// a face r = const, ghost rows are F of the f there. Other conditions, as planes of symmetry, fill ghost

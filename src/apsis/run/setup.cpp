@@ -207,6 +207,7 @@ std::vector<std::string> run_setup::open_faces() const {
   for (const budget_surface& one : space.budget_surfaces())
     open.push_back(one.solid < 0 ? face_names[one.where.index()] : solid_name(one.solid));
   if (config_.force.acceleration) open.emplace_back("force");
+  if (builder_.axis()) open.emplace_back("rotation");
   if (!config_.source_term.empty()) open.emplace_back("source");
   return open;
 }
@@ -228,7 +229,7 @@ std::vector<std::size_t> run_setup::open_ends() const {
 std::optional<std::vector<double>> run_setup::entropy_bounds() const {
   std::vector<double> all;
   if (!has_space()) return all;
-  if (config_.force.acceleration || !config_.source_term.empty()) return std::nullopt;
+  if (config_.force.acceleration || builder_.axis() || !config_.source_term.empty()) return std::nullopt;
   const auto of_faces = builder_.space().entropy_bounds();
   if (!of_faces) return std::nullopt;
   const std::size_t count = equation->invariants().size();

@@ -77,14 +77,14 @@ class run_setup : public construction_count<run_setup> {
   long number_in_whole_mesh(int cell) const { return whole_mesh().cell_of(mesh(), cell); }
   /// Whether both ends along a direction are periodic.
   bool periodic(int direction) const { return builder_.space().periodic(direction); }
-  /// Returns the names of the faces that are not periodic, "left", "right", and "force" and "source"
-  /// if there are any.
+  /// Returns the names of the faces that are not periodic, "left", "right", and "force", "rotation"
+  /// of axisymmetric flow and "source" if there are any.
   std::vector<std::string> open_faces() const;
   /// Returns the number of ends of segments at each of the open faces, 1 for the force and the source: the
   /// layout of a boundary_budget.
   std::vector<std::size_t> open_ends() const;
   /// Returns boundary::entropy_bound() of the open faces, [face][invariant]; nothing if the entropy that one
-  /// of them, the force or the source gives is not bounded.
+  /// of them, the force, the rotation or the source gives is not bounded.
   std::optional<std::vector<double>> entropy_bounds() const;
   /// Returns ε at the cell centres.
   std::vector<double> epsilon_at_centres() const { return builder_.epsilon_at_centres(); }

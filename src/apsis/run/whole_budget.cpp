@@ -41,8 +41,8 @@ std::vector<std::size_t> places_of(const run_setup& setup) {
   return mine;
 }
 
-/// Force and source have one set of totals each, after those of the ends, and a force what it holds at the
-/// ends of the velocities.
+/// Force, rotation of axisymmetric flow and source have one set of totals each, after those of the ends, and
+/// a force what it holds at the ends of the velocities.
 std::size_t size_of_totals(const run_setup& setup) {
   return (setup.open_faces().size() - setup.builder().space().budget_surfaces().size()) *
              setup.equation->invariants().size() +

@@ -20,6 +20,12 @@ std::span<const double> row_of_f(std::span<const double> u, double r) {
   return f;
 }
 
+void refuse_axis(const std::vector<domain::faces>& sides) {
+  for (const auto& [lower, upper] : sides)
+    if (lower->is_axis() || upper->is_axis())
+      throw input_error("the boundary 'axis' in a flow that is not axisymmetric; choose another boundary");
+}
+
 void decorate(std::shared_ptr<const boundary>& side, int radial, const grid& mesh) {
   if (side->is_axis() || side->periodic()) return;
   side = std::make_shared<radial_boundary>(std::move(side), radial, mesh.spacing(radial));
@@ -27,26 +33,27 @@ void decorate(std::shared_ptr<const boundary>& side, int radial, const grid& mes
 
 }  // namespace
 
-void check(const model& equation, const grid& whole, int radial, const std::vector<domain::faces>& sides,
-           const cell_unknown& unknown) {
+void check(const model& equation, const grid& whole, const std::optional<int>& radial,
+           const std::vector<domain::faces>& sides, const cell_unknown& unknown) {
+  if (!radial) return refuse_axis(sides);
   if (equation.polar().empty())
     throw input_error(
         "the flow cannot be axisymmetric (the velocities of the model have no rings around the axis); choose "
         "polar velocities");
-  if (whole.dimensions() > 2 || radial != whole.dimensions() - 1)
+  if (whole.dimensions() > 2 || *radial != whole.dimensions() - 1)
     throw input_error(fmt::format(
         "axisymmetric flow in {} dimensions with r in direction {} (the mesh needs one dimension, r, or two, "
         "x and r); change the mesh",
-        whole.dimensions(), radial + 1));
+        whole.dimensions(), *radial + 1));
   if (!unknown.pointwise())
     throw input_error(fmt::format(
         "axisymmetric flow with {} (the radius varies in a cell); use finite differences", unknown.plural()));
-  const double lower = whole.edge(radial, 0);
+  const double lower = whole.edge(*radial, 0);
   if (!(lower >= 0.0))
     throw input_error(fmt::format(
         "the mesh begins at r = {:g} (the distance from the axis is not negative); let it begin at r >= 0",
         lower));
-  const auto& [inner, outer] = sides[at(radial)];
+  const auto& [inner, outer] = sides[at(*radial)];
   if (inner->is_axis() != (lower == 0.0))
     throw input_error(
         lower == 0.0

@@ -8,6 +8,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <vector>
 
 namespace apsis {
@@ -20,9 +21,10 @@ namespace apsis {
 namespace axisymmetric {
 
 /// Throws input_error unless the velocities have rings, the last direction of one or two is radial, the mesh
-/// has r ≥ 0, and its lower end is the axis if and only if r = 0 there.
-void check(const model& equation, const grid& whole, int radial, const std::vector<domain::faces>& sides,
-           const cell_unknown& unknown);
+/// has r ≥ 0, and its lower end is the axis if and only if r = 0 there. Without `radial`, for other flows, it
+/// throws if an end is an axis.
+void check(const model& equation, const grid& whole, const std::optional<int>& radial,
+           const std::vector<domain::faces>& sides, const cell_unknown& unknown);
 
 /// Returns the conditions for F; the axis stays.
 std::vector<domain::faces> sides_of(std::vector<domain::faces> sides, int radial, const grid& mesh);

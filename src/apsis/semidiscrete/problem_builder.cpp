@@ -212,16 +212,8 @@ std::shared_ptr<domain> problem_builder::make_space() const {
   return make_domain_of(mesh_, distribution_ ? &*distribution_ : nullptr);
 }
 
-/// Throws as axisymmetric::check() does, before boundaries are prepared.
-void problem_builder::check_axis() const {
-  if (radial_) return axisymmetric::check(*equation_, whole_mesh(), *radial_, sides_, of_space().unknown());
-  for (const auto& [lower, upper] : sides_)
-    if (lower->is_axis() || upper->is_axis())
-      throw input_error("the boundary 'axis' in a flow that is not axisymmetric; choose another boundary");
-}
-
 std::shared_ptr<domain> problem_builder::make_domain_of(const grid& mesh, const distribution* shared) const {
-  check_axis();
+  axisymmetric::check(*equation_, whole_mesh(), radial_, sides_, of_space().unknown());
   const auto sides = radial_ ? axisymmetric::sides_of(sides_, *radial_, mesh) : sides_;
   const auto solids = radial_ ? axisymmetric::walls_of(solids_, *radial_, mesh) : solids_;
   const phase_space space{mesh, equation_->velocities()};
@@ -267,6 +259,10 @@ std::unique_ptr<semidiscrete_problem> problem_builder::build() const {
   if (has_space() && !scheme_)
     throw input_error("no reconstruction (the model has space); call with_reconstruction()");
   check_discretization();
+  if (radial_ && force_)
+    throw input_error(
+        "a force in axisymmetric flow (rings of velocities have no lattice along which it acts); leave it "
+        "out");
   this->space();
   // Ghost rows belong to one problem.
   const auto space = space_.use_count() > 1 ? make_space() : space_;

@@ -88,7 +88,7 @@ class problem_builder {
   /// - only one face of a direction is periodic;
   /// - the discretization does not serve the dimensions, the solid boxes or the place of collisions;
   /// - the force is not possible (force.hpp);
-  /// - axisymmetric flow is not possible (axisymmetric.hpp), or there is an axis without it.
+  /// - axisymmetric flow is not possible (axisymmetric.hpp) or has a force, or there is an axis without it.
   std::unique_ptr<semidiscrete_problem> build() const;
   /// Returns the unknowns of data (cell_unknown), [cells][components], 0 in solid cells; averages are exact
   /// to rounding if the data are smooth between the `jumps` (in increasing order). In axisymmetric flow they
@@ -137,7 +137,6 @@ class problem_builder {
   void check_solids() const;
   void check_cells() const;
   void check_discretization() const;
-  void check_axis() const;
   std::shared_ptr<domain> make_domain_of(const grid& mesh, const distribution* shared) const;
   std::vector<double> epsilon_at(std::span<const weighted_point> points, const scale& epsilon) const;
 

@@ -59,6 +59,10 @@ constexpr double hopeless = 1e6;
 std::vector<double> checked_epsilon(const problem_builder& space) {
   if (!space.has_space())
     throw input_error("the model has no space, so that its steady state is an equilibrium; run it in time");
+  if (space.axis())
+    throw input_error(
+        "the steady state of axisymmetric flow (sweeps do not turn velocities around the axis); march in "
+        "time");
   if (space.whole_mesh().cut() != nullptr && !space.processes().is_single())
     throw input_error(
         "bodies on several processes (sweeps would begin anew within groups of cut cells); use one process, "

@@ -58,8 +58,8 @@ class steady_solver {
  public:
   /// `problem`: built by `space`; its boundary conditions, forces and sources are taken at t = 0. `start`:
   /// the sums of its conserved moments are those of the solution, and its residual is the unit of residuals.
-  /// `equation` and `problem` must outlive the solver. Throws input_error without space, if ε is 0
-  /// somewhere, or with bodies on several processes.
+  /// `equation` and `problem` must outlive the solver. Throws input_error without space, in
+  /// axisymmetric flow, if ε is 0 somewhere, or with bodies on several processes.
   steady_solver(const relaxation_model& equation, const problem_builder& space, semidiscrete_problem& problem,
                 const field& start, const steady_options& options = {});
   ~steady_solver();

@@ -6,8 +6,6 @@
 #include <cstddef>
 #include <vector>
 
-#include <fmt/format.h>
-
 namespace apsis {
 namespace {
 
@@ -45,10 +43,10 @@ class axis_boundary final : public boundary {
   /// Finds the images of components. Throws input_error if some have no image, or there is no v_θ.
   void set_images(int radial, const velocity_set& velocities) {
     if (velocities.dimensions() < radial + 2)
-      throw input_error(fmt::format(
-          "boundary 'axis' cannot be used (the velocities have {} components, and need v_theta after v_r, "
-          "component {}); choose polar velocities, or another boundary",
-          velocities.dimensions(), radial + 1));
+      throw input_error(
+          "boundary 'axis' cannot be used (the velocities have no v_theta after v_r); choose polar "
+          "velocities, "
+          "or another boundary");
     mirrored_ = mirrored_components(velocities, radial);
     const std::vector<int> across = mirrored_components(velocities, radial + 1);
     for (const int k : mirrored_) opposite_.push_back(across[static_cast<std::size_t>(k)]);

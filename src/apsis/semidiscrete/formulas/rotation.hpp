@@ -32,7 +32,7 @@ struct rotation_factors {
   double first, third, second;
 };
 
-/// The fluxes out of the angle c of five in the direction of motion, of which d and e lie downstream.
+/// The fluxes out of the angle c of five in the direction of motion; d and e lie downstream.
 template <class N>
 APSIS_FORMULA rotation_fluxes<N> fluxes_of_rotation(const rotation_edge<N>& edge,
                                                     const rotation_factors& factors, bool fifth_order, N a,

@@ -50,21 +50,26 @@ void find_rotation_fluxes(const half_ring& of, const rotation_rows::flux_rule& r
   });
 }
 
-void find_fractions(const half_ring& of, const rotation_rows::flux_rule& rule, const double* values,
+/// Returns whether some fraction is below 1.
+bool find_fractions(const half_ring& of, const rotation_rows::flux_rule& rule, const double* values,
                     const rotation_rows::places& to) {
   const double *from = values + rotation_rows::halo * of.apart + of.first, *inverse = rule.inverse + of.first,
                *low_order = of.at(to.low_order), *fluxes = of.at(to.fluxes);
   double* fractions = of.at(to.fractions);
   const double scale = rule.scale;
   const int step = of.step;
-  for_packs(of.count, [=](auto lanes, int k) APSIS_PACKED {
+  bool limits = false;
+  for_packs(of.count, [=, &limits](auto lanes, int k) APSIS_PACKED {
     using N = pack<decltype(lanes)>;
     const auto out_of = [=](int place) APSIS_PACKED {
       return rotation_fluxes<N>{N::load(low_order + place), N::load(fluxes + place)};
     };
-    fraction_of_rotation(out_of(k - step), out_of(k), N::load(from + k), N(scale) * N::load(inverse + k))
-        .store(fractions + k);
+    const N fraction =
+        fraction_of_rotation(out_of(k - step), out_of(k), N::load(from + k), N(scale) * N::load(inverse + k));
+    limits = limits || any<N>(fraction < N(1.0));
+    fraction.store(fractions + k);
   });
+  return limits;
 }
 
 void limit_rotation(const half_ring& of, const rotation_rows::places& to) {
@@ -90,14 +95,16 @@ void turn(const rotation_rows::ring& ring, const rotation_rows::flux_rule& rule,
           double rate, const rotation_rows::places& to, double* change) {
   const half_ring upper(ring, false), lower(ring, true);
   for (const half_ring& of : {upper, lower}) find_rotation_fluxes(of, rule, values, to);
-  if (rule.limited) {
-    for (const half_ring& of : {upper, lower}) find_fractions(of, rule, values, to);
+  bool limits = false;
+  for (const half_ring& of : {upper, lower})
+    if (rule.limited) limits = find_fractions(of, rule, values, to) || limits;
+  if (limits) {
     join_fractions(upper, lower, to.fractions);
     join_fractions(lower, upper, to.fractions);
     for (const half_ring& of : {upper, lower}) limit_rotation(of, to);
   }
   for (const half_ring& of : {upper, lower}) {
-    const double* out = of.at(rule.limited ? to.limited_fluxes : to.fluxes);
+    const double* out = of.at(limits ? to.limited_fluxes : to.fluxes);
     double* into = change + of.first;
     const int step = of.step;
     for_packs(of.count, [=](auto lanes, int k) APSIS_PACKED {

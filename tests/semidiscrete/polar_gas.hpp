@@ -133,6 +133,7 @@ struct choices {
   bool limited = false;
   std::string outer = "diffuse", ends = "periodic";
   apsis::outside_function body = {};
+  std::optional<apsis::cell_box> box = {};
   bool by_density = false;
 };
 
@@ -172,6 +173,7 @@ inline polar_flow make(const choices& of, const std::shared_ptr<apsis::communica
   const double outer = of.inner + of.length;
   grid mesh = radial == 0 ? grid::line(of.cells, of.inner, outer)
                           : grid(2, {of.cells, of.cells, 1}, {0.0, of.inner, 0.0}, {1.0, outer, 1.0});
+  if (of.box) mesh = mesh.with_solids({*of.box});
   if (of.body)
     mesh = mesh.with_cut_cells(std::make_shared<apsis::cut_cells>(
         mesh, std::vector{of.body}, std::array{of.ends == "periodic", false, false}));
@@ -186,7 +188,7 @@ inline polar_flow make(const choices& of, const std::shared_ptr<apsis::communica
   if (of.limited) flow.builder->with_positivity_limiter();
   for (const bool upper : {false, true})
     if (radial == 1) flow.builder->with_boundary({0, upper}, side(of.ends, *flow.equation));
-  if (of.body) flow.builder->with_solid(0, side("diffuse", *flow.equation));
+  if (of.body || of.box) flow.builder->with_solid(0, side("diffuse", *flow.equation));
   flow.problem = flow.builder->build();
   return flow;
 }

@@ -80,7 +80,8 @@ double rotation::smallest_radius() const {
 }
 
 void rotation::find_speeds() {
-  const int angles = layout_.angles, apart = layout_.apart;
+  const int angles = layout_.angles;
+  const auto apart = static_cast<std::size_t>(layout_.apart);
   const double width = 2.0 * std::numbers::pi / angles;
   stretch_ = 0.5 * width / std::sin(0.5 * width);
   for (int edge = 0; edge <= angles; ++edge) {
@@ -92,7 +93,7 @@ void rotation::find_speeds() {
   const std::size_t of_ring = size_of_ring();
   for (std::size_t k = 0; k < static_cast<std::size_t>(equation_.components()); ++k) {
     const std::size_t number = k % of_ring;
-    const double below = speeds_[number], above = speeds_[number + static_cast<std::size_t>(apart)];
+    const double below = speeds_[number], above = speeds_[number + apart];
     per_speed_.push_back(width * smallest_radius_ / speed_of(k / of_ring));
     rates_.push_back((2 * number < of_ring ? below : above) / per_speed_.back());
     largest_.push_back(std::max(below, above) / per_speed_.back());

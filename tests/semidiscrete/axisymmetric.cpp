@@ -146,7 +146,7 @@ TEST(axisymmetric, steps_within_dt_fe_keep_any_data_nonnegative) {
     const int dimensions = random.integer(1, 3);
     choices of{.dimensions = dimensions,
                .cells = dimensions == 1 ? random.integer(8, 16) : random.integer(6, 11),
-               .angles = 4 * random.integer(1, 7),
+               .angles = 4 * random.integer(3, 9),
                .inner = random.one_in(3) ? 0.2 : 0.0,
                .scheme = random.one_in(3)   ? "upwind1"
                          : random.one_in(2) ? "weno5-z"
@@ -154,6 +154,7 @@ TEST(axisymmetric, steps_within_dt_fe_keep_any_data_nonnegative) {
                .outer = random.one_in(2) ? "diffuse" : "outflow",
                .ends = random.one_in(2) ? "diffuse" : "periodic"};
     of.limited = of.scheme != "upwind1";
+    if (!of.limited) of.angles -= 8;
     if (dimensions == 2 && of.inner == 0.0 && random.one_in(2)) {
       of.cells = 14;
       of.body = ball;
@@ -185,7 +186,7 @@ TEST(axisymmetric, steps_above_dt_fe_make_values_negative) {
 
 TEST(axisymmetric, limiter_shortens_no_step) {
   // The largest rate is that of a velocity towards the axis, |cos ω| + s (M/π) |sin ω_e| in units of v/Δr.
-  for (const int angles : {8, 16, 32, 64}) {
+  for (const int angles : {12, 16, 32, 64}) {
     const field u(12, 2 * angles * 4);
     const double free = make({.angles = angles}).problem->forward_euler_step(0.0, u);
     EXPECT_EQ(make({.angles = angles, .limited = true}).problem->forward_euler_step(0.0, u), free) << angles;
@@ -259,6 +260,25 @@ TEST(axisymmetric, free_flight_converges_in_radius_and_angle) {
   EXPECT_LT(fine, 2e-5);
   EXPECT_GT(std::log2(coarse / middle), 1.9);
   EXPECT_GT(std::log2(middle / fine), 1.9);
+}
+
+TEST(axisymmetric, disturbances_decay_between_the_axis_and_a_diffuse_wall) {
+  // Random disturbances of a half, over more than a hundred transits of the slow ring at the least number of
+  // angles. Waves that grow would exceed them.
+  for (const double cfl : {0.5, 1.0}) {
+    const polar_flow flow = make({.cells = 10, .angles = 12, .speeds = {0.5, 1.0}, .along = {1.0}});
+    apsis::random_source random(3);
+    const field at_rest = flow.at_rest();
+    field u = at_rest;
+    for (int cell = 0; cell < u.cells(); ++cell)
+      for (int k = 0; k < u.components(); ++k) u.row(cell)[k] *= random.uniform(0.5, 1.5);
+    const double dt = cfl * flow.problem->forward_euler_step(0.0, u);
+    u = advanced(flow, std::move(u), dt, static_cast<int>(300.0 / dt));
+    const double mass = integrals(flow, u)[0] / integrals(flow, at_rest)[0];
+    for (int cell = 0; cell < u.cells(); ++cell)
+      for (int k = 0; k < u.components(); ++k)
+        EXPECT_NEAR(u.row(cell)[k], mass * at_rest.row(cell)[k], 1e-3 * at_rest.row(cell)[k]);
+  }
 }
 
 TEST(axisymmetric, a_ring_of_molecules_crosses_the_axis) {
@@ -400,6 +420,7 @@ TEST(axisymmetric, flows_that_are_not_possible_are_refused) {
       changed([](polar_flow& flow) { flow.builder->with_boundary({1, true}, side("axis", *flow.equation)); }),
       HasSubstr("boundary 'axis' at the upper end"));
   EXPECT_THAT(message_of([] { make({.inner = -0.1}); }), HasSubstr("the mesh begins at r = -0.1"));
+  EXPECT_THAT(message_of([] { make({.angles = 8}); }), HasSubstr("8 angles of velocities"));
   EXPECT_THAT(message_of([] { make({.angles = 6}); }), HasSubstr("the velocities are not symmetric"));
   EXPECT_THAT(message_of([] {
                 polar_flow flow = make({});
@@ -407,7 +428,7 @@ TEST(axisymmetric, flows_that_are_not_possible_are_refused) {
               }),
               HasSubstr("axisymmetric flow with cell averages (the radius varies in a cell)"));
   EXPECT_THAT(message_of([] {
-                const polar_gas gas(1, {1.0}, 8, {-1.0, 1.0});
+                const polar_gas gas(1, {1.0}, 12, {-1.0, 1.0});
                 apsis::problem_builder(gas)
                     .on(grid::line(8, 0.0, 1.0))
                     .with_discretization("finite-difference")

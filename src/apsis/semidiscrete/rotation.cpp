@@ -20,6 +20,7 @@ namespace apsis {
 namespace {
 
 constexpr int cells_of_rotation = 16;  // of a task
+constexpr int least_angles = 12;       // for fifth order: waves between walls grow with 8
 
 /// sin of the angle of an edge 0 … M/2, which gives all sines and cosines by symmetry: symmetric rows then
 /// stay symmetric to the last bit.
@@ -55,10 +56,11 @@ rotation::rotation(const model& equation, std::shared_ptr<domain> space, int rad
     throw input_error(
         "the flow cannot be axisymmetric (the velocities of the model have no rings around the axis); choose "
         "polar velocities");
-  if (layout_.angles < 4 || layout_.angles % 4 != 0)
-    throw input_error(
-        fmt::format("{} angles of velocities (images at the axis need a multiple of 4); give a multiple of 4",
-                    layout_.angles));
+  if (const int least = fifth_order_ ? least_angles : 4; layout_.angles < least || layout_.angles % 4 != 0)
+    throw input_error(fmt::format(
+        "{} angles of velocities (images at the axis need a multiple of 4, and differences in the "
+        "angle are stable from {} on); give {} or more",
+        layout_.angles, least, least));
   if (!(smallest_radius_ > 0.0))
     throw input_error(fmt::format(
         "the centre of a cell has r = {:g} (the distance from the axis must be positive); begin the mesh at "

@@ -30,7 +30,8 @@ namespace apsis {
 class rotation {
  public:
   /// `equation` must outlive the object; `radial`: the direction of r in the mesh. Throws input_error if its
-  /// velocities have no rings of a multiple of four angles, or the centre of a cell has r ≤ 0.
+  /// velocities have no rings of a multiple of four angles, at least 12 beyond first order, or the centre of
+  /// a cell has r ≤ 0.
   rotation(const model& equation, std::shared_ptr<domain> space, int radial,
            const limited_reconstruction& edges);
   ~rotation();

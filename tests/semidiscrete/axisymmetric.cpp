@@ -196,6 +196,7 @@ TEST(axisymmetric, limiter_shortens_no_step) {
       fastest = std::max(fastest,
                          std::abs(std::cos((a + 0.5) * width)) + std::sin(a * width) / std::sin(0.5 * width));
     EXPECT_NEAR(free * 1.3 / 0.1 * fastest, 1.0, 1e-13);
+    EXPECT_NEAR(free * make({.angles = angles}).builder->cfl_rate(), 1.0, 1e-13);
   }
 }
 

@@ -361,9 +361,7 @@ std::optional<field> run_setup::exact_state(double t) const {
 
 double run_setup::cfl_length() const {
   if (!has_space()) throw input_error("time.cfl needs a mesh (the model has no space); give time.dt");
-  std::vector<double> spacing;
-  for (int k = 0; k < mesh().dimensions(); ++k) spacing.push_back(mesh().spacing(k));
-  return 1.0 / equation->cfl_rate(spacing);
+  return 1.0 / builder_.cfl_rate();
 }
 
 double run_setup::equilibrium_defect(const field& u) const {

@@ -6,7 +6,6 @@
 #include <apsis/core/printable.hpp>
 #include <apsis/core/suggest.hpp>
 #include <apsis/exec/interruption.hpp>
-#include <apsis/mesh/cut_cells.hpp>
 #include <apsis/semidiscrete/axisymmetric.hpp>
 
 #include <algorithm>
@@ -163,12 +162,6 @@ collision_layout problem_builder::collisions() const {
   return of_space().collisions_at(collisions_, *scheme_);
 }
 
-double problem_builder::cfl_number() const {
-  const double of_limiter =
-      limited_ && has_space() && !first_order() ? of_space().limited_cfl_number(collisions_) : 1.0;
-  return mesh_.cut() != nullptr ? std::min(of_limiter, cut_cells::cfl_number) : of_limiter;
-}
-
 void problem_builder::check_solids() const {
   for (std::size_t k = 0; k < solids_.size(); ++k)
     if (!solids_[k])
@@ -204,33 +197,6 @@ void problem_builder::check_discretization() const {
   if (const std::string why = chosen.why_without_solids();
       mesh_.obstacles() > 0 && !why.empty() && !collisions().cellwise)
     throw input_error(fmt::format("solid boxes with {} ({}); {}", chosen.unknown().plural(), why, otherwise));
-}
-
-std::shared_ptr<domain> problem_builder::make_space() const {
-  check_solids();
-  if (!has_space()) return std::make_shared<domain>(domain::point());
-  return make_domain_of(mesh_, distribution_ ? &*distribution_ : nullptr);
-}
-
-std::shared_ptr<domain> problem_builder::make_domain_of(const grid& mesh, const distribution* shared) const {
-  axisymmetric::check(*equation_, whole_mesh(), radial_, sides_, of_space().unknown());
-  const auto sides = radial_ ? axisymmetric::sides_of(sides_, *radial_, mesh) : sides_;
-  const auto solids = radial_ ? axisymmetric::walls_of(solids_, *radial_, mesh) : solids_;
-  const phase_space space{mesh, equation_->velocities()};
-  return shared ? std::make_shared<domain>(space, sides, solids, *shared)
-                : std::make_shared<domain>(space, sides, solids);
-}
-
-const domain& problem_builder::space() const {
-  if (!space_) space_ = make_space();
-  return *space_;
-}
-
-const domain& problem_builder::whole_space() const {
-  if (!distribution_) return space();
-  check_solids();
-  if (!whole_) whole_ = make_domain_of(whole_mesh(), nullptr);
-  return *whole_;
 }
 
 /// In every cell at its points along the first direction.

@@ -154,10 +154,10 @@ TEST(boundary, every_name_is_found_and_an_unknown_one_gets_a_suggestion) {
     if (name == "radiating") values = {{"sigma", {0.1}}, {"surroundings", {1.0}}};
     EXPECT_NE(apsis::make_boundary(name, *gas, values), nullptr) << name;
   }
-  EXPECT_EQ(
-      message_of([] { apsis::make_boundary("outfow"); }),
-      "unknown boundary 'outfow' (there is no such kind); did you mean 'outflow'? valid: adiabatic, axis, diffuse, "
-      "far-field, given, inflow, mass-flow, outflow, periodic, pressure, radiating, symmetry, vacuum");
+  EXPECT_EQ(message_of([] { apsis::make_boundary("outfow"); }),
+            "unknown boundary 'outfow' (there is no such kind); did you mean 'outflow'? valid: adiabatic, "
+            "axis, diffuse, "
+            "far-field, given, inflow, mass-flow, outflow, periodic, pressure, radiating, symmetry, vacuum");
 }
 
 TEST(boundary, the_entropy_of_a_domain_is_bounded_where_that_of_all_its_faces_is) {

@@ -87,7 +87,7 @@ void domain::set_sides(const std::vector<faces>& sides,
 void domain::add_cut_ends() {
   if (mesh().cut() == nullptr) return;
   const cut_cells& cut = *mesh().cut();
-  const auto is_here = [&](int cell) { return !distribution_ || distribution_->number_in_block(cell) >= 0; };
+  const auto is_here = [&](int cell) { return number_in_block(cell) >= 0; };
   for (budget_surface& one : budget_surfaces_) {
     for (std::size_t f = 0; f < cut.faces().size() && one.solid < 0; ++f)
       if (const open_face& at_domain = cut.faces()[f];
@@ -119,6 +119,10 @@ std::optional<std::vector<std::vector<double>>> domain::entropy_bounds() const {
 
 long domain::number_in_whole_mesh(long cell) const {
   return cell < 0 || !distribution_ ? cell : distribution_->whole.cell_of(mesh(), static_cast<int>(cell));
+}
+
+int domain::number_in_block(int cell) const {
+  return distribution_ ? distribution_->number_in_block(cell) : cell;
 }
 
 std::size_t domain::ends_at(const budget_surface& one) const {

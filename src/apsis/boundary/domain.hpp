@@ -89,6 +89,8 @@ class domain : public construction_count<domain> {
   communicator& processes() const { return *processes_; }
   /// Returns the number in the whole mesh of a cell of this process; −1 for −1.
   long number_in_whole_mesh(long cell) const;
+  /// Returns the number in the block of this process of a cell of the whole mesh; −1 for cells of others.
+  int number_in_block(int cell) const;
   /// Whether other processes hold cells of the mesh.
   bool shared() const { return distribution_.has_value(); }
   /// Returns the mesh that several processes share; null for a single process.

@@ -18,8 +18,7 @@ int local_groups::holder(int cell) const {
 }
 
 int local_groups::number_here(int cell) const {
-  const distribution* shared = space_.shared_mesh();
-  return shared == nullptr ? cell : shared->number_in_block(cell);
+  return space_.number_in_block(cell);
 }
 
 /// Returns the processes that hold the row of a cell: all with a cell of its group.

@@ -75,6 +75,7 @@ struct choices {
   std::string wall = "diffuse";
   apsis::face_quantity accommodation = 1.0;
   double epsilon = 1.0;
+  apsis::face_quantities boundary_values = {};  ///< of `boundary`, where it has variables
 };
 
 /// `processes` share the mesh, or a single one has it.
@@ -101,9 +102,10 @@ inline gas_past_bodies make(const choices& of,
   if (processes) gas.builder->shared_by(processes, blocks);
   if (of.limited) gas.builder->with_positivity_limiter();
   for (std::size_t k = 0; !is_periodic && k < 2 * static_cast<std::size_t>(d); ++k)
-    gas.builder->with_boundary(apsis::face_of(k), apsis::find_boundary(of.boundary).variables == nullptr
-                                                      ? apsis::make_boundary(of.boundary)
-                                                      : apsis::make_boundary(of.boundary, *gas.equation));
+    gas.builder->with_boundary(apsis::face_of(k),
+                               apsis::find_boundary(of.boundary).variables == nullptr
+                                   ? apsis::make_boundary(of.boundary)
+                                   : apsis::make_boundary(of.boundary, *gas.equation, of.boundary_values));
   apsis::face_quantities wall{{"T", {of.wall_temperature}}, {"accommodation", {of.accommodation}}};
   if (of.wall != "diffuse") wall.clear();
   if (!of.wall_velocity.empty()) wall["velocity"] = of.wall_velocity;
@@ -153,6 +155,26 @@ inline std::vector<double> integrals(const gas_past_bodies& gas, const field& u)
       sum[k] += here[k] * gas.mesh().gas_share(cell) * gas.mesh().cell_volume();
   }
   return sum;
+}
+
+/// Moments of a gas with waves; cells of a group have the same.
+inline std::vector<double> some_moments(const gas_past_bodies& gas, double phase) {
+  std::vector<double> omega;
+  const int directions = gas.equation->velocities().dimensions();
+  for (int cell = 0; cell < gas.mesh().size(); ++cell) {
+    const position x = gas.mesh().centre(cell);
+    const double rho = 1.0 + 0.2 * std::sin(3.0 * x[0] + x[1] + phase),
+                 T = 1.0 + 0.1 * std::cos(2.0 * x[1] + phase);
+    double square = 0.0;
+    omega.push_back(rho);
+    for (int k = 0; k < directions; ++k) {
+      const double u = 0.2 * std::sin(x[0] - x[1] + k + phase);
+      omega.push_back(rho * u);
+      square += u * u;
+    }
+    omega.push_back(0.5 * rho * (gas.equation->as_gas()->molecules().degrees_of_freedom() * T + square));
+  }
+  return omega;
 }
 
 inline std::vector<choices> some_flows() {

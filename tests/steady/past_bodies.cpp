@@ -1,5 +1,4 @@
 // Steady states past bodies that cut cells.
-#include <apsis/core/errors.hpp>
 #include <apsis/core/random_source.hpp>
 #include <apsis/steady/macroscopic_system.hpp>
 #include <apsis/steady/steady_solver.hpp>
@@ -10,10 +9,8 @@
 #include <string>
 #include <vector>
 
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <semidiscrete/gas_past_bodies.hpp>
-#include <support/processes.hpp>
 
 namespace past_bodies_test {
 namespace {
@@ -25,26 +22,6 @@ std::vector<double> moments_of(const gas_past_bodies& gas, const field& u) {
   std::vector<double> omega(static_cast<std::size_t>(u.cells()) * count);
   for (int cell = 0; cell < u.cells(); ++cell)
     gas.equation->moments(u.row(cell), omega.data() + static_cast<std::size_t>(cell) * count);
-  return omega;
-}
-
-/// A gas with waves, in equilibrium; cells of a group have the same.
-std::vector<double> some_moments(const gas_past_bodies& gas, double phase) {
-  std::vector<double> omega;
-  const int directions = gas.equation->velocities().dimensions();
-  for (int cell = 0; cell < gas.mesh().size(); ++cell) {
-    const position x = gas.mesh().centre(cell);
-    const double rho = 1.0 + 0.2 * std::sin(3.0 * x[0] + x[1] + phase),
-                 T = 1.0 + 0.1 * std::cos(2.0 * x[1] + phase);
-    double square = 0.0;
-    omega.push_back(rho);
-    for (int k = 0; k < directions; ++k) {
-      const double u = 0.2 * std::sin(x[0] - x[1] + k + phase);
-      omega.push_back(rho * u);
-      square += u * u;
-    }
-    omega.push_back(0.5 * rho * (gas.equation->as_gas()->molecules().degrees_of_freedom() * T + square));
-  }
   return omega;
 }
 
@@ -179,15 +156,6 @@ TEST(past_bodies, gases_of_all_densities_and_models_settle) {
     EXPECT_GT(heat, 1e-3) << of.epsilon;
     EXPECT_NEAR(sum, 0.0, 1e-5 * heat) << of.epsilon;
   }
-}
-
-TEST(past_bodies, steady_states_on_several_processes_are_refused) {
-  threads_as_processes::run(2, [](const std::shared_ptr<apsis::communicator>& processes) {
-    const gas_past_bodies gas = make({.bodies = disc, .boundary = "diffuse"}, processes);
-    EXPECT_THAT(
-        [&] { apsis::steady_solver(*gas.equation, *gas.builder, *gas.problem, gas.uniform()); },
-        testing::ThrowsMessage<apsis::input_error>(testing::HasSubstr("bodies on several processes")));
-  });
 }
 
 }  // namespace past_bodies_test

@@ -99,10 +99,6 @@ void run_setup::build_space(std::shared_ptr<communicator> processes) {
   if (space.collisions) builder_.with_collisions_at(*space.collisions);
   at_key(config_, space.blocks ? "space.blocks" : "space.cells",
          [&] { builder_.shared_by(std::move(processes), given_blocks(space.blocks)); });
-  if (!config_.bodies.empty() && config_.steady_state.tolerance && !builder_.processes().is_single())
-    refuse(config_, "space.body.1",
-           "a steady run with bodies on several processes (its sweeps would begin anew within groups of cut "
-           "cells); start one process, or march in time with a table [time]");
   const auto sides = make_boundaries(config_, equation);
   for (int direction = 0; direction < static_cast<int>(sides.size()); ++direction)
     for (const bool upper : {false, true})

@@ -124,7 +124,7 @@ std::vector<double> cell_jacobian::compute(const std::vector<double>& omega,
       }
       if (const int group = cut_.group_of(cell); group >= 0)
         for (const way_out_of_cut& way : cut_.groups()[at(group)].ways)
-          if (way.other < 0) differentiate_way(equation_, way, layout_, own, to);
+          if (way.is_end()) differentiate_way(equation_, way, layout_, own, to);
     }
   });
   return all;

@@ -7,23 +7,27 @@
 namespace apsis {
 
 cell_links::cell_links(const domain& space) : directions_(space.mesh().dimensions()) {
-  add_cut_cells(space.mesh());
+  add_cells(space);
   for (auto* links : {&next_, &image_, &end_at_})
     for (auto& of_face : *links) of_face.assign(at(space.mesh().size()), -1);
   for (int direction = 0; direction < directions_; ++direction) link(space, direction);
 }
 
-void cell_links::add_cut_cells(const grid& mesh) {
+void cell_links::add_cells(const domain& space) {
+  const grid& mesh = space.mesh();
   const cut_cells* cut = mesh.cut();
   if (cut != nullptr) {
     cut_at_.assign(6, std::vector<int>(at(mesh.size()), -1));
     volumes_.assign(at(mesh.size()), 1.0);
   }
   for (int cell = 0; cell < mesh.size(); ++cell) {
-    const int group = mesh.cut_group(cell);
-    if (!has_unknown(mesh, cell)) continue;
+    if (mesh.solid(cell) >= 0) continue;
+    if (const int group = mesh.cut_group(cell); group >= 0) {
+      const cut_group& of = cut->groups()[at(group)];
+      if (space.number_in_block(of.cells.front()) != cell) continue;
+      volumes_[at(cell)] = of.volume / mesh.cell_volume();
+    }
     cells_.push_back(cell);
-    if (group >= 0) volumes_[at(cell)] = cut->groups()[at(group)].volume / mesh.cell_volume();
   }
 }
 
@@ -40,7 +44,7 @@ void cell_links::link(const domain& space, int direction) {
       if (!one.ends_here(upper)) continue;
       const segment_end& end = one.ends[upper ? 1 : 0];
       if (end.surface >= 0 && space.is_border_of_cut_cells(end.surface)) {
-        note_cut_cell(space.mesh(), direction, upper, one.first + (upper ? (one.cells - 1) * apart : 0));
+        note_cut_cell(space, direction, upper, one.first + (upper ? (one.cells - 1) * apart : 0));
         continue;
       }
       if (end.surface >= 0) {
@@ -55,11 +59,13 @@ void cell_links::link(const domain& space, int direction) {
 }
 
 /// The cell next to the last one of a segment is cut.
-void cell_links::note_cut_cell(const grid& mesh, int direction, bool upper, int last) {
+void cell_links::note_cut_cell(const domain& space, int direction, bool upper, int last) {
+  const grid& mesh = space.mesh();
   const int along = last / mesh.stride(direction) % mesh.cells(direction) + (upper ? 1 : -1);
-  if (along < 0 || along >= mesh.cells(direction)) return;  // across a periodic face
+  if (along < 0 || along >= mesh.cells(direction)) return;  // across a periodic face, or of others
   const int group = mesh.cut_group(last + (upper ? 1 : -1) * mesh.stride(direction));
-  cut_at_[index(direction, upper)][at(last)] = mesh.cut()->groups()[at(group)].cells.front();
+  cut_at_[index(direction, upper)][at(last)] =
+      space.number_in_block(mesh.cut()->groups()[at(group)].cells.front());
 }
 
 void cell_links::add_end(const domain& space, int direction, const segment& one, bool upper) {

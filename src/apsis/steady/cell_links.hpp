@@ -23,7 +23,8 @@ struct gas_end_of_segment {
 };
 
 /// Neighbours of the cells of a domain, along every direction. Cells of other processes do not count. The
-/// first cell of a group of cut cells stands for the group (cut_links); no segment contains it.
+/// first cell of a group of cut cells stands for the group (cut_links); no segment contains it. A group
+/// belongs to the process of this cell.
 class cell_links {
  public:
   /// Looks at all segments of the domain once.
@@ -40,14 +41,14 @@ class cell_links {
     return end_at_[index(direction, upper)][at(cell)];
   }
   /// Returns the first cell of the group of cut cells behind the end of a segment at a cell; −1 at other
-  /// ends, and across periodic faces.
+  /// ends, across periodic faces, and for groups of other processes.
   int cut_beyond(int direction, bool upper, int cell) const {
     return cut_at_.empty() ? -1 : cut_at_[index(direction, upper)][at(cell)];
   }
   /// Returns the volume of the gas of a cell or its group, relative to that of a whole cell.
   double volume(int cell) const { return volumes_.empty() ? 1.0 : volumes_[at(cell)]; }
   const std::vector<gas_end_of_segment>& ends() const { return ends_; }  ///< those at walls and boundaries
-  /// Returns the cells of the gas in order; of a group of cut cells the first one.
+  /// Returns the cells of the gas of this process in order; of a group of cut cells the first one.
   const std::vector<int>& cells() const { return cells_; }
   int directions() const { return directions_; }  ///< of the mesh
 
@@ -55,8 +56,8 @@ class cell_links {
   static std::size_t index(int direction, bool upper) { return face{direction, upper}.index(); }
   void link(const domain& space, int direction);
   void add_end(const domain& space, int direction, const segment& one, bool upper);
-  void add_cut_cells(const grid& mesh);
-  void note_cut_cell(const grid& mesh, int direction, bool upper, int last);
+  void add_cells(const domain& space);
+  void note_cut_cell(const domain& space, int direction, bool upper, int last);
 
   int directions_;
   std::vector<int> cells_;

@@ -42,7 +42,7 @@ octant_sweep::octant_sweep(const relaxation_model& equation, const domain& space
     std::vector<int>& ends = end_of_way_.emplace_back();
     const auto& ways = cut.groups()[at(group)].ways;
     for (int way = 0; way < static_cast<int>(ways.size()); ++way) {
-      ends.push_back(ways[at(way)].other < 0 ? static_cast<int>(cut_ends_.size()) : -1);
+      ends.push_back(ways[at(way)].is_end() ? static_cast<int>(cut_ends_.size()) : -1);
       if (ends.back() >= 0) cut_ends_.push_back({group, way});
     }
   }

@@ -68,15 +68,16 @@ void octant_sweep::pass_cut(const octant& of, int group, std::span<const sweep_r
   std::array<const double*, 3> speeds{};
   for (int d = 0; d < directions; ++d) speeds[at(d)] = equation_.speeds(d).data();
   double* row = r.row(here.cell);
-  // Rows that enter, for each way; none from cells that come later.
+  // Rows that enter, for each way; none from cells that come later, or of other processes.
   std::vector<const double*> from;
   for (std::size_t w = 0; w < here.ways.size(); ++w) {
     const way_out_of_cut& way = here.ways[w];
-    if (way.other < 0)
+    if (way.is_end())
       from.push_back(entering_cut_.row(end_of_way_[at(group)][w]));
     else
-      from.push_back(!way.is_image && of.place[at(way.other)] < of.place[at(here.cell)] ? r.row(way.other)
-                                                                                        : nullptr);
+      from.push_back(way.other >= 0 && !way.is_image && of.place[at(way.other)] < of.place[at(here.cell)]
+                         ? r.row(way.other)
+                         : nullptr);
   }
   for (const sweep_rows::strip& some : strips)
     for (int k = some.begin; k < some.end; ++k) {

@@ -63,11 +63,6 @@ std::vector<double> checked_epsilon(const problem_builder& space) {
     throw input_error(
         "the steady state of axisymmetric flow (sweeps do not turn velocities around the axis); march in "
         "time");
-  if (space.whole_mesh().cut() != nullptr && !space.processes().is_single())
-    throw input_error(
-        "bodies on several processes (sweeps would begin anew within groups of cut cells); use one process, "
-        "or "
-        "march in time");
   std::vector<double> found;
   run_collectively(space.processes(), [&] {
     found = space.epsilon_at_centres();
@@ -274,13 +269,11 @@ struct steady_solver::impl {
   void remove_negatives(field& f, steady_iteration& now) {
     if (!is_nonnegative(equation, builder)) return;
     removed_values& removed = now.removed;
-    run_collectively(processes, [&] {
-      removed = remove_negative_values(equation, links.cells(), f);
-      cut.copy_rows(f);
-    });
+    run_collectively(processes, [&] { removed = remove_negative_values(equation, links.cells(), f); });
     removed.count = global_count(processes, removed.count);
     removed.lowest = global_lowest(processes, removed.lowest);
     if (removed.count == 0) return;
+    cut.copy_rows(f);
     mixture.clear();
     compute_residual(f);
     if (reference > 0.0) now.residual = cells.norm(r) / reference;
@@ -334,8 +327,8 @@ struct steady_solver::impl {
       add_correction(share);
       for (double& rate : rates) rate += pseudo_rate;
       sweep.solve(f, rates, r);
-      cut.copy_rows(r);
     });
+    cut.copy_rows(r);
     update(f, mixes_at_once || now.residual < share_to_mix);
     return now;
   }

@@ -50,7 +50,8 @@ struct steady_iteration {
 /// cells kept; the state after it has the tolerance.
 ///
 /// On several processes every member is collective. J is that of the whole mesh, on the root; the sweep
-/// begins at the border of every process with δf = 0. The fixed points are the same, the iterates are not.
+/// begins at the border of every process with δf = 0. A group of cut cells is swept by the process of its
+/// first cell, and δf is copied to the others. The fixed points are the same, the iterates are not.
 ///
 /// Reference: Su, Zhu, Wang, Zhang & Wu (J. Comput. Phys. 407, 2020) for the macroscopic correction of a
 /// kinetic sweep. Here J has no terms of Navier–Stokes form: its fluxes are sums over the velocities.
@@ -58,8 +59,8 @@ class steady_solver {
  public:
   /// `problem`: built by `space`; its boundary conditions, forces and sources are taken at t = 0. `start`:
   /// the sums of its conserved moments are those of the solution, and its residual is the unit of residuals.
-  /// `equation` and `problem` must outlive the solver. Throws input_error without space, in
-  /// axisymmetric flow, if ε is 0 somewhere, or with bodies on several processes.
+  /// `equation` and `problem` must outlive the solver. Throws input_error without space, in axisymmetric
+  /// flow, or if ε is 0 somewhere.
   steady_solver(const relaxation_model& equation, const problem_builder& space, semidiscrete_problem& problem,
                 const field& start, const steady_options& options = {});
   ~steady_solver();

@@ -61,7 +61,7 @@ TEST(cut_links, give_each_group_to_one_process) {
           const gas_past_bodies part = make(flow, processes, blocks);
           const apsis::cell_links links(part.builder->space());
           apsis::cut_links cut(part.builder->space());
-          // What the owner has goes to all; what others have is wrong.
+          // The rows of owners go to all; other rows are wrong.
           const auto there = [&](int cell) { return whole.mesh().cell_of(part.mesh(), cell); };
           field rows(part.mesh().size(), 1);
           for (int cell = 0; cell < rows.cells(); ++cell) rows.row(cell)[0] = -1.0;

@@ -39,8 +39,8 @@ struct group_of_cut {
   std::vector<way_out_of_cut> ways;  ///< faces and walls
 };
 
-/// The groups of cut cells of a domain, for the sweeps and moment equations of steady states. A group of
-/// which several processes hold cells belongs to the process of its first cell. Cells have the numbers of the
+/// The groups of cut cells of a domain, for the sweeps and moment equations of steady states. A group in
+/// the blocks of several processes belongs to the process of its first cell. Cells have the numbers of the
 /// block of this process.
 class cut_links {
  public:

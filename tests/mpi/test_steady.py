@@ -37,6 +37,9 @@ points = 10
 [steady]
 tolerance = 1e-9
 """
+# Half of a cylinder in a supersonic stream. Borders of blocks pass through its groups of cut cells.
+CYLINDER = ("gas/cylinder", "parameters.Kn=0.5", "space.cells=[36,18]", "velocity.points=12", "steady.tolerance=1e-9",
+            'output.surfaces=["cylinder"]')
 # Iterates differ from the state by the tolerance times the number of iterations that an error survives, here about ten.
 CLOSE = 1e-7
 
@@ -47,9 +50,13 @@ class SteadyStates(Folder):
             rows = list(csv.DictReader(file))
         return {name: np.array([float(row[name]) for row in rows]) for name in rows[0]}
 
-    def iterations(self, folder):
+    def last(self, folder):
+        """The last row of the history."""
         with open(self.folder / folder / "history.csv", encoding="utf-8") as file:
-            return int(list(csv.DictReader(file))[-1]["step"])
+            return list(csv.DictReader(file))[-1]
+
+    def iterations(self, folder):
+        return int(self.last(folder)["step"])
 
     def found(self, count, *case, out):
         self.completed(count, "run", *case, "--out", out)
@@ -83,8 +90,25 @@ class SteadyStates(Folder):
         self.expect_close("gas/fourier", "parameters.delta=10", "boundary.left.T=9", "velocity.max=18", "velocity.points=48",
                           "model.name=es-bgk", "space.cells=24", "space.limiter=positivity", "steady.tolerance=1e-9", counts=(2, 3), most=6)
         for folder in ("one", "on-2", "on-3"):
-            with open(self.folder / folder / "history.csv", encoding="utf-8") as file:
-                self.assertGreaterEqual(float(list(csv.DictReader(file))[-1]["min_value"]), 0)
+            self.assertGreaterEqual(float(self.last(folder)["min_value"]), 0)
+
+    def assert_equal_loads(self, a, b):
+        mine, others = self.last(a), self.last(b)
+        for name in ("C_D_cylinder", "C_L_cylinder", "C_H_cylinder"):
+            self.assertAlmostEqual(float(mine[name]), float(others[name]), delta=CLOSE * 10, msg=name)
+        self.assertGreater(float(mine["C_D_cylinder"]), 1)
+
+    def test_a_flow_past_a_cylinder(self):
+        self.expect_close(*CYLINDER)
+        for count in (2, 3, 4):
+            self.assert_equal_loads("one", f"on-{count}")
+
+    def test_a_flow_past_a_cylinder_is_restarted_on_fewer_processes(self):
+        self.found(1, *CYLINDER, out="one")
+        self.completed(3, "run", *CYLINDER, "steady.tolerance=1e-3", "--out", "coarse")
+        self.completed(2, "run", *CYLINDER, "--restart", "coarse/checkpoint.h5", "--out", "rest")
+        self.assert_close("one", "rest")
+        self.assert_equal_loads("one", "rest")
 
     def test_a_restart_on_another_number_of_processes(self):
         self.found(1, *CAVITY, out="one")

@@ -93,6 +93,41 @@ normal = [0.1, 1]
 T = 0.9
 [force]''').replace('"bgk"', '"shakhov"')
 
+ABOUT_AN_AXIS = """
+title = "A ball that turns about the axis of a stream"
+[model]
+name = "shakhov"
+tails = "nonnegative"
+epsilon = 0.1
+[initial]
+rho = "1 + 0.2*sin(pi*x)*y"
+u = [1, 0, 0]
+T = 1
+[space]
+geometry = "axisymmetric"
+cells = [12, 8]
+domain = [[-1, 1], [0, 1.2]]
+boundary = "outflow"
+[[space.body]]
+name = "ball"
+shape = "circle"
+centre = [0.1, 0]
+radius = 0.6
+T = 1.2
+velocity = [0, 0, "0.3*y"]
+[velocity]
+max = 6
+points = 8
+rings = 6
+angles = 12
+[time]
+method = "md-imex-3-2"
+end = 0.02
+safety = 1
+[output]
+surfaces = ["ball"]
+"""
+
 IN_SPACE = """
 title = "A ball in space"
 [model]
@@ -199,6 +234,10 @@ class SameResults(Folder):
     def test_a_body_in_space(self):
         self.write("ball.toml", IN_SPACE)
         self.expect_same("ball.toml", counts=one_of((5, 2, 3, 8), 0))
+
+    def test_axisymmetric_flow(self):
+        self.write("axis.toml", ABOUT_AN_AXIS)
+        self.expect_same("axis.toml", counts=one_of((5, 2, 3), 0))
 
     @slow
     def test_blocks_of_a_chosen_shape(self):

@@ -150,7 +150,14 @@ case_config load_case(const std::string& name_or_path, const std::vector<std::st
 }
 
 velocity_config velocities_of(const case_config& config) {
-  return {config.velocity.max, config.velocity.points, config.velocity.equilibrium, config.velocity.set};
+  const auto& given = config.velocity;
+  velocity_config all = {given.max, given.points, given.equilibrium, given.set};
+  if (config.is_axisymmetric()) {
+    all.rings = given.rings;
+    all.angles = given.angles;
+    all.max_across = given.max_across.value_or(0.0);
+  }
+  return all;
 }
 
 std::shared_ptr<const model> make_model(const case_config& config) {
@@ -191,7 +198,8 @@ grid make_mesh(const case_config& config) {
     lower[k] = config.space.domain.at(k)[0];
     upper[k] = config.space.domain.at(k)[1];
   }
-  const grid mesh(static_cast<int>(config.space.cells.size()), cells, lower, upper);
+  const grid plain(static_cast<int>(config.space.cells.size()), cells, lower, upper);
+  const grid mesh = config.is_axisymmetric() ? plain.about_axis() : plain;
   const grid with_boxes = config.solids.empty() ? mesh : mesh.with_solids(solid_boxes(config, mesh));
   return config.bodies.empty() ? with_boxes : with_boxes.with_cut_cells(cut_cells_of(config, with_boxes));
 }

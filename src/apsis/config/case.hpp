@@ -64,7 +64,10 @@ struct case_config {
     limiter_choice limiter = limiter_choice::none;
     std::string boundary = "periodic";       ///< kind of every face without one of its own
     std::optional<std::vector<int>> blocks;  ///< blocks of cells in every direction, one for each process
+    geometry_choice geometry = geometry_choice::cartesian;
   } space;
+  /// Whether the last coordinate is the distance r from an axis of symmetry.
+  bool is_axisymmetric() const { return space.geometry == geometry_choice::axisymmetric; }
   std::array<face_table, 6> faces;  ///< tables [boundary.NAME], by face::index(), of models with space
   std::vector<solid_table> solids;  ///< tables [[space.solid]]
   std::vector<body_table> bodies;   ///< tables [[space.body]]
@@ -80,7 +83,9 @@ struct case_config {
     double max = 0.0;         ///< 0 where the set chooses it
     point_counts points = 0;  ///< 0 where the set chooses it
     equilibrium_choice equilibrium = equilibrium_choice::automatic;
-    std::vector<std::string> set = {};  ///< empty: "uniform"
+    std::vector<std::string> set = {};      ///< empty: "uniform"
+    int rings = 16, angles = 32;            ///< about the axis of axisymmetric flow
+    std::optional<double> max_across = {};  ///< of rings; default: max
   } velocity;
   /// Table [time].
   struct {

@@ -60,6 +60,7 @@ void case_checks::check_step_rule() const {
 
 void case_checks::check_mesh() const {
   check_dimensions();
+  check_axis();
   for (std::size_t k = 0; k < config_.space.domain.size(); ++k)
     check_interval(config_.space.domain[k], config_.space.cells[k]);
   check_discretization();
@@ -68,6 +69,8 @@ void case_checks::check_mesh() const {
   make_acceleration(config_, *checked_model(config_));
   const int of_line = config_.velocity.points;
   double points = std::max(1, of_line);
+  if (config_.is_axisymmetric())
+    points *= static_cast<double>(config_.velocity.rings) * config_.velocity.angles;
   for (const int cells : config_.space.cells) points *= cells;
   if (points > 2e9)
     refuse(*text_.find("space.cells"), "space.cells",
@@ -128,6 +131,65 @@ void case_checks::check_discretization() const {
   refuse(*text_.find("space.collisions"), "space.collisions",
          fmt::format("cells do not collide there ({})", chosen_by),
          suggest(*config_.space.collisions, places));
+}
+
+/// The needs of axisymmetric flow, and keys that have a meaning with it alone.
+void case_checks::check_axis() const {
+  if (!config_.is_axisymmetric()) {
+    for (const char* path : {"velocity.rings", "velocity.angles", "velocity.max_across"})
+      if (const raw_value* raw = text_.find(path); raw != nullptr)
+        refuse(*raw, path, "velocities lie on rings in axisymmetric flow alone",
+               "write space.geometry = \"axisymmetric\", or remove it");
+    return;
+  }
+  const raw_value& geometry = *text_.find("space.geometry");
+  const std::size_t dimensions = config_.space.cells.size();
+  if (dimensions > 2)
+    refuse(geometry, "space.geometry", "axisymmetric flow has the coordinates (x, r), or r alone",
+           "give one or two dimensions");
+  if (const double lower = config_.space.domain[dimensions - 1][0]; lower < 0.0)
+    refuse(text_.find("space.domain") != nullptr ? *text_.find("space.domain") : geometry, "space.domain",
+           fmt::format("it begins at r = {:.6g} (r is the distance from the axis)", lower),
+           "begin at r = 0 or above");
+  if (config_.steady_state.tolerance)
+    refuse(geometry, "space.geometry",
+           "the iteration of the table [steady] has no rotation of velocities about an axis",
+           "march in time with a table [time] and time.steady");
+  if (config_.force.acceleration)
+    refuse(geometry, "space.geometry", "forces act along uniform lines of velocities, not on rings",
+           "remove the table [force]");
+  if (!discretization_of(config_).unknown().pointwise())
+    refuse(text_.find(discretization_key) != nullptr ? *text_.find(discretization_key) : geometry,
+           discretization_key, "the radius varies within the cell of an average",
+           "write \"finite-difference\", or leave it out");
+  check_radial_sides();
+}
+
+/// The axis lies at r = 0 alone, and cylinders r = const are neither periodic nor planes of symmetry.
+void case_checks::check_radial_sides() const {
+  const std::size_t radial = config_.space.cells.size() - 1;
+  const auto check = [&](std::size_t face, bool wrong, const char* reason, const char* remedy) {
+    if (!wrong) return;
+    const std::string kind = fmt::format("boundary.{}.kind", face_names[face]);
+    throw input_error(place_of(config_, config_.places.contains(kind) ? kind : "space.boundary"),
+                      fmt::format("boundary '{}' is not possible on the side '{}' ({}); {}",
+                                  kind_of_face(face), face_names[face], reason, remedy));
+  };
+  for (std::size_t face = 0; face < 2 * config_.space.cells.size(); ++face) {
+    const bool at_axis = face == 2 * radial && config_.space.domain[radial][0] == 0.0;
+    const std::string kind = kind_of_face(face);
+    check(face, at_axis && kind != "axis", "r = 0 is a line without area", "leave it out, or write \"axis\"");
+    check(face, !at_axis && kind == "axis", "the axis is r = 0, at the lower end of r", "choose another");
+    check(face, face / 2 == radial && kind == "periodic", "ends in r have different radii",
+          "choose a wall or an end");
+    check(face, face / 2 == radial && kind == "symmetry", "a cylinder is no plane of symmetry",
+          "write kind = \"diffuse\" with accommodation = 0 for specular reflection");
+  }
+}
+
+const std::string& case_checks::kind_of_face(std::size_t face) const {
+  const auto& own = config_.faces[face].kind;
+  return own ? *own : config_.space.boundary;
 }
 
 void case_checks::check_solids() const {

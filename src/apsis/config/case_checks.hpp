@@ -29,6 +29,9 @@ class case_checks {
   void check_mesh() const;
   void check_interval(const interval& ends, int cells) const;
   void check_discretization() const;
+  void check_axis() const;
+  void check_radial_sides() const;
+  const std::string& kind_of_face(std::size_t face) const;
   void check_solids() const;
   void check_body(std::size_t k, const boundary& wall) const;
   void check_faces() const;

@@ -65,6 +65,14 @@ case_key if_given(case_key of) {
   return of;
 }
 
+/// The key, which only an axisymmetric case has.
+case_key if_axisymmetric(case_key of) {
+  of.load = [load = std::move(of.load)](const case_config& c) -> case_value {
+    return c.is_axisymmetric() ? load(c) : case_value{};
+  };
+  return of;
+}
+
 bool needs_max(const std::string& name) {
   const velocity_line_entry* entry = try_find_velocity_line(name);
   return entry != nullptr && entry->needs_max;
@@ -203,6 +211,13 @@ std::vector<case_key> space_keys() {
            .highest = 10'000'000,
            .doc = "Number of blocks of cells in each direction, one block for each process; by default those "
                   "with the least to send."}),
+      key("space.geometry", [](auto& c) -> auto& { return c.space.geometry; },
+          {.scope = key_scope::velocity,
+           .doc =
+               "axisymmetric: nothing depends on the angle about an axis. The last coordinate, y of two or x "
+               "of one, is the distance r >= 0 from the axis; velocities are those along x, r and the "
+               "angle, in one dimension along r, the angle and the axis. Point values only "
+               "(docs/axisymmetric.md)."}),
       key(discretization_key, [](auto& c) -> auto& { return c.space.discretization; },
           {.scope = key_scope::space,
            .choices = [](const case_config&) { return discretization_names(); },
@@ -264,6 +279,25 @@ std::vector<case_key> space_keys() {
                     .lowest = 4,
                     .highest = 100'000,
                     .doc = "Number of velocities of each direction, or of all."})),
+      if_axisymmetric(
+          key("velocity.rings", [](auto& c) -> auto& { return c.velocity.rings; },
+              {.scope = key_scope::velocity,
+               .lowest = 4,
+               .highest = 10'000,
+               .doc = "Rings of velocities about the axis of axisymmetric flow, up to the largest "
+                      "velocity; the set and the points are those along the axis."})),
+      if_axisymmetric(key("velocity.angles", [](auto& c) -> auto& { return c.velocity.angles; },
+                          {.scope = key_scope::velocity,
+                           .lowest = 12,
+                           .highest = 10'000,
+                           .doc = "Velocities on each ring, a multiple of 4."})),
+      if_axisymmetric(key("velocity.max_across", [](auto& c) -> auto& { return c.velocity.max_across; },
+                          {.scope = key_scope::velocity,
+                           .dimension = dimensions::velocity,
+                           .lowest = 0.0,
+                           .highest = 1e6,
+                           .lowest_excluded = true,
+                           .doc = "Largest velocity of the rings; velocity.max where not given."})),
       key("velocity.equilibrium", [](auto& c) -> auto& { return c.velocity.equilibrium; },
           {.scope = key_scope::velocity,
            .doc = "Maxwellian by its formula, or with the discrete moments matched (conservative on any "

@@ -229,9 +229,19 @@ class resolver {
       config_.space.domain.assign(dimensions, config_.space.domain.front());
     if (find(discretization_key) == nullptr)
       config_.space.discretization = default_discretization(static_cast<int>(dimensions)).name;
+    if (config_.is_axisymmetric()) complete_axis();
     // Where f jumps along rays, nonlinear weights may never settle.
     if (config_.steady_state.tolerance && find("space.reconstruction") == nullptr)
       config_.space.reconstruction = "upwind5";
+  }
+
+  /// Point values of r f, and the axis where the domain reaches it.
+  void complete_axis() {
+    const std::size_t radial = config_.space.cells.size() - 1;
+    if (find(discretization_key) == nullptr) config_.space.discretization = "finite-difference";
+    if (radial > 1 || config_.space.domain.size() <= radial) return;  // refused later
+    std::optional<std::string>& kind = config_.faces[2 * radial].kind;
+    if (!kind && config_.space.domain[radial][0] == 0.0) kind = "axis";
   }
 
   /// The table [parameters].
@@ -260,7 +270,8 @@ class resolver {
         if (p.integer && value != std::floor(value))
           refuse(*raw, "model." + p.name, fmt::format("it must be an integer: {}", p.doc), "give an integer");
       }
-      if (p.of_space && value == 0.0) value = static_cast<double>(config_.space.cells.size());
+      if (p.of_space && value == 0.0)
+        value = config_.is_axisymmetric() ? 3.0 : static_cast<double>(config_.space.cells.size());
       config_.model.parameters[p.name] = value;
     }
     for (const model_option& t : model_->options) {

@@ -12,6 +12,12 @@ enum class limiter_choice {
   positivity  ///< nonnegative data stay so within r Δt_FE
 };
 
+/// Values of space.geometry.
+enum class geometry_choice {
+  cartesian,    ///< coordinates x, y, z
+  axisymmetric  ///< (x, r), or r alone: nothing depends on the angle about the axis r = 0
+};
+
 /// Values of time.startup.
 enum class startup_choice {
   none,   ///< the first step is like the others
@@ -43,6 +49,8 @@ inline constexpr std::array<const char*, 0> choice_names{};
 /// @cond
 template <>
 inline constexpr std::array choice_names<limiter_choice> = {"none", "positivity"};
+template <>
+inline constexpr std::array choice_names<geometry_choice> = {"cartesian", "axisymmetric"};
 template <>
 inline constexpr std::array choice_names<startup_choice> = {"none", "graded"};
 template <>

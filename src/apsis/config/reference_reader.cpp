@@ -25,8 +25,9 @@ class reader_of_reference {
     check_case(*place);
     check_names();
     reference_values values;
+    values.about_axis = config_.is_axisymmetric();
     for (const reference_key& key : keys()) take(key, *place, values);
-    if (values.centre.empty()) values.centre.assign(at(dimensions()), 0.0);
+    if (values.centre.empty() && !values.about_axis) values.centre.assign(at(dimensions()), 0.0);
     check_directions(values);
     config_.output.reference = std::move(values);
   }
@@ -64,7 +65,10 @@ class reader_of_reference {
   /// Those that a case with this number of dimensions has.
   std::vector<reference_key> keys() const {
     std::vector<reference_key> all = reference_keys();
-    std::erase_if(all, [&](const auto& key) { return key.only_in != 0 && key.only_in != dimensions(); });
+    std::erase_if(all, [&](const auto& key) {
+      if (config_.is_axisymmetric()) return !key.about_axis;
+      return key.only_in != 0 && key.only_in != dimensions();
+    });
     return all;
   }
 
@@ -119,6 +123,8 @@ class reader_of_reference {
       refuse(*text_.find(path), path, why, "give another vector");
     };
     if (!(values.speed() > 0.0)) refuse_vector("velocity", "a stream at rest has no direction");
+    if (values.about_axis && values.velocity[1] != 0.0)
+      refuse_vector("velocity", "a stream across the axis is not axisymmetric");
     const auto lift = values.lift_direction();
     if (!std::all_of(lift.begin(), lift.end(), [](double x) { return std::isfinite(x); }))
       refuse_vector("up", "it has no part across the velocity");

@@ -17,6 +17,7 @@ struct reference_values {
   std::vector<double> velocity,  ///< U of the stream, a component for each direction of space
       centre,                    ///< about which torques are taken; the origin where not given
       up;                        ///< in space: lift is the force along its part across U; without it none
+  bool about_axis = false;       ///< of axisymmetric flow: forces of an area, without lift
   /// Whether all values are equal.
   bool operator==(const reference_values&) const = default;
 
@@ -24,7 +25,7 @@ struct reference_values {
   double dynamic_pressure() const;                            ///< ρU²/2
   double size() const { return area > 0.0 ? area : length; }  ///< of forces: length in the plane, else area
   /// Returns the unit vector across U along which a force is lift: in the plane U turned by 90°
-  /// counter-clockwise, in space the part of `up` across U. Empty in space without `up`.
+  /// counter-clockwise, in space the part of `up` across U. Empty in space without `up`, and about an axis.
   std::vector<double> lift_direction() const;
 };
 
@@ -37,6 +38,7 @@ struct reference_key {
   bool positive;                                   ///< whether it must be > 0
   bool required;                                   ///< whether every case needs it
   int only_in;      ///< number of space dimensions that have it; 0: two and three
+  bool about_axis;  ///< whether axisymmetric flow has it
   const char* doc;  ///< meaning
 };
 

@@ -65,6 +65,20 @@ grid grid::block(std::array<int, 3> first, std::array<int, 3> cells) const {
   return part;
 }
 
+grid grid::about_axis() const {
+  if (dimensions_ > 2)
+    throw input_error(
+        fmt::format("an axis in {} dimensions (r is the last of one or two); leave it out", dimensions_));
+  if (lower_[at(dimensions_ - 1)] < 0.0)
+    throw input_error(
+        fmt::format("an axis in a mesh from r = {:.6g} on (r is the distance from it); begin at 0 "
+                    "or above",
+                    lower_[at(dimensions_ - 1)]));
+  grid made = *this;
+  made.has_axis_ = true;
+  return made;
+}
+
 grid grid::with_solids(std::vector<cell_box> boxes) const {
   for (const cell_box& box : boxes)
     for (std::size_t k = 0; k < 3; ++k)

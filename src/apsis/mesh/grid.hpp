@@ -9,6 +9,7 @@
 #include <array>
 #include <cstddef>
 #include <memory>
+#include <numbers>
 #include <vector>
 
 namespace apsis {
@@ -63,7 +64,19 @@ class grid {
   /// whole mesh without bodies.
   grid with_cut_cells(std::shared_ptr<const cut_cells> cut) const;
 
+  /// This grid in the half-plane (x, r), or on a line r, of a flow that is equal at all angles about the axis
+  /// r = 0. Unknowns are r f, whose integral over a cell is the 2π-th part of that of f over its ring. Throws
+  /// input_error unless 1 ≤ D ≤ 2 and r ≥ 0.
+  grid about_axis() const;
+
   int dimensions() const { return dimensions_; }  ///< D
+  bool has_axis() const { return has_axis_; }     ///< whether this is a grid about_axis()
+  /// Returns the factor of integrals of the unknown over space: 2π about an axis, else 1.
+  double measure() const { return has_axis_ ? 2.0 * std::numbers::pi : 1.0; }
+  /// Returns the number of lengths in the dimension of integrals: D, or D + 1 about an axis.
+  int dimensions_of_integrals() const { return dimensions_ + (has_axis_ ? 1 : 0); }
+  /// Returns the factor of the unknown: the distance r of a point from the axis, 1 without one.
+  double radius(const position& x) const { return has_axis_ ? x[at(dimensions_ - 1)] : 1.0; }
   int cells(int direction) const {
     return cells_[at(direction)];
   }  ///< number of cells along a direction 0, 1 or 2
@@ -118,6 +131,7 @@ class grid {
   void find_fluid();
 
   int dimensions_;
+  bool has_axis_ = false;
   std::array<int, 3> cells_, first_;
   std::array<double, 3> lower_, spacing_;
   std::vector<cell_box> solids_;

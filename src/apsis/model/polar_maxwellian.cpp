@@ -78,8 +78,8 @@ class dual_minimum {
 
   double value(const dual_sums& of, const parameters& at) const { return of.log_of_sum - 1.5 * T_ * at[3]; }
 
-  /// Largest defect of momentum and energy relative to those of all molecules, of which the given moments
-  /// have the rounding.
+  /// Largest defect of momentum and energy relative to those of all molecules, as is the rounding of the
+  /// given moments.
   double defect(const dual_sums& of) const {
     const double momentum = of.mean.head<3>().cwiseAbs().maxCoeff() / std::sqrt(square_);
     const double energy = 2.0 * std::abs(of.mean[3] - 1.5 * T_) / square_;

@@ -37,7 +37,7 @@ std::vector<std::string> names_of_torque(const std::string& head, int dimensions
 class load_reader {
  public:
   load_reader(const run_setup& setup, const loaded_body& body, const std::vector<std::string>& columns)
-      : name_(body.name) {
+      : name_(body.name), about_axis_(setup.whole_mesh().has_axis()) {
     const auto place = [&](const std::string& column) { return place_of_name(columns, column).value(); };
     const auto invariants = setup.equation->invariants();
     const auto momenta = places_of_momenta(*setup.equation);
@@ -52,12 +52,14 @@ class load_reader {
   body_load load(const list& row) const {
     body_load made{name_, {}, {}, 0.0 - row[heat_]};
     for (const std::size_t k : force_) made.force.push_back(0.0 - row[k]);
+    if (about_axis_) made.force[1] = 0.0;
     for (const std::size_t k : torque_) made.torque.push_back(row[k]);
     return made;
   }
 
  private:
   std::string name_;
+  bool about_axis_;  ///< radial forces on a ring cancel
   std::vector<std::size_t> force_, torque_;
   std::size_t heat_ = 0;
 };
@@ -90,6 +92,7 @@ std::vector<body_load> body_loads(const run_setup& setup, const step_record& ste
     body_load& made = all.emplace_back();
     made.name = bodies[b].name;
     for (int k = 0; k < setup.whole_mesh().dimensions(); ++k) made.force.push_back(flux(momenta[at(k)]));
+    if (setup.whole_mesh().has_axis()) made.force[1] = 0.0;  // those on a ring cancel
     const std::size_t count = step.torque.size() / bodies.size();
     const auto first = step.torque.begin() + static_cast<std::ptrdiff_t>(b * count);
     made.torque.assign(first, first + static_cast<std::ptrdiff_t>(count));
@@ -102,7 +105,7 @@ std::vector<load_value> loads_in_stream(const body_load& body, const reference_v
   const int dimensions = static_cast<int>(stream.velocity.size());
   const double speed = stream.speed(), unit = stream.dynamic_pressure() * stream.size();
   dimension force = dimensions::pressure;
-  for (int k = 1; k < dimensions; ++k) force = force * dimensions::length;
+  for (int k = 1; k < dimensions + (stream.about_axis ? 1 : 0); ++k) force = force * dimensions::length;
   std::vector<load_value> loads, coefficients;
   const auto add = [&](const std::string& name, const std::string& coefficient, double value,
                        const dimension& dims, double of_one) {
@@ -112,7 +115,7 @@ std::vector<load_value> loads_in_stream(const body_load& body, const reference_v
   add("drag", "C_D", product(body.force, stream.velocity) / speed, force, unit);
   if (const list across = stream.lift_direction(); !across.empty())
     add("lift", "C_L", product(body.force, across), force, unit);
-  const list of_centre = cross(stream.centre, body.force);
+  const list of_centre = stream.about_axis ? list{0.0} : cross(stream.centre, body.force);
   const auto moments = names_of_torque("moment", dimensions), names = names_of_torque("C_M", dimensions);
   for (std::size_t k = 0; k < moments.size(); ++k)
     add(moments[k], names[k], body.torque[k] - of_centre[k], force * dimensions::length,
@@ -146,7 +149,7 @@ std::vector<std::pair<std::string, dimension>> load_dimensions(const simulation&
   std::vector<std::pair<std::string, dimension>> all;
   dimension torque = dimensions::pressure;
   if (!setup.has_space()) return all;
-  for (int k = 0; k < setup.whole_mesh().dimensions(); ++k) torque = torque * dimensions::length;
+  for (int k = 0; k < setup.whole_mesh().dimensions_of_integrals(); ++k) torque = torque * dimensions::length;
   for (auto& name : torque_columns(setup)) all.emplace_back(std::move(name), torque);
   const auto& reference = run.config().output.reference;
   if (!reference) return all;

@@ -68,6 +68,21 @@ std::vector<gradient> gradients_of(const run_setup& setup, const std::vector<dou
   return slopes;
 }
 
+/// Completes the gradient of the velocity about an axis: u_r e_r + u_θ e_θ changes along θ because e_r and
+/// e_θ do, by u_r/r e_θ − u_θ/r e_r per length.
+void add_turning(const run_setup& setup, const field_table& table, std::vector<std::vector<gradient>>& of) {
+  const grid& mesh = setup.mesh();
+  if (!mesh.has_axis()) return;
+  // ρ is the first field, the component along r that of the last direction, that along θ the next.
+  const auto r = static_cast<std::size_t>(mesh.dimensions() - 1), angle = r + 1;
+  for (int cell = 0; cell < mesh.size(); ++cell) {
+    const auto c = static_cast<std::size_t>(cell);
+    const double radius = mesh.radius(mesh.centre(cell));
+    of[1 + r][c][angle] = -table.values[1 + angle][c] / radius;
+    of[1 + angle][c][angle] = table.values[1 + r][c] / radius;
+  }
+}
+
 /// Adds a group of fields to a table whose first columns are those of model::default_fields().
 void add_group(const run_setup& setup, const field& u, const field_group& group, field_table& table) {
   std::vector<std::vector<gradient>> of_fields;  // [field][cell]
@@ -75,6 +90,7 @@ void add_group(const run_setup& setup, const field& u, const field_group& group,
   if (group.needs_gradients) {
     const std::size_t usual = setup.equation->default_fields().size();
     for (std::size_t k = 0; k < usual; ++k) of_fields.push_back(gradients_of(setup, table.values[k]));
+    add_turning(setup, table, of_fields);
     epsilon = setup.epsilon_at_centres();
   }
   const std::size_t first = table.values.size();

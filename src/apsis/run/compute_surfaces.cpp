@@ -91,7 +91,7 @@ class surface_writer {
     if (one.solid < 0 || !in_plane()) return table;
     if (is_body(one)) set_angles(table, middle_of(one));
     sort_by_first_column(table);
-    if (is_body(one)) measure_around(table);
+    if (is_body(one)) measure_around(table, space_.mesh());
     return table;
   }
 
@@ -122,7 +122,7 @@ class surface_writer {
   std::vector<double> row(int number, int place, std::size_t first) const {
     const surface& one = space_.surfaces()[at(number)];
     const position x = space_.meeting_point(number, place);
-    const double area = space_.mesh().face_area(one.where);
+    const double area = of_ring(space_.mesh().face_area(one.where), x);
     const double s = in_plane() ? arc_length(space_.mesh(), one, x) : 0.0;
     const auto given = fluxes_at(first, area);
     std::vector<double> row = place_and_fluxes(s, x, normal_at(one.where), area, given);
@@ -135,8 +135,9 @@ class surface_writer {
     const open_face& one = space_.mesh().cut()->faces()[at(number)];
     const double s =
         in_plane() ? one.middle[at(1 - one.direction)] - space_.mesh().edge(1 - one.direction, 0) : 0.0;
-    const auto given = fluxes_at(first, one.area);
-    std::vector<double> row = place_and_fluxes(s, one.middle, normal_at(of.where), one.area, given);
+    const double area = of_ring(one.area, one.middle);
+    const auto given = fluxes_at(first, area);
+    std::vector<double> row = place_and_fluxes(s, one.middle, normal_at(of.where), area, given);
     const int side = static_cast<int>(of.where.index());
     loads_.add_values(row, given, of.where, space_.side(side)->wall_velocity(middle_of_step(), one.middle));
     add_state(row, first, boundary_of(of), normal_at(of.where), one.middle);
@@ -146,11 +147,17 @@ class surface_writer {
   std::vector<double> row_of_wall(int number, const budget_surface& of, const oblique_wall& wall,
                                   std::size_t first) const {
     const wall_segment& one = space_.mesh().cut()->walls()[at(number)];
-    const auto given = fluxes_at(first, one.area);
-    std::vector<double> row = place_and_fluxes(0.0, one.middle, one.normal, one.area, given);
+    const double area = of_ring(one.area, one.middle);
+    const auto given = fluxes_at(first, area);
+    std::vector<double> row = place_and_fluxes(0.0, one.middle, one.normal, area, given);
     loads_.add_values(row, given, one.normal, wall.velocity({one.normal, one.middle, middle_of_step()}));
     add_state(row, first, boundary_of(of), one.normal, one.middle);
     return row;
+  }
+
+  /// Returns the area of the ring that a piece of a surface makes about an axis; the area without one.
+  double of_ring(double area, const position& x) const {
+    return space_.mesh().measure() * space_.mesh().radius(x) * area;
   }
 
   double middle_of_step() const { return last_.t - 0.5 * last_.dt; }
@@ -173,16 +180,21 @@ class surface_writer {
   /// temperature of a wall.
   void add_state(std::vector<double>& row, std::size_t first, const boundary* side,
                  const std::array<double, 3>& n, const position& x) const {
+    const double r = space_.mesh().radius(x);
     const auto moment = [&](std::size_t number) {
       const std::size_t count = invariants_.size();
-      return last_.observed.empty()
-                 ? std::span<const double>()
-                 : std::span(last_.observed)
-                       .subspan(face_fluxes::observed_moments * first + number * count, count);
+      std::vector<double> of_f;
+      if (last_.observed.empty()) return of_f;
+      const auto begin = last_.observed.begin() +
+                         static_cast<std::ptrdiff_t>(face_fluxes::observed_moments * first + number * count);
+      of_f.assign(begin, begin + static_cast<std::ptrdiff_t>(count));
+      for (double& one : of_f) one /= r;
+      return of_f;
     };
-    gas_.add_values(row, moment(0));
-    one_way_.add_values(row, moment(1), moment(2));
-    of_walls_.add_value(row, side, {n, x, last_.t}, moment(1));
+    const auto density = moment(0), arriving = moment(1), leaving = moment(2);
+    gas_.add_values(row, density);
+    one_way_.add_values(row, arriving, leaving);
+    of_walls_.add_value(row, side, {n, x, last_.t}, arriving);
   }
 
   /// Returns the normal into the gas at a face of cells.

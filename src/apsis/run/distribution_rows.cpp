@@ -47,7 +47,7 @@ std::vector<double> rows_of(const simulation& run, const std::vector<int>& cells
   std::vector<double> rows;
   rows.reserve(cells.size() * at(run.setup().equation->components()));
   for (const int cell : cells) {
-    const auto row = run.row(cell);
+    const auto row = run.densities_in(cell);
     rows.insert(rows.end(), row.begin(), row.end());
   }
   return rows;
@@ -72,7 +72,7 @@ std::vector<double> gathered_rows(const simulation& run, const std::vector<int>&
     const int own = run.setup().has_space() ? own_cell(run, cells[k]) : 0;
     if (own < 0) continue;
     mine.push_back(static_cast<double>(k));
-    const auto row = run.row(own);
+    const auto row = run.densities_in(own);
     mine.insert(mine.end(), row.begin(), row.end());
   }
   const std::vector<double> all = gather_numbers(run.processes(), mine);

@@ -140,8 +140,9 @@ field copied(const line_rows& rows, const problem_builder& builder) {
   field u(builder.has_space() ? mesh.size() : rows.cells, rows.components);
   for (int cell = 0; cell < u.cells(); ++cell) {
     const int there = builder.has_space() ? builder.whole_mesh().cell_of(mesh, cell) : cell;
-    std::copy_n(rows.values.begin() + static_cast<std::ptrdiff_t>(there) * rows.components, rows.components,
-                u.row(cell));
+    const double* from = rows.values.data() + static_cast<std::ptrdiff_t>(there) * rows.components;
+    const double r = builder.has_space() ? mesh.radius(mesh.centre(cell)) : 1.0;
+    std::transform(from, from + rows.components, u.row(cell), [r](double f) { return r * f; });
   }
   return u;
 }

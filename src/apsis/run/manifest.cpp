@@ -76,7 +76,7 @@ void add_bodies(json& out, const simulation& run) {
   const auto& reference = run.config().output.reference;
   for (const body_load& body : body_loads(run.setup(), run.last())) {
     dimension force = dimensions::pressure;
-    for (std::size_t k = 1; k < body.force.size(); ++k) force = force * dimensions::length;
+    for (int k = 1; k < run.mesh().dimensions_of_integrals(); ++k) force = force * dimensions::length;
     const auto scaled = [&](std::vector<double> values, const dimension& dims) {
       for (double& x : values) x *= units.factor(dims);
       return values;

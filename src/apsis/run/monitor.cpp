@@ -70,8 +70,16 @@ void monitor::check_cells(const field& u, int begin, int end, partial& own) cons
     }
     if (conditional && !equation_.check_supported(row).problem.empty())
       own.violating = std::min(own.violating, cell);
-    if (entropy_ && below == 0) own.sums.back().add(share * entropy_->density(row));
+    if (entropy_ && below == 0) own.sums.back().add(share * entropy_of(row, cell, own.densities.front()));
   }
+}
+
+/// The entropy of a cell, with the density ρ of its row. About an axis the row is r f, and r η(f) = η(r f) −
+/// r ρ log r of a gas.
+double monitor::entropy_of(const double* row, int cell, double density) const {
+  const double entropy = entropy_->density(row);
+  if (!setup_.mesh().has_axis()) return entropy;
+  return entropy - density * std::log(setup_.mesh().radius(setup_.mesh().centre(cell)));
 }
 
 /// The parts of all threads.

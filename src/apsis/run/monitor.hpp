@@ -53,6 +53,7 @@ class monitor {
     velocity_margins margins;  ///< of all processes
   };
   struct partial;
+  double entropy_of(const double* row, int cell, double density) const;
   void check_cells(const field& u, int begin, int end, partial& own) const;
   partial check_block(const field& u) const;
   totals sum(const field& u) const;

@@ -92,6 +92,8 @@ void warn_of_rays(const run_setup& setup, double relaxation) {
   // The time is infinite where nothing relaxes, and for epsilon = 0.
   if (!support || dimensions < 2 || !std::isfinite(relaxation)) return;
   const case_config& config = setup.config();
+  // Directions about an axis are the angles of rings, which other errors limit.
+  if (support->molecules().grid().is_polar()) return;
   const auto emitted = emission_of(config, equation, support->molecules());
   if (!emitted || !(emitted->jump > 0.0)) return;
   double shortest = std::numeric_limits<double>::infinity();

@@ -77,7 +77,7 @@ std::vector<std::pair<std::string, dimension>> history_dimensions(const simulati
   const auto densities = run.setup().equation->invariant_dimensions();
   for (std::size_t k = 0; k < names.size(); ++k) {
     dimension amount = densities[k];
-    for (int d = 0; d < run.mesh().dimensions(); ++d) amount = amount * length;
+    for (int d = 0; d < run.mesh().dimensions_of_integrals(); ++d) amount = amount * length;
     all.emplace_back("total_" + names[k], amount);
     for (const auto& face : run.setup().open_faces()) {
       all.emplace_back("received_" + face + "_" + names[k], amount);

@@ -95,7 +95,9 @@ run_setup::run_setup(const case_config& config, std::shared_ptr<communicator> pr
 void run_setup::build_space(std::shared_ptr<communicator> processes) {
   const auto& space = config_.space;
   const reconstruction_entry& scheme = find_reconstruction(space.reconstruction);
-  builder_.on(make_mesh(config_)).with_discretization(space.discretization);
+  const grid mesh = make_mesh(config_);
+  builder_.on(mesh).with_discretization(space.discretization);
+  if (mesh.has_axis()) builder_.with_axis(mesh.dimensions() - 1);
   if (space.collisions) builder_.with_collisions_at(*space.collisions);
   at_key(config_, space.blocks ? "space.blocks" : "space.cells",
          [&] { builder_.shared_by(std::move(processes), given_blocks(space.blocks)); });
@@ -286,14 +288,27 @@ field run_setup::initial_state() const {
   return checked(std::move(read.state), read.from_result);
 }
 
+const field& run_setup::densities(const field& u, field& room) const {
+  if (!mesh().has_axis()) return u;
+  room = u;
+  for (int cell = 0; cell < u.cells(); ++cell) {
+    if (mesh().solid(cell) >= 0) continue;
+    const double r = mesh().radius(mesh().centre(cell));
+    for (double& value : std::span(room.row(cell), static_cast<std::size_t>(u.components()))) value /= r;
+  }
+  return room;
+}
+
 field run_setup::checked(field u, bool computed) const {
   std::vector<std::string> warnings;
   run_collectively(processes(), [&] { warnings = check_emitted_gas(config_, *equation); });
   for (const std::string& warning : warnings) log::warning(warning);
   check_cells(u, computed);
   std::vector<double> lowest, highest;
-  run_collectively(processes(),
-                   [&] { std::tie(lowest, highest) = extremes_of_fields(*equation, mesh(), u); });
+  run_collectively(processes(), [&] {
+    field room;
+    std::tie(lowest, highest) = extremes_of_fields(*equation, mesh(), densities(u, room));
+  });
   for (double& value : highest) value = -value;
   processes().lowest(lowest);
   processes().lowest(highest);

@@ -65,8 +65,11 @@ class run_setup : public construction_count<run_setup> {
 
   /// Whether the model has space; without it there is a single cell.
   bool has_space() const { return builder_.has_space(); }
-  /// Returns the cell volume; 1 without space.
-  double cell_volume() const { return has_space() ? builder_.mesh().cell_volume() : 1.0; }
+  /// Returns the cell volume, of its ring in axisymmetric flow where unknowns are r f divided by r; 1 without
+  /// space.
+  double cell_volume() const { return has_space() ? mesh().measure() * mesh().cell_volume() : 1.0; }
+  /// Returns f of a state whose unknowns are r f in axisymmetric flow, stored in `room`; else the state.
+  const field& densities(const field& u, field& room) const;
   /// Returns the mesh, or the block of this process; a single cell without space.
   const grid& mesh() const { return builder_.mesh(); }
   /// Returns the mesh of all processes.

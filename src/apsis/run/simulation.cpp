@@ -153,7 +153,8 @@ run_summary simulation::summary() const {
 }
 
 field_table simulation::fields() const {
-  return compute_fields(impl_->run.setup, impl_->run.state);
+  field room;
+  return compute_fields(impl_->run.setup, impl_->run.setup.densities(impl_->run.state, room));
 }
 
 std::vector<surface_table> simulation::surfaces() const {
@@ -172,7 +173,8 @@ communicator& simulation::processes() const {
 }
 
 std::vector<double> simulation::state() const {
-  return without_padding(impl_->run.state);
+  field room;
+  return without_padding(impl_->run.setup.densities(impl_->run.state, room));
 }
 
 std::vector<double> simulation::whole_state() const {
@@ -184,9 +186,18 @@ std::span<const double> simulation::row(int cell) const {
   return {u.row(cell), static_cast<std::size_t>(u.components())};
 }
 
+std::vector<double> simulation::densities_in(int cell) const {
+  const grid& block = impl_->run.setup.mesh();
+  const double r = block.solid(cell) < 0 ? block.radius(block.centre(cell)) : 1.0;
+  std::vector<double> f(row(cell).begin(), row(cell).end());
+  for (double& value : f) value /= r;
+  return f;
+}
+
 std::vector<double> simulation::exact_state() const {
   const auto exact = impl_->run.setup.exact_state(t());
-  return exact ? without_padding(*exact) : std::vector<double>{};
+  field room;
+  return exact ? without_padding(impl_->run.setup.densities(*exact, room)) : std::vector<double>{};
 }
 
 std::vector<double> simulation::epsilon() const {
@@ -196,7 +207,7 @@ std::vector<double> simulation::epsilon() const {
 run_state simulation::save() const {
   const running_case& run = impl_->run;
   run_state saved;
-  saved.unknowns = state();
+  saved.unknowns = without_padding(run.state);
   saved.march = run.march.save();
   impl_->progress->save(saved);
   saved.totals = summary();

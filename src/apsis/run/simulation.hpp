@@ -77,11 +77,14 @@ class simulation {
   /// Returns what the gas gave in the last step to the surfaces of output.surfaces (compute_surfaces()); on
   /// the root.
   std::vector<surface_table> surfaces() const;
-  const grid& mesh() const;           ///< the mesh; a single cell without space
-  communicator& processes() const;    ///< the processes that share the mesh
-  std::vector<double> state() const;  ///< [cells of setup().mesh()][components], contiguous
-  /// Returns the unknowns of a cell of setup().mesh(), valid until the next step.
+  const grid& mesh() const;         ///< the mesh; a single cell without space
+  communicator& processes() const;  ///< the processes that share the mesh
+  /// Returns the unknowns, of axisymmetric flow f: [cells of setup().mesh()][components], contiguous.
+  std::vector<double> state() const;
+  /// Returns the unknowns of a cell of setup().mesh(), of axisymmetric flow r f, valid until the next step.
   std::span<const double> row(int cell) const;
+  /// Returns the row of a cell in state().
+  std::vector<double> densities_in(int cell) const;
   /// Returns the state of the whole mesh, [cells][components]; on the root, elsewhere nothing. Collective.
   std::vector<double> whole_state() const;
   /// Returns the exact solution at t() in the form of state(); empty if no formula is known.

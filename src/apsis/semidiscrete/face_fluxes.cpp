@@ -79,7 +79,7 @@ void face_fluxes::complete(int surface, int place, double t, std::span<const tar
   face_rows::multiply(here.inward.data(), width, values);
   double* received = rates_.data() + (here.first + index(place)) * invariants_;
   equation_.invariant_densities(values, received);
-  const double area = mesh.cell_volume() / mesh.spacing(where.direction);
+  const double area = mesh.measure() * mesh.face_area(where);
   for (std::size_t k = 0; k < invariants_; ++k) received[k] *= area;
 }
 
@@ -112,7 +112,7 @@ void face_fluxes::receive(std::size_t end, double area, std::span<const double> 
   face_rows::multiply(inward.data(), static_cast<int>(inward.size()), flux);
   double* received = rates_.data() + end * invariants_;
   equation_.invariant_densities(flux, received);
-  for (std::size_t k = 0; k < invariants_; ++k) received[k] *= area;
+  for (std::size_t k = 0; k < invariants_; ++k) received[k] *= space_->mesh().measure() * area;
 }
 
 void face_fluxes::receive_through(int number, std::span<const double> inward, const double* values,

@@ -13,7 +13,7 @@ std::vector<double> global_integrals(const domain& space, std::span<const double
     sums[k % count].add(share * densities[k]);
   }
   std::vector<double> integrals = global_values(space.processes(), sums);
-  for (double& one : integrals) one *= space.mesh().cell_volume();
+  for (double& one : integrals) one *= space.mesh().measure() * space.mesh().cell_volume();
   return integrals;
 }
 

@@ -40,9 +40,9 @@ struct velocity_config {
   /// Names of velocity lines or files (velocity_line_registry.hpp): one for all directions, or one for each;
   /// none stands for "uniform".
   std::vector<std::string> set = {};
-  /// Numbers of rings about the axis and of angles of each, of a gas about an axis of symmetry, whose members
-  /// above are those along the axis; 0 of others.
-  int rings = 0, angles = 0;
+  /// Number of rings about an axis of symmetry; 0 without one. The members above are those along the axis.
+  int rings = 0;
+  int angles = 0;           ///< velocities of every ring
   double max_across = 0.0;  ///< largest v_⊥ of rings; 0: that along the axis
   /// Lines of velocities of all directions, or of each, in place of the members above.
   std::vector<velocity_line> lines = {};

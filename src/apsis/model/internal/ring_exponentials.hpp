@@ -35,8 +35,8 @@ struct dual_sums {
 /// exponents are taken out.
 class factors {
  public:
-  /// The velocities are relative to the bulk velocity of the state. Both must outlive the object, of which a
-  /// thread has one at a time.
+  /// The velocities are relative to the bulk velocity of the state. Both must outlive the object. A
+  /// thread has one object at a time.
   factors(const velocity_grid& grid, const fluid_state& state);
 
   /// Returns the sums for λ.

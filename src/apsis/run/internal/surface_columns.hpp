@@ -4,6 +4,7 @@
 #include <apsis/boundary/wall_temperature.hpp>
 #include <apsis/config/reference_values.hpp>
 #include <apsis/mesh/face.hpp>
+#include <apsis/mesh/grid.hpp>
 #include <apsis/model/gas_model.hpp>
 #include <apsis/run/surface_table.hpp>
 
@@ -109,6 +110,6 @@ void sort_by_first_column(surface_table& table);
 /// Puts the rows of a body in the plane, sorted by angles, in their order along its wall, with the body on
 /// the left, and replaces the angles by the length along the wall to the middle of each piece. An open wall
 /// begins at its opening, a closed one with its first row. Between two walls lies the distance of their ends.
-void measure_around(surface_table& table);
+void measure_around(surface_table& table, const grid& mesh);
 
 }  // namespace apsis

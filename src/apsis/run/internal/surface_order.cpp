@@ -54,8 +54,9 @@ void sort_by_first_column(surface_table& table) {
   reorder(table, order);
 }
 
-void measure_around(surface_table& table) {
-  const std::size_t area = place_of_name(table.numbers.columns, "area").value();
+void measure_around(surface_table& table, const grid& mesh) {
+  const auto& columns = table.numbers.columns;
+  const std::size_t area = place_of_name(columns, "area").value(), x = place_of_name(columns, "x").value();
   reorder(table, order_along(table.corners));
   double length = 0.0;
   for (std::size_t k = 0; k < table.corners.size(); ++k) {
@@ -64,8 +65,9 @@ void measure_around(surface_table& table) {
       const position &from = table.corners[k - 1].back(), &to = table.corners[k].front();
       length += std::hypot(to[0] - from[0], to[1] - from[1]);
     }
-    row.front() = length + 0.5 * row[area];
-    length += row[area];
+    const double piece = row[area] / (mesh.measure() * mesh.radius({row[x], row[x + 1], 0.0}));
+    row.front() = length + 0.5 * piece;
+    length += piece;
   }
 }
 

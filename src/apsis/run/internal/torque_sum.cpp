@@ -38,11 +38,15 @@ torque_sum::torque_sum(const run_setup& setup) : setup_(setup), momenta_(places_
 
 std::vector<double> torque_sum::of(std::span<const double> amounts) const {
   if (bodies_ == 0) return {};
-  const bool in_plane = setup_.whole_mesh().dimensions() == 2;
+  const bool in_plane = setup_.whole_mesh().dimensions() == 2, about_axis = setup_.whole_mesh().has_axis();
   const std::size_t components = in_plane ? 1 : 3;
   std::vector<exact_sum> sums(bodies_ * components);
   for (const arm& one : arms_) {
     if (one.first >= amounts.size()) break;  // nothing was received
+    if (about_axis) {
+      sums[one.body].add(-one.x[1] * amounts[one.first + momenta_[2]]);  // −r p_θ
+      continue;
+    }
     for (std::size_t c = 0; c < components; ++c) {
       // −(x × p) along the axis c; along z in the plane.
       const std::size_t a = in_plane ? 0 : (c + 1) % 3, b = in_plane ? 1 : (c + 2) % 3;

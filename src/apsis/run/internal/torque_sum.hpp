@@ -15,8 +15,8 @@ class torque_sum {
   explicit torque_sum(const run_setup& setup);
 
   /// Returns −Σ x × p over the ends of each of loaded_bodies(), with the momentum p of a boundary_budget that
-  /// the gas received there: [body], the component along z, in the plane, [body][component] in space. Sums
-  /// are exact before they are rounded. Collective.
+  /// the gas received there: [body], the component along z in the plane and along an axis of symmetry,
+  /// [body][component] in space. Sums are exact before they are rounded. Collective.
   std::vector<double> of(std::span<const double> amounts) const;
 
  private:

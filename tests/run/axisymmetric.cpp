@@ -235,7 +235,8 @@ TEST(axisymmetric_run, refuses_before_a_run_what_it_cannot_do) {
   const std::string sides = "boundary = \"outflow\"\n", plain = tube(sides);
   EXPECT_THAT(refused(plain, {"space.cells=[8,8,8]", "space.domain=[[0,1],[0,1],[0,1]]"}),
               testing::HasSubstr("axisymmetric flow in 3 space dimensions"));
-  EXPECT_THAT(refused(plain, {"space.domain=[[0,1],[-1,1]]"}), testing::HasSubstr("it begins at r = -1"));
+  EXPECT_THAT(refused(plain, {"space.domain=[[0,1],[-1,1]]"}),
+              testing::HasSubstr("it begins at the distance r = -1"));
   EXPECT_THAT(refused(plain, {"space.discretization=\"finite-volume\""}),
               testing::HasSubstr("space.discretization"));
   EXPECT_THAT(refused(plain, {"steady.tolerance=1e-6"}),

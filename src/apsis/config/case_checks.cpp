@@ -149,7 +149,7 @@ void case_checks::check_axis() const {
            "give one or two dimensions");
   if (const double lower = config_.space.domain[dimensions - 1][0]; lower < 0.0)
     refuse(text_.find("space.domain") != nullptr ? *text_.find("space.domain") : geometry, "space.domain",
-           fmt::format("it begins at r = {:.6g} (r is the distance from the axis)", lower),
+           fmt::format("it begins at the distance r = {:.6g} from the axis", lower),
            "begin at r = 0 or above");
   if (config_.steady_state.tolerance)
     refuse(geometry, "space.geometry",

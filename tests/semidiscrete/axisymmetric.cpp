@@ -3,7 +3,7 @@
 #include "polar_gas.hpp"
 
 #include <apsis/core/errors.hpp>
-#include <apsis/semidiscrete/rotation.hpp>
+#include <apsis/semidiscrete/ring_rotation.hpp>
 
 #include <stdexcept>
 

@@ -119,7 +119,7 @@ class problem_builder {
   /// Returns κ of Δt_FE = κ / max Σ_k |v_k|/Δx_k: 1 without the positivity limiter and bodies.
   double cfl_number() const;
   /// Returns R of the CFL number R Δt: model::cfl_rate(), or in axisymmetric flow the largest rate with the
-  /// rotation next to the axis (rotation::rates_with()). Requires a mesh and a reconstruction.
+  /// rotation next to the axis (ring_rotation::rates_with()). Requires a mesh and a reconstruction.
   double cfl_rate() const;
   /// Returns the force; nothing without one.
   const std::optional<acceleration>& force() const { return force_; }

@@ -1,7 +1,7 @@
 #include <apsis/mesh/cut_cells.hpp>
 #include <apsis/semidiscrete/axisymmetric.hpp>
 #include <apsis/semidiscrete/problem_builder.hpp>
-#include <apsis/semidiscrete/rotation.hpp>
+#include <apsis/semidiscrete/ring_rotation.hpp>
 
 #include <algorithm>
 
@@ -16,7 +16,8 @@ double problem_builder::cfl_number() const {
 double problem_builder::cfl_rate() const {
   if (radial_) {
     space();
-    const rotation turning(*equation_, space_, *radial_, {scheme_, limited_reconstruction::limits::nothing});
+    const ring_rotation turning(*equation_, space_, *radial_,
+                                {scheme_, limited_reconstruction::limits::nothing});
     const auto rates = turning.rates_with(line_speeds::of(*equation_, mesh_));
     return *std::max_element(rates.begin(), rates.end());
   }

@@ -93,7 +93,7 @@ void upwind_transport::set_force(acceleration of) {
 }
 
 void upwind_transport::set_rotation(int radial) {
-  rotation_ = std::make_unique<rotation>(equation_, space_, radial, edges_);
+  rotation_ = std::make_unique<ring_rotation>(equation_, space_, radial, edges_);
   if (cut_) cut_->use_chords();
   limit_for_steps(share_);
 }

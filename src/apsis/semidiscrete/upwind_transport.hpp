@@ -9,7 +9,7 @@
 #include <apsis/semidiscrete/cut_transport.hpp>
 #include <apsis/semidiscrete/face_fluxes.hpp>
 #include <apsis/semidiscrete/force.hpp>
-#include <apsis/semidiscrete/rotation.hpp>
+#include <apsis/semidiscrete/ring_rotation.hpp>
 #include <apsis/semidiscrete/source.hpp>
 #include <apsis/semidiscrete/transport.hpp>
 
@@ -41,7 +41,7 @@ class upwind_transport final : public transport {
   void set_source(source_rate rate) override;
 
   /// 1/Δt_FE = max_j Σ_k |v_jk|/Δx_k / κ + force::rate(), κ = limited_reconstruction::kappa(), at most
-  /// cut_cells::cfl_number with bodies; in axisymmetric flow max_j rotation::rates_with() / κ.
+  /// cut_cells::cfl_number with bodies; in axisymmetric flow max_j ring_rotation::rates_with() / κ.
   double forward_euler_step() const override;
   void limit_for_steps(double share) override;
   double growth_of_source(double t, const field& u) const override;
@@ -76,10 +76,10 @@ class upwind_transport final : public transport {
   double kappa_ = 1.0;
   double fastest_ = 0.0;  ///< largest rate of transport and rotation of a component
   std::unique_ptr<face_fluxes> faces_;
-  std::unique_ptr<cut_transport> cut_;  ///< null without bodies
-  std::unique_ptr<force> force_;        ///< null without
-  std::unique_ptr<rotation> rotation_;  ///< null without
-  std::unique_ptr<source> source_;      ///< null without
+  std::unique_ptr<cut_transport> cut_;       ///< null without bodies
+  std::unique_ptr<force> force_;             ///< null without
+  std::unique_ptr<ring_rotation> rotation_;  ///< null without
+  std::unique_ptr<source> source_;           ///< null without
   struct scratch;
   std::vector<line_speeds> speeds_;   ///< of each direction
   std::unique_ptr<scratch> scratch_;  ///< scratch memory of loops; one loop at a time

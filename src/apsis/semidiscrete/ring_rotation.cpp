@@ -1,4 +1,4 @@
-#include <apsis/semidiscrete/rotation.hpp>
+#include <apsis/semidiscrete/ring_rotation.hpp>
 
 #include <apsis/core/errors.hpp>
 #include <apsis/exec/profile.hpp>
@@ -31,17 +31,17 @@ double sine(int edge, int angles) {
 }  // namespace
 
 /// Buffers of one thread.
-struct rotation::workspace {
+struct ring_rotation::workspace {
   std::array<aligned_vector<double>, 4> places;  ///< of rotation_rows::places
   aligned_vector<double> values;                 ///< a ring with its halo
   aligned_vector<double> change;                 ///< of the row of a cell
 };
 
-rotation::~rotation() = default;
-rotation::rotation(rotation&&) noexcept = default;
+ring_rotation::~ring_rotation() = default;
+ring_rotation::ring_rotation(ring_rotation&&) noexcept = default;
 
-rotation::rotation(const model& equation, std::shared_ptr<domain> space, int radial,
-                   const limited_reconstruction& edges)
+ring_rotation::ring_rotation(const model& equation, std::shared_ptr<domain> space, int radial,
+                             const limited_reconstruction& edges)
     : equation_(equation),
       space_(std::move(space)),
       layout_(equation.polar()),
@@ -72,7 +72,7 @@ rotation::rotation(const model& equation, std::shared_ptr<domain> space, int rad
 }
 
 /// Of all processes, since all take the same steps.
-double rotation::smallest_radius() const {
+double ring_rotation::smallest_radius() const {
   const grid& whole = space_->shared_mesh() != nullptr ? space_->shared_mesh()->whole : space_->mesh();
   double smallest = std::numeric_limits<double>::infinity();
   for (const auto& [begin, end] : whole.fluid())
@@ -81,7 +81,7 @@ double rotation::smallest_radius() const {
   return smallest;
 }
 
-void rotation::find_speeds() {
+void ring_rotation::find_speeds() {
   const int angles = layout_.angles;
   const auto apart = static_cast<std::size_t>(layout_.apart);
   const double width = 2.0 * std::numbers::pi / angles;
@@ -104,7 +104,7 @@ void rotation::find_speeds() {
   left_.resize(rates_.size());
 }
 
-aligned_vector<double> rotation::rates_through_cells(const std::vector<line_speeds>& speeds) const {
+aligned_vector<double> ring_rotation::rates_through_cells(const std::vector<line_speeds>& speeds) const {
   aligned_vector<double> rates(speeds.front().per_cell.size());
   for (std::size_t d = 0; d < speeds.size(); ++d)
     for (std::size_t k = 0; k < rates.size(); ++k)
@@ -112,14 +112,14 @@ aligned_vector<double> rotation::rates_through_cells(const std::vector<line_spee
   return rates;
 }
 
-aligned_vector<double> rotation::rates_with(const std::vector<line_speeds>& speeds) const {
+aligned_vector<double> ring_rotation::rates_with(const std::vector<line_speeds>& speeds) const {
   auto rates = rates_through_cells(speeds);
   for (std::size_t k = 0; k < rates.size(); ++k)
     if (const std::size_t j = k % stride(); j < rates_.size()) rates[k] += rates_[j];
   return rates;
 }
 
-void rotation::limit_for_steps(double step, std::vector<line_speeds>& speeds) {
+void ring_rotation::limit_for_steps(double step, std::vector<line_speeds>& speeds) {
   const auto through_cells = rates_through_cells(speeds), all = rates_with(speeds);
   const double fastest = *std::max_element(all.begin(), all.end());
   for (auto& line : speeds) line.inverse_cfl.resize(all.size());
@@ -140,7 +140,7 @@ void rotation::limit_for_steps(double step, std::vector<line_speeds>& speeds) {
   }
 }
 
-void rotation::add(const field& u, std::span<const target<field, double>> targets) const {
+void ring_rotation::add(const field& u, std::span<const target<field, double>> targets) const {
   const rotation_rows::ring ring{layout_.angles, layout_.apart};
   workspaces_->prepare([&](workspace& here) {
     for (auto& places : here.places) places.resize(ring.places());
@@ -157,8 +157,8 @@ void rotation::add(const field& u, std::span<const target<field, double>> target
   given_ = global_integrals(*space_, of_cells_, invariants_);
 }
 
-void rotation::add_cell(const field& u, std::span<const target<field, double>> targets, int cell,
-                        workspace& here) const {
+void ring_rotation::add_cell(const field& u, std::span<const target<field, double>> targets, int cell,
+                             workspace& here) const {
   const double r = space_->mesh().centre(cell)[static_cast<std::size_t>(radial_)];
   const rotation_rows::ring ring{layout_.angles, layout_.apart};
   const rotation_rows::places places{here.places[0].data(), here.places[1].data(), here.places[2].data(),

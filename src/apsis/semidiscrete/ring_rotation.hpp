@@ -27,15 +27,15 @@ namespace apsis {
 /// that of sin ω F. Derivatives are differences of the four values around the edge. The change of a row that
 /// does not depend on ω is thus v_⊥ cos ω_a F/r to rounding. At first order ĝ = s sin ω F_a. Mass, energy and
 /// the momentum along the axis are conserved to rounding. Dimensionless.
-class rotation {
+class ring_rotation {
  public:
   /// `equation` must outlive the object; `radial`: the direction of r in the mesh. Throws input_error if its
   /// velocities have no rings of a multiple of four angles, at least 12 beyond first order, or the centre of
   /// a cell has r ≤ 0.
-  rotation(const model& equation, std::shared_ptr<domain> space, int radial,
-           const limited_reconstruction& edges);
-  ~rotation();
-  rotation(rotation&&) noexcept;  ///< leaves the source empty
+  ring_rotation(const model& equation, std::shared_ptr<domain> space, int radial,
+                const limited_reconstruction& edges);
+  ~ring_rotation();
+  ring_rotation(ring_rotation&&) noexcept;  ///< leaves the source empty
 
   /// acc ← acc + β (1/r) ∂_ω(v_⊥ sin ω u) for every target.
   void add(const field& u, std::span<const target<field, double>> targets) const;

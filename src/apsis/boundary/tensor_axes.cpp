@@ -13,7 +13,8 @@ namespace {
 [[noreturn]] void refuse_velocities() {
   throw input_error(
       "the velocities are not all combinations of numbers in each direction (a wall with any normal "
-      "interpolates between them); use a grid of velocities or another boundary");
+      "interpolates between them to reflect); use a diffuse wall with accommodation = 1, or velocities in "
+      "lines");
 }
 
 /// Returns the different numbers of a direction, increasing.

@@ -161,6 +161,29 @@ TEST(axisymmetric_run, the_balance_past_a_body_includes_all_that_its_wall_gives)
   EXPECT_NEAR(load.torque.front(), turning, 1e-12 * std::abs(turning));
 }
 
+TEST(axisymmetric_run, adiabatic_bodies_receive_no_heat_and_ends_at_equilibrium_keep_a_gas_at_rest) {
+  const std::string adiabatic = ball.substr(0, ball.find("T = 1")) + "kind = \"adiabatic\"\n";
+  apsis::simulation run(
+      make_case(tube("boundary = \"outflow\"\n[boundary.left]\nkind = \"inflow\"\nrho = 1\nu = [1, 0, "
+                     "0]\nT = 1\n" +
+                         adiabatic,
+                     "rho = 1\nu = [1, 0, 0]\nT = 1"),
+                {"output.surfaces=[\"ball\"]"}));
+  advance(run, 5);
+  const apsis::body_load load = apsis::body_loads(run.setup(), run.last()).front();
+  EXPECT_GT(load.force[0], 0.1);
+  EXPECT_NEAR(load.heat, 0.0, 1e-13 * load.force[0]);  // sums of thousands of terms
+  for (const std::string end : {"kind = \"far-field\"\nrho = 1\nT = 1", "kind = \"pressure\"\np = 1"}) {
+    // On both kinds of faces: x = const and r = const.
+    apsis::simulation open(
+        make_case(tube("boundary = \"diffuse\"\n[boundary.left]\nT = 1\n[boundary.right]\n" + end +
+                       "\n[boundary.top]\n" + end)));
+    const std::vector<double> before = open.state();
+    advance(open, 3);
+    EXPECT_LT(difference(before, open.state()), 3e-14) << end;
+  }
+}
+
 TEST(axisymmetric_run, fields_and_f_are_those_of_the_gas_and_not_of_r_f) {
   const apsis::simulation run(
       make_case(tube("boundary = \"outflow\"\n", "rho = \"1 + y\"\nu = [0.1, \"0.3*y\", \"0.2*y\"]\nT = 0.9"),

@@ -14,15 +14,15 @@
 namespace apsis {
 
 /// Parts of a problem in axisymmetric flow. The unknowns are F = r f, with the distance r from the axis,
-/// which is the coordinate x_k of a direction k = `radial` of the mesh. They satisfy
+/// which is the coordinate x_k of a direction k = `radial` of the mesh. With v_r = v_⊥ cos ω and v_θ = v_⊥
+/// sin ω they satisfy
 ///     F_t + v_x F_x + v_r F_r − (1/r) ∂_ω(v_⊥ sin ω F) = r Q(f)/ε,
-/// with v_r = v_⊥ cos ω and v_θ = v_⊥ sin ω. Hence transport through cells is that of a plane, and what is
-/// given in terms of f changes as follows.
+/// Hence transport through cells is that of a plane. Data in terms of f change as follows.
 namespace axisymmetric {
 
-/// Throws input_error unless the velocities have rings, the last direction of one or two is radial, the mesh
-/// has r ≥ 0, and its lower end is the axis if and only if r = 0 there. Without `radial`, for other flows, it
-/// throws if an end is an axis.
+/// Throws input_error unless the velocities have rings and the last direction of one or two is radial. The
+/// mesh must have r ≥ 0, and its lower end must be the axis where r = 0, and nowhere else. Without `radial`,
+/// for other flows, it throws if an end is an axis.
 void check(const model& equation, const grid& whole, const std::optional<int>& radial,
            const std::vector<domain::faces>& sides, const cell_unknown& unknown);
 

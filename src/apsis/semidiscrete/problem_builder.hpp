@@ -67,8 +67,8 @@ class problem_builder {
   problem_builder& with_force(acceleration of);
   /// Adds a source S(t, x) of rows, on models with space.
   problem_builder& with_source(source_rate rate);
-  /// Makes the flow axisymmetric. The coordinate along the direction `radial` of the mesh is then the
-  /// distance r from the axis, the last direction of one or two, and the unknowns are F = r f. Data, ε,
+  /// Makes the flow axisymmetric. The direction `radial` of the mesh, the last of one or two, is then
+  /// that of the distance r from the axis. The unknowns are F = r f. Data, ε,
   /// boundaries and sources are still those of f. The lower end of r is the boundary "axis" if it is r = 0.
   problem_builder& with_axis(int radial);
   /// For methods that keep no signs: collisions at centres are not limited then. Limited averages are no

@@ -23,15 +23,15 @@ namespace apsis {
 ///
 /// The flux at the edge ω_e = e Δω is −v_⊥ ĝ/r of the point values F_a with
 ///     ĝ = s sin ω F̂ − Δω cos ω ((1/12 + 7Δω²/1440) Δω ∂F − Δω³ ∂³F/120) − sin ω Δω² (Δω² ∂²F)/180,
-/// s = ½Δω/sin ½Δω: the linear reconstruction F̂ of fifth order of F alone would be of second order, as ĝ is
-/// that of sin ω F. Derivatives are differences of the four values around the edge. The change of a row that
-/// does not depend on ω is thus v_⊥ cos ω_a F/r to rounding. At first order ĝ = s sin ω F_a. Mass, energy and
-/// the momentum along the axis are conserved to rounding. Dimensionless.
+/// s = ½Δω/sin ½Δω. F̂ is the linear reconstruction of fifth order. It alone would give second order, since ĝ
+/// reconstructs sin ω F. Derivatives are differences of the four values around the edge. The change of a row
+/// that does not depend on ω is thus v_⊥ cos ω_a F/r to rounding. At first order ĝ = s sin ω F_a. Mass,
+/// energy and the momentum along the axis are conserved to rounding. Dimensionless.
 class ring_rotation {
  public:
   /// `equation` must outlive the object; `radial`: the direction of r in the mesh. Throws input_error if its
-  /// velocities have no rings of a multiple of four angles, at least 12 beyond first order, or the centre of
-  /// a cell has r ≤ 0.
+  /// velocities have no rings or the centre of a cell has r ≤ 0. Rings have a multiple of four angles, beyond
+  /// first order at least 12.
   ring_rotation(const model& equation, std::shared_ptr<domain> space, int radial,
                 const limited_reconstruction& edges);
   ~ring_rotation();
@@ -44,12 +44,12 @@ class ring_rotation {
   /// Returns the rate of each component that limits the step, for as many cells as the speeds,
   ///     q |v_r|/Δr + |v_x|/Δx + (v_⊥/r) s |sin ω_e|/Δω
   /// with the smallest r of all cells and the edge of outflow. q = 1 without limiter. With one, q = 1 +
-  /// Δr/(2r) for v_r > 0: in uniform gas F = r f is larger by this factor at the outer edge of a cell, 2 at
-  /// the axis, and its outflow must not be limited. The largest rate is that of a velocity with v_r < 0.
+  /// Δr/(2r) for v_r > 0. In uniform gas F = r f is larger by this factor at the outer edge of a cell, and
+  /// its outflow must not be limited. At the axis q = 2. The largest rate is that of a velocity with v_r < 0.
   aligned_vector<double> rates_with(const std::vector<line_speeds>& speeds) const;
   /// Divides the values among transport and rotation for forward Euler steps of a length, such that both keep
-  /// their parts nonnegative; sets C of transport. A step of Δt with x = Δt rates_with() ≤ 1, to which
-  /// rotation contributes R, gives it the share R/√x, and the rest to transport, with
+  /// their parts nonnegative; sets C of transport. Let x = Δt rates_with() ≤ 1 for a step Δt, and R the part
+  /// of rotation in it. Rotation gets the share R/√x, transport the rest with
   ///     C = (x − R)/(1 − R/√x) ≤ 1,  divided by q along r.
   /// Both limiters are then weak for short steps, and that of transport everywhere for components that hardly
   /// rotate: one C serves all cells. R is that of the faster edge where the largest rate leaves it room.

@@ -26,9 +26,9 @@ class velocity_grid {
   velocity_grid(int dimensions, int points, double max);
   /// Throws input_error unless there are 1 to 3 lines and at most most_velocities combinations.
   explicit velocity_grid(std::vector<velocity_line> lines);
-  /// The velocities of a line along an axis, in component `along` = 0 or 2 of three, and of rings about it in
-  /// the other two, the angle counted from the first of them. Throws input_error if they are more than
-  /// most_velocities.
+  /// The velocities of a line along an axis, in component `along` = 0 or 2 of three, and of rings about it.
+  /// The angle of a ring counts from the first of the other two components. Throws input_error if they are
+  /// more than most_velocities.
   velocity_grid(const velocity_line& axial, const polar_rings& rings, int along);
 
   /// Throws input_error if lines of these lengths have more than most_velocities combinations.

@@ -1,6 +1,7 @@
 // Throughput of the flows that users run: every case of cases/gas and cases/laws beside the same gas between
 // periodic ends, and where the time goes.
 #include "../clock.hpp"
+#include "../flow.hpp"
 #include "../table.hpp"
 
 #include <apsis/config/case.hpp>
@@ -22,40 +23,18 @@
 namespace apsis::bench::flows_table {
 namespace {
 
-/// The gas of a case between periodic ends, without bodies, forces and sources.
+/// The gas of a case between periodic ends, without bodies, forces and sources; without an axis, where other
+/// velocities have as many numbers across.
 case_config periodic(case_config of) {
+  of.space.geometry = geometry_choice::cartesian;
   of.space.boundary = "periodic";
   of.faces = {};
   of.solids.clear();
+  of.bodies.clear();
   of.force = {};
   of.source_term = {};
   of.parts = std::make_shared<case_parts>();
   return of;
-}
-
-/// The case without an early end, with cells divided so often that a state has this many numbers.
-case_config of_size(const std::string& name, double numbers) {
-  case_config of = load_case(name);
-  of.time.steady.reset();
-  of.time.end = 1e9;
-  of.output.every = 0.0;
-  const auto dimensions = static_cast<double>(of.space.cells.size());
-  const simulation small(of);
-  const double now = static_cast<double>(small.mesh().size()) * small.setup().equation->components();
-  const int parts = std::max(1, static_cast<int>(std::ceil(std::pow(numbers / now, 1.0 / dimensions))));
-  for (int& cells : of.space.cells) cells *= parts;
-  return of;
-}
-
-double point_stages(const simulation& of) {
-  int cells = 0;
-  for (const cell_range& range : of.mesh().fluid()) cells += range.end - range.begin;
-  return static_cast<double>(cells) * of.setup().equation->components() *
-         static_cast<double>(of.setup().stages());
-}
-
-void advance(simulation& run, int steps) {
-  for (int k = 0; k < steps; ++k) run.advance();
 }
 
 /// Shares of the time of some steps: sweeps, collisions, walls, forces, monitor, the rest.
@@ -82,13 +61,11 @@ std::array<double, 6> shares_of(simulation& run, int steps) {
 }
 
 void add_row(result_table& result, const std::string& name, double numbers, const settings& options) {
-  const case_config config = of_size(name, numbers);
+  const case_config config = flow_of_size(name, numbers);
   simulation flow(config), twin(periodic(config));
   advance(flow, 1);  // allocates the buffers
   advance(twin, 1);
-  const double start = wall_seconds();
-  advance(flow, 1);
-  const int steps = std::max(1, static_cast<int>((options.quick ? 0.001 : 0.1) / (wall_seconds() - start)));
+  const int steps = steps_to_measure(flow, options.quick);
   const auto seconds = in_turns({[&] { advance(flow, steps); }, [&] { advance(twin, steps); }},
                                 options.quick ? 1 : options.repeats);
   const double ratio = median_ratio(seconds, 1, 0) * point_stages(flow) / point_stages(twin);

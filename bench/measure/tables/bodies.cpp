@@ -1,0 +1,64 @@
+// The price of a body: steps with it beside steps of the same flow without it.
+#include "../clock.hpp"
+#include "../flow.hpp"
+#include "../table.hpp"
+
+#include <apsis/exec/parallel.hpp>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+namespace apsis::bench::bodies_table {
+namespace {
+
+case_config without_bodies(case_config of) {
+  of.bodies.clear();
+  of.output.surfaces = {};
+  of.parts = std::make_shared<case_parts>();
+  return of;
+}
+
+void add_row(result_table& result, const std::string& name, double numbers, const settings& options) {
+  const case_config config = flow_of_size(name, numbers);
+  simulation flow(config), empty(without_bodies(config));
+  advance(flow, 1);  // allocates the buffers
+  advance(empty, 1);
+  const int steps = steps_to_measure(flow, options.quick);
+  const auto seconds = in_turns({[&] { advance(flow, steps); }, [&] { advance(empty, steps); }},
+                                options.quick ? 1 : options.repeats);
+  const double time = median_ratio(seconds, 0, 1), all = gas_unknowns(empty), with = gas_unknowns(flow),
+               cut = cut_unknowns(flow);
+  result.rows.push_back({name, fmt::format("{:.2g}", with), fmt::format("{:.1f} %", 100.0 * cut / with),
+                         steps * point_stages(flow) / median(seconds[0]),
+                         fmt::format("{:.2f}", with / all / time),
+                         fmt::format("{:.1f}", (time * all - (with - cut)) / cut)});
+}
+
+result_table measure(const settings& options) {
+  result_table result;
+  result.title = "The price of a body";
+  result.note =
+      "The table shows steps on one thread of shipped flows past bodies, and of those with divided cells. "
+      "Unknowns are those in the gas; the third column is the share in cut cells. The ratio compares "
+      "point·stages per second with the flow without its bodies, in the same turns. The last column is the "
+      "time of an unknown in a cut cell, where all the additional time is that of cut cells; an unknown of "
+      "the flow without bodies takes 1.";
+  result.columns = {"case", "unknowns", "cut", "point·stages/s", "ratio", "cut cell"};
+  set_threads(1);
+  const std::vector<std::string> names = {"gas/cylinder", "gas/ellipse", "gas/wing",
+                                          "gas/nozzle",   "gas/sphere",  "gas/sphere-axis"};
+  for (const std::string& name : names) {
+    if (options.quick && name != names.front()) continue;
+    add_row(result, name, 0.0, options);
+    if (!options.quick) add_row(result, name, 4e6, options);
+  }
+  return result;
+}
+
+const registered here({"bodies", "the price of a body and of a cut cell", measure});
+
+}  // namespace
+}  // namespace apsis::bench::bodies_table

@@ -19,6 +19,13 @@ double speed_of_stream(const quantity_values& parameters) {
   return number_between(parameters, "mach", 0.5, 8.0) * std::sqrt(5.0 / 3.0);
 }
 
+double load_in_stream(const simulation& run, const std::string& wanted) {
+  for (const load_value& one :
+       loads_in_stream(body_loads(run.setup(), run.last()).front(), run.config().output.reference.value()))
+    if (one.name == wanted) return one.value;
+  throw input_error(fmt::format("the case \"{}\" has no {}", run.config().title, wanted));
+}
+
 double free_stream_coefficient(const std::string& case_name, const std::vector<std::string>& resolution,
                                const quantity_values& parameters, const quantity_run& make) {
   const double U = speed_of_stream(parameters);
@@ -29,12 +36,7 @@ double free_stream_coefficient(const std::string& case_name, const std::vector<s
                    {"parameters.M=" + parameters.at("mach"), "parameters.Kn=1e9",
                     "parameters.alpha=" + parameters.at("accommodation"),
                     fmt::format("velocity.max={}", U + 4.4), "time.method=md-imex-5-2", "output.every=0"});
-  const simulation run = make(case_name, overrides);
-  const std::string wanted = drag ? "C_D" : "C_H";
-  for (const load_value& one :
-       loads_in_stream(body_loads(run.setup(), run.last()).front(), run.config().output.reference.value()))
-    if (one.name == wanted) return one.value;
-  throw input_error(fmt::format("the case {} has no {}", case_name, wanted));
+  return load_in_stream(make(case_name, overrides), drag ? "C_D" : "C_H");
 }
 
 }  // namespace apsis::validation

@@ -14,6 +14,10 @@ std::vector<quantity_parameter> free_stream_parameters();
 /// input_error for a Mach number outside 0.5 to 8.
 double speed_of_stream(const quantity_values& parameters);
 
+/// Returns a load of the first body of a run, such as "C_D", over output.reference. Throws input_error for an
+/// unknown name.
+double load_in_stream(const simulation& run, const std::string& wanted);
+
 /// Returns the drag or heat coefficient of a convex body in a stream of free molecules along x. The case has
 /// the parameters M, Kn and alpha, one body, and output.reference; `resolution`: overrides of its mesh,
 /// velocities and final time. Throws input_error for parameters out of range.

@@ -1,6 +1,5 @@
-#include "flow.hpp"
-
 #include "clock.hpp"
+#include "flow.hpp"
 
 #include <apsis/mesh/cut_cells.hpp>
 #include <apsis/run/setup.hpp>

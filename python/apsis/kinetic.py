@@ -41,7 +41,7 @@ class KineticProblem:
     boundary     of every face, or (lower, upper), or a sequence of such pairs, or {"left": …, "right": …} with "bottom", "top", "back"
     and "front" for further directions. A face is a kind, or a mapping of the kind and its variables, {"kind": "diffuse", "T": lambda t,
     x: 1 + 0.1 * t, "velocity": [0, 0.1]}: numbers, functions of the time and the coordinates, or lists of them for vectors. The
-    functions f, g and h of the kind "given" have v_x, v_y, v_z, numbers, as further arguments
+    functions f, g and h of the kind "given" have v_x, v_y, v_z, numbers, as further arguments; a function total_flow has the time alone
     acceleration of the molecules: a number or a function of the time and the coordinates, or a list of them for each dimension
     largest_acceleration   bound of the absolute values of functions, a number or one for each dimension
     formulation  "finite-volume" (cell averages) or "finite-difference" (point values)

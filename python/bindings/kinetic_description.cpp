@@ -68,13 +68,15 @@ std::shared_ptr<const boundary> make_face(const given_face& of, const model& equ
   for (const auto& [key, list] : of.second) {
     const std::string variable = py::str(key);
     const std::string own = fmt::format("{}['{}']", name, variable);
-    const bool of_velocity = is_of_velocity(of.first, equation, variable);
+    const auto known = variable_of(of.first, equation, variable);
+    const bool of_velocity = known && known->of_velocity;
     for (const auto item : list) {
       if (of_velocity && PyCallable_Check(item.ptr()) != 0) {
         values[variable].push_back(velocity_function(item, own, equation));
         continue;
       }
-      quantity_in_time value = to_quantity(item, own, equation.space_dimensions());
+      quantity_in_time value =
+          to_quantity(item, own, known && known->over_surface ? 0 : equation.space_dimensions());
       values[variable].push_back(value.function ? face_quantity(std::move(value.function))
                                                 : face_quantity(value.number));
     }

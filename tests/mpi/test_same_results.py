@@ -91,7 +91,7 @@ shape = "half_space"
 point = [0, 0.14]
 normal = [0.1, 1]
 T = 0.9
-[force]''').replace('"bgk"', '"shakhov"')
+[force]''').replace('"bgk"', '"shakhov"').replace('flux = "table(t, 0, -0.05, 0.01, 0.1, 0.02, -0.02)*y"', 'total_flow = "table(t, 0, -0.05, 0.01, 0.1, 0.02, -0.02)"')
 
 ABOUT_AN_AXIS = """
 title = "A ball that turns about the axis of a stream"
@@ -108,6 +108,11 @@ geometry = "axisymmetric"
 cells = [12, 8]
 domain = [[-1, 1], [0, 1.2]]
 boundary = "outflow"
+[boundary.left]
+kind = "mass-flow"
+total_flow = 4.4
+[boundary.top]
+kind = "adiabatic"
 [[space.body]]
 name = "ball"
 shape = "circle"

@@ -131,6 +131,7 @@ std::shared_ptr<const apsis::boundary> end_of(const apsis::boundary_entry& kind,
   apsis::face_quantities values;
   for (const auto& variable :
        kind.variables != nullptr ? kind.variables(gas) : std::vector<apsis::data_variable>()) {
+    if (values.contains(variable.alternative)) continue;
     const double number = variable.value ? *variable.value : variable.of_velocity ? 0.1 : 1.0;
     const apsis::face_quantity::function of_time = [number](double t, const apsis::position&) {
       return number * (1.0 - 0.01 * t);

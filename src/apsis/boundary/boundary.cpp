@@ -11,6 +11,10 @@ std::shared_ptr<const boundary> boundary::prepared(const face&, const velocity_s
   return nullptr;
 }
 
+std::shared_ptr<const boundary> boundary::on_surface(const std::function<double()>&) const {
+  return nullptr;
+}
+
 std::shared_ptr<const oblique_wall> boundary::oblique(const velocity_set&) const {
   return nullptr;
 }

@@ -6,6 +6,7 @@
 #include <apsis/velocity/velocity_set.hpp>
 
 #include <array>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -34,6 +35,11 @@ class boundary {
   /// uses in its place; nullptr, the default, if it needs none. Throws input_error if the boundary condition
   /// is not possible with these velocities.
   virtual std::shared_ptr<const boundary> prepared(const face& where, const velocity_set& velocities) const;
+  /// Returns this boundary, as prepared, with the open area of its surface; the domain then uses it in place
+  /// of this one. nullptr, the default: the condition does not depend on the area. `area` computes it: 1 on a
+  /// line, a length in the plane, about an axis that of the rings. Throws input_error if the area is not
+  /// possible.
+  virtual std::shared_ptr<const boundary> on_surface(const std::function<double()>& area) const;
   /// Returns this condition for walls with any normal, with tables for the velocities of the domain; nullptr,
   /// the default, if it serves the faces of cells alone. Throws input_error as prepared() does.
   virtual std::shared_ptr<const oblique_wall> oblique(const velocity_set& velocities) const;

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -23,13 +24,36 @@ const boundary_entry& find_boundary(const std::string& name) {
                                 suggest(name, boundary_names())));
 }
 
-bool is_of_velocity(const std::string& kind, const model& equation, const std::string& variable) {
+std::optional<data_variable> variable_of(const std::string& kind, const model& equation,
+                                         const std::string& variable) {
   const boundary_entry& entry = find_boundary(kind);
-  if (entry.variables == nullptr) return false;
-  const auto all = entry.variables(equation);
-  return std::any_of(all.begin(), all.end(),
-                     [&](const data_variable& one) { return one.name == variable && one.of_velocity; });
+  if (entry.variables == nullptr) return std::nullopt;
+  for (auto& one : entry.variables(equation))
+    if (one.name == variable) return std::move(one);
+  return std::nullopt;
 }
+
+namespace {
+
+/// Throws where a variable is needed that is not among the values.
+void check_absence(const std::string& kind, const data_variable& variable, const face_quantities& values) {
+  if (variable.value || values.contains(variable.alternative)) return;
+  throw input_error(fmt::format(
+      "boundary '{}' has no value of '{}' (it is the {}); give one{}", kind, variable.name, variable.doc,
+      variable.alternative.empty() ? "" : fmt::format(", or '{}'", variable.alternative)));
+}
+
+/// Throws where a variable and its alternative both have values.
+void check_alternatives(const std::string& kind, const data_variable& variable,
+                        const face_quantities& values) {
+  if (values.contains(variable.name) && values.contains(variable.alternative))
+    throw input_error(
+        fmt::format("boundary '{}' has values of '{}' and '{}' (each determines the other); "
+                    "remove one",
+                    kind, variable.name, variable.alternative));
+}
+
+}  // namespace
 
 std::shared_ptr<const boundary> make_boundary(const std::string& name) {
   const boundary_entry& entry = find_boundary(name);
@@ -50,15 +74,15 @@ std::shared_ptr<const boundary> make_boundary(const std::string& name, const mod
     if (std::find(names.begin(), names.end(), given) == names.end())
       throw input_error(fmt::format("boundary '{}' has no variable '{}'; {}", name, given.substr(0, 60),
                                     names.empty() ? "give none" : suggest(given, names)));
-  boundary_source from{&equation, {}};
+  boundary_source from{&equation};
   for (const auto& variable : variables) {
+    check_alternatives(name, variable, values);
     const auto given = values.find(variable.name);
+    if (given != values.end()) from.given.push_back(variable.name);
     const auto size = static_cast<std::size_t>(variable.size);
-    if (given == values.end() && !variable.value)
-      throw input_error(fmt::format("boundary '{}' has no value of '{}' (it is the {}); give one", name,
-                                    variable.name, variable.doc));
     if (given == values.end()) {
-      from.values.insert(from.values.end(), size, face_quantity(*variable.value));
+      check_absence(name, variable, values);
+      from.values.insert(from.values.end(), size, face_quantity(variable.value.value_or(0.0)));
     } else if (given->second.size() == size || given->second.size() == 1) {
       from.values.insert(from.values.end(), given->second.begin(), given->second.end());
       from.values.insert(from.values.end(), size - given->second.size(), face_quantity(0.0));

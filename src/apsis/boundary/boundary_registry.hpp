@@ -4,9 +4,11 @@
 #include <apsis/boundary/domain.hpp>
 #include <apsis/model/model.hpp>
 
+#include <algorithm>
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -50,6 +52,12 @@ using face_quantities = std::map<std::string, std::vector<face_quantity>>;
 struct boundary_source {
   const model* equation = nullptr;         ///< the model on whose components the condition acts
   std::vector<face_quantity> values = {};  ///< of boundary_entry::variables, vectors component by component
+  std::vector<std::string> given = {};     ///< names of the variables that a user gave
+
+  /// Whether a variable is given.
+  bool is_given(const std::string& variable) const {
+    return std::find(given.begin(), given.end(), variable) != given.end();
+  }
 };
 
 /// A kind of boundary condition: a file of boundary/kinds/ defines `extern const boundary_entry
@@ -71,9 +79,10 @@ std::vector<std::string> boundary_names();
 
 /// Returns the kind of a name. Throws input_error with the nearest name for an unknown one.
 const boundary_entry& find_boundary(const std::string& name);
-/// Whether a variable of a kind is a function of the velocity. Throws input_error as find_boundary() does, or
-/// if the model cannot have this kind.
-bool is_of_velocity(const std::string& kind, const model& equation, const std::string& variable);
+/// Returns a variable of a kind; nothing if it has no such variable. Throws input_error as find_boundary()
+/// does, or if the model cannot have this kind.
+std::optional<data_variable> variable_of(const std::string& kind, const model& equation,
+                                         const std::string& variable);
 
 /// Returns the boundary of a kind without variables. Throws input_error with the nearest name if there is no
 /// such kind, or if it has variables.
@@ -81,7 +90,7 @@ std::shared_ptr<const boundary> make_boundary(const std::string& name);
 
 /// Returns the boundary of a kind for a model, with values of its variables; a vector of one value is that
 /// value along x. Throws input_error: no such kind, a variable that it does not have, that is missing or of
-/// another size, or a model that cannot have it.
+/// another size, a variable and its alternative, or a model that cannot have it.
 std::shared_ptr<const boundary> make_boundary(const std::string& name, const model& equation,
                                               const face_quantities& values = {});
 

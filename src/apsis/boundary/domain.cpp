@@ -31,6 +31,11 @@ std::array<bool, 3> periodic_directions(const grid& mesh, const std::vector<doma
   return periodic;
 }
 
+/// Whether an open part of a face is part of a face of the domain.
+bool is_at(const open_face& part, const face& where) {
+  return part.direction == where.direction && (where.upper ? part.above : part.below) < 0;
+}
+
 /// The border of whole cells to cut ones: ghost rows continue the state inside. The values that enter are
 /// those of the cut cells, which the transport has.
 class border_of_cut_cells final : public incoming_boundary {};
@@ -81,6 +86,31 @@ void domain::set_sides(const std::vector<faces>& sides,
     budget_surfaces_.back().surfaces.push_back(static_cast<int>(number));
   }
   add_cut_ends();
+  for (const budget_surface& one : budget_surfaces_)
+    for (const int number : one.surfaces)
+      if (auto whole = sides_[at(number)]->on_surface([&] { return open_area(one); }))
+        sides_[at(number)] = std::move(whole);
+}
+
+/// Sums over the whole mesh in its order, so that all processes have the bits of a single one.
+double domain::open_area(const budget_surface& one) const {
+  const grid& whole = distribution_ ? distribution_->whole : mesh();
+  const segment_table of_whole(whole, periodic_);
+  double area = 0.0;
+  for (const int number : one.surfaces) {
+    const surface& here = of_whole.surfaces()[at(number)];
+    for (const int end : here.segments) {
+      const segment& pencil = of_whole.along(here.where.direction)[at(end)];
+      position x = whole.centre(
+          pencil.first + (here.where.upper ? (pencil.cells - 1) * whole.stride(here.where.direction) : 0));
+      x[at(here.where.direction)] += (here.where.upper ? 0.5 : -0.5) * whole.spacing(here.where.direction);
+      area += whole.face_area(here.where) * whole.radius(x);
+    }
+  }
+  if (whole.cut() != nullptr && one.solid < 0)
+    for (const open_face& part : whole.cut()->faces())
+      if (is_at(part, one.where)) area += part.area * whole.radius(part.middle);
+  return whole.measure() * area;
 }
 
 /// Faces of the domain, and walls, that belong to cut cells.
@@ -90,10 +120,8 @@ void domain::add_cut_ends() {
   const auto is_here = [&](int cell) { return number_in_block(cell) >= 0; };
   for (budget_surface& one : budget_surfaces_) {
     for (std::size_t f = 0; f < cut.faces().size() && one.solid < 0; ++f)
-      if (const open_face& at_domain = cut.faces()[f];
-          at_domain.direction == one.where.direction &&
-          (one.where.upper ? at_domain.above : at_domain.below) < 0 &&
-          is_here(one.where.upper ? at_domain.below : at_domain.above))
+      if (const open_face& part = cut.faces()[f];
+          is_at(part, one.where) && is_here(one.where.upper ? part.below : part.above))
         one.cut_faces.push_back(static_cast<int>(f));
     for (std::size_t w = 0; w < cut.walls().size() && one.solid >= 0; ++w)
       if (cut.walls()[w].solid == one.solid && is_here(cut.walls()[w].cell))

@@ -146,6 +146,7 @@ class domain : public construction_count<domain> {
   /// Number of rows inside that a boundary may read.
   int rows_inside() const { return std::max(width_, 3); }
   int pencil_of(int direction, const segment& one) const;
+  double open_area(const budget_surface& one) const;
   int visible(int direction, const segment& one, bool upper) const;
   const double* inside_row(const field& u, int direction, const segment& one, bool upper, int cell) const;
   const double* ghost_row(const field& u, int direction, int segment, bool upper, int ghost) const;

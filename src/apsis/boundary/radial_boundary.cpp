@@ -78,6 +78,14 @@ std::shared_ptr<const boundary> radial_boundary::prepared(const face& where,
   return own;
 }
 
+std::shared_ptr<const boundary> radial_boundary::on_surface(const std::function<double()>& area) const {
+  auto side = of_->on_surface(area);
+  if (!side) return nullptr;
+  auto own = std::make_shared<radial_boundary>(*this);
+  own->of_ = std::move(side);
+  return own;
+}
+
 std::shared_ptr<const oblique_wall> radial_boundary::oblique(const velocity_set& velocities) const {
   auto wall = of_->oblique(velocities);
   return wall ? std::make_shared<radial_wall>(std::move(wall), radial_, velocities.components()) : nullptr;

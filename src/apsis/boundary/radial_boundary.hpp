@@ -2,6 +2,7 @@
 
 #include <apsis/boundary/boundary.hpp>
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -24,6 +25,7 @@ class radial_boundary final : public boundary {
 
   /// Throws input_error where the condition is not possible at r = const, and as the condition does.
   std::shared_ptr<const boundary> prepared(const face& where, const velocity_set& velocities) const override;
+  std::shared_ptr<const boundary> on_surface(const std::function<double()>& area) const override;
   std::shared_ptr<const oblique_wall> oblique(const velocity_set& velocities) const override;
   std::optional<int> cell_of_ghost(int ghost, int cells) const override;
   void fill(const face& where, double t, const pencil_end& rows) const override;

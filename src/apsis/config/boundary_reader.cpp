@@ -28,11 +28,18 @@ std::vector<std::string> variables_of(const std::string& kind, const model& equa
   return names;
 }
 
-/// A formula in t, the position and `velocity` components of the velocity, a number where it is constant.
+/// A formula in t, the position and the velocity, as far as the variable depends on them; a number where it
+/// is constant.
 face_quantity compile(const std::string& text, const source_place& place, const case_config& config,
-                      const model& equation, int velocity) {
+                      const model& equation, const std::optional<data_variable>& variable) {
+  const int velocity = variable && variable->of_velocity ? equation.velocities().dimensions() : 0;
   const space_time_formula formula(text, place, config.constants, equation.space_dimensions(), velocity);
   if (formula.is_constant()) return formula.at(0.0, {});
+  if (variable && variable->over_surface && !formula.is_uniform())
+    throw input_error(place,
+                      fmt::format("'{}' depends on the position (it belongs to the whole surface); give "
+                                  "a number or a formula in t",
+                                  variable->name));
   return face_quantity(
       [formula](double t, const position& x, const position& v) { return formula.at(t, x, v); });
 }
@@ -60,9 +67,7 @@ std::shared_ptr<const boundary> make_wall(const case_config& config, const model
   for (const auto& [name, formulas] : values)
     for (const auto& formula : formulas) {
       const source_place at = place_of(config, fmt::format("{}.{}", path, name));
-      const bool of_velocity = is_of_velocity(kind, equation, name);
-      compiled[name].push_back(
-          compile(formula, at, config, equation, of_velocity ? equation.velocities().dimensions() : 0));
+      compiled[name].push_back(compile(formula, at, config, equation, variable_of(kind, equation, name)));
     }
   return at_place(place_of_emitter(config, path), [&] { return make_boundary(kind, equation, compiled); });
 }

@@ -27,6 +27,7 @@ space_time_formula::space_time_formula(const std::string& text, const source_pla
   further_ = static_cast<std::size_t>(velocity) + state.size();
   space_ = kind.variables.size() - 1 - further_;
   steady_ = !formula_->uses("t");
+  for (std::size_t k = 1; k <= space_; ++k) uniform_ = uniform_ && !formula_->uses(kind.variables[k]);
 }
 
 space_time_formula::values space_time_formula::arguments(double t, const position& x,

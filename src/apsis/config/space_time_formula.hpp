@@ -28,6 +28,7 @@ class space_time_formula {
   double at_state(double t, const position& x, std::span<const double> state) const;
   bool is_constant() const { return formula_->is_constant(); }  ///< contains no variable
   bool is_steady() const { return steady_; }                    ///< does not contain t
+  bool is_uniform() const { return uniform_; }                  ///< contains no coordinate
 
  private:
   static constexpr std::size_t most_values = 20;  ///< t, x, y, z and the variables of a law
@@ -37,7 +38,7 @@ class space_time_formula {
 
   std::shared_ptr<const expression> formula_;
   std::size_t space_, further_;  ///< numbers of coordinates, and of velocities or variables
-  bool steady_;
+  bool steady_, uniform_ = true;
 };
 
 }  // namespace apsis

@@ -19,11 +19,24 @@ bool begins_with(const std::string& path, const char* head) {
   return path.rfind(head, 0) == 0;
 }
 
+/// The dimension of areas of the case: none on a line, a length in the plane; about an axis those of rings.
+dimension dimension_of_area(const case_text& text) {
+  const raw_value *cells = text.find("space.cells"), *geometry = text.find("space.geometry");
+  const auto* list = cells == nullptr ? nullptr : std::get_if<raw_value::list>(&cells->value);
+  const auto* name = geometry == nullptr ? nullptr : std::get_if<std::string>(&geometry->value);
+  const std::size_t dimensions = list == nullptr ? 1 : list->size();
+  const bool about_axis = name != nullptr && *name == choice_name(geometry_choice::axisymmetric);
+  dimension area = dimensions::none;
+  for (std::size_t k = 1; k < dimensions + (about_axis ? 1 : 0); ++k) area = area * dimensions::length;
+  return area;
+}
+
 /// Dimensions of the variables of [initial] and of boundaries by name.
-std::map<std::string, dimension> measures_of_variables(const model& equation) {
+std::map<std::string, dimension> measures_of_variables(const model& equation, const dimension& area) {
   std::map<std::string, dimension> dims;
-  const auto add = [&dims](const std::vector<data_variable>& variables) {
-    for (const auto& one : variables) dims[one.name] = one.dimension;
+  const auto add = [&](const std::vector<data_variable>& variables) {
+    for (const auto& one : variables)
+      dims[one.name] = one.over_surface ? one.dimension * area : one.dimension;
   };
   for (const auto& form : equation.data_forms()) add(form.variables);
   for (const boundary_entry* kind : boundary_entries()) {
@@ -39,8 +52,10 @@ std::map<std::string, dimension> measures_of_variables(const model& equation) {
 
 class unit_remover {
  public:
-  unit_remover(const model_entry& model, const std::optional<gas_scales>& scales)
-      : model_(model), scales_(scales), variables_(measures_of_variables(prototype(model))) {}
+  unit_remover(const model_entry& model, const std::optional<gas_scales>& scales, const case_text& text)
+      : model_(model),
+        scales_(scales),
+        variables_(measures_of_variables(prototype(model), dimension_of_area(text))) {}
 
   void convert(const std::string& path, raw_value& raw) const {
     if (begins_with(path, "parameters.")) return convert(path, raw, nullptr);
@@ -117,7 +132,7 @@ class unit_remover {
 
 void remove_units(case_text& text, const model_entry& model, const std::optional<gas_scales>& scales) {
   read_profiles(text, scales);
-  const unit_remover remover(model, scales);
+  const unit_remover remover(model, scales, text);
   read_tables_in_time(text, [&](const std::string& path) { return remover.dimension_of(path); }, scales);
   for (auto& [path, raw] : text.values) remover.convert(path, raw);
 }

@@ -19,6 +19,11 @@ struct data_variable {
   apsis::dimension dimension = {};   ///< its dimension in units of a gas (gas_scales.hpp)
   /// Whether it is a function of the velocity too, whose values at all velocities follow each other.
   bool of_velocity = false;
+  /// Name of another variable that may be given in its place; "" if there is none. Neither has a default.
+  std::string alternative = {};
+  /// Whether it is an integral over a whole surface: its area multiplies the dimension, and the value depends
+  /// on t alone.
+  bool over_surface = false;
 };
 
 /// Sources S(t, x, u) of a model in which a row follows from its variables.

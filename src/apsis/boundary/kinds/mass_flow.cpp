@@ -1,11 +1,13 @@
 #include <apsis/boundary/gas_end.hpp>
 #include <apsis/boundary/limited_flow.hpp>
 #include <apsis/boundary/prescribed_state.hpp>
+#include <apsis/core/errors.hpp>
 
 #include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <cstddef>
+#include <functional>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -19,11 +21,16 @@ namespace {
 /// ρ ≥ 0. Gas that enters has the temperature of the boundary and the velocity m/ρ_i along the normal, gas
 /// that leaves temperature and velocity along the face from inside, and m/ρ_i too (index i inside), at most
 /// the speed of sound. In a continuum ρ is then that of the gas inside, without a kinetic layer. An outlet
-/// whose flux exceeds what arrives lets nothing enter.
+/// whose flux exceeds what arrives lets nothing enter. A total flow is the flux m = flow/area through every
+/// face of the surface.
 class mass_flow_end final : public gas_end, public limited_flow {
  public:
-  mass_flow_end(const model& equation, face_quantity flux, face_quantity temperature)
-      : gas_end(equation, "mass-flow"), flux_(std::move(flux)), temperature_(std::move(temperature)) {}
+  /// `is_total`: whether `flow` is that through the whole surface, and not per area.
+  mass_flow_end(const model& equation, face_quantity flow, bool is_total, face_quantity temperature)
+      : gas_end(equation, "mass-flow"),
+        flow_(std::move(flow)),
+        is_total_(is_total),
+        temperature_(std::move(temperature)) {}
 
   std::shared_ptr<const boundary> prepared(const face& where, const velocity_set& velocities) const override {
     auto own = std::make_shared<mass_flow_end>(*this);
@@ -34,12 +41,24 @@ class mass_flow_end final : public gas_end, public limited_flow {
     return own;
   }
 
+  std::shared_ptr<const boundary> on_surface(const std::function<double()>& area) const override {
+    if (!is_total_) return nullptr;
+    auto own = std::make_shared<mass_flow_end>(*this);
+    own->area_ = area();
+    if (!(own->area_ > 0.0))
+      throw input_error(
+          "'total_flow' is given at a side without an open face (bodies or solid boxes cover it); open a "
+          "part "
+          "of it, or choose another boundary");
+    return own;
+  }
+
   bool take_shortfall() const override { return short_->exchange(false); }
 
  private:
   fluid_state outside(const fluid_state& inside, const face& where, double t,
                       const position& at) const override {
-    const double m = flux_.at(t, at), T = temperature_.at(t, at);
+    const double m = flux(t, at), T = temperature_.at(t, at);
     const bool empty = !inside.admissible();
     fluid_state state;
     if (m < 0.0 && !empty) {
@@ -61,13 +80,18 @@ class mass_flow_end final : public gas_end, public limited_flow {
       if (mass_flux_[j] < 0.0) arriving -= mass_flux_[j] * outgoing[j];
       if (mass_flux_[j] > 0.0) entering += mass_flux_[j] * incoming[j];
     }
-    const double needed = flux_.at(t, at) + arriving;
+    const double needed = flux(t, at) + arriving;
     if (needed < 0.0) short_->store(true, std::memory_order_relaxed);
     const double scale = needed > 0.0 && entering > 0.0 ? needed / entering : 0.0;
     for (int k = 0; k < molecules().velocities().components(); ++k) incoming[k] *= scale;
   }
 
-  face_quantity flux_, temperature_;
+  double flux(double t, const position& at) const { return flow_.at(t, at) / area_; }
+
+  face_quantity flow_;
+  bool is_total_;
+  double area_ = 1.0;  ///< of the surface, for a total flow
+  face_quantity temperature_;
   std::vector<double> mass_flux_;             ///< of unit components of the first set; > 0 enters
   std::shared_ptr<std::atomic<bool>> short_;  ///< whether a flux was not reached
 };
@@ -77,20 +101,29 @@ class mass_flow_end final : public gas_end, public limited_flow {
 extern const boundary_entry boundary_mass_flow;
 const boundary_entry boundary_mass_flow = {
     .name = "mass-flow",
-    .description = "inlet or outlet of given mass flux, reached exactly at every face",
+    .description = "inlet or outlet of given mass flux or total mass flow, reached exactly at every face",
     .variables =
         [](const model& equation) {
           maxwellian_form(equation, "mass-flow");
-          return std::vector<data_variable>{{"flux",
-                                             "mass flux into the gas, < 0 where it leaves (dimensionless)",
-                                             1,
-                                             {},
-                                             dimensions::mass_flux},
-                                            {"T", "temperature of the gas that enters, > 0 (dimensionless)",
-                                             1, 1.0, dimensions::temperature}};
+          return std::vector<data_variable>{
+              {.name = "flux",
+               .doc = "mass flux into the gas, < 0 where it leaves (dimensionless)",
+               .dimension = dimensions::mass_flux,
+               .alternative = "total_flow"},
+              {.name = "total_flow",
+               .doc = "mass flow into the gas through the whole side in place of flux (dimensionless)",
+               .dimension = dimensions::mass_flux,
+               .alternative = "flux",
+               .over_surface = true},
+              {.name = "T",
+               .doc = "temperature of the gas that enters, > 0 (dimensionless)",
+               .value = 1.0,
+               .dimension = dimensions::temperature}};
         },
     .make = [](const boundary_source& from) -> std::unique_ptr<boundary> {
-      return std::make_unique<mass_flow_end>(*from.equation, from.values[0], from.values[1]);
+      const bool is_total = from.is_given("total_flow");
+      return std::make_unique<mass_flow_end>(*from.equation, from.values[is_total ? 1 : 0], is_total,
+                                             from.values[2]);
     }};
 
 }  // namespace apsis

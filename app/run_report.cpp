@@ -78,7 +78,7 @@ std::string summary_text(const simulation& run, run_end end, const run_records& 
   for (std::size_t f = 0; f < faces.size() && !names.empty(); ++f) {
     std::vector<std::string> amounts;
     for (std::size_t k = 0; k < names.size(); ++k) {
-      const dimension flux = densities[k] * dimensions::velocity;
+      const dimension flux = dimension_of_integral(densities[k], run.mesh()) / dimensions::time;
       amounts.push_back(fmt::format("{} {:.6g}{}", names[k],
                                     run.last().flux[f * names.size() + k] * units.factor(flux),
                                     units.suffix(flux)));

@@ -68,17 +68,22 @@ numeric_table result_units::convert(numeric_table history, const simulation& run
   return history;
 }
 
+dimension dimension_of_integral(dimension density, const grid& mesh) {
+  for (int k = 0; k < mesh.dimensions_of_integrals(); ++k) density = density * dimensions::length;
+  return density;
+}
+
 std::vector<std::pair<std::string, dimension>> history_dimensions(const simulation& run) {
-  using dimensions::length, dimensions::time;
+  using dimensions::time;
   std::vector<std::pair<std::string, dimension>> all;
   if (!run.config().steady_state.tolerance)
     all = {{"t", time}, {"dt", time}, {"change", dimensions::none / time}};
   const auto names = run.setup().equation->invariants();
   const auto densities = run.setup().equation->invariant_dimensions();
   for (std::size_t k = 0; k < names.size(); ++k) {
-    dimension amount = densities[k];
-    for (int d = 0; d < run.mesh().dimensions_of_integrals(); ++d) amount = amount * length;
+    const dimension amount = dimension_of_integral(densities[k], run.mesh());
     all.emplace_back("total_" + names[k], amount);
+    if (run.config().force.acceleration && k > 0) all.emplace_back("lost_force_" + names[k], amount / time);
     for (const auto& face : run.setup().open_faces()) {
       all.emplace_back("received_" + face + "_" + names[k], amount);
       all.emplace_back("flux_" + face + "_" + names[k], amount / time);

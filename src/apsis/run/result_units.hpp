@@ -1,6 +1,7 @@
 #pragma once
 
 #include <apsis/config/case.hpp>
+#include <apsis/mesh/grid.hpp>
 #include <apsis/output/field_series.hpp>
 #include <apsis/run/simulation.hpp>
 
@@ -37,6 +38,10 @@ class result_units {
   std::optional<gas_scales> scales_;
   dimension of_time_;
 };
+
+/// Returns the dimension of the integral of a density over a mesh: on a line per area, in the plane per
+/// length.
+dimension dimension_of_integral(dimension density, const grid& mesh);
 
 /// Returns the dimensions of the columns of the history that have one, in units of a gas: times, and what is
 /// in the domain and crosses its faces, on a line per area and in the plane per length.

@@ -31,7 +31,10 @@ std::string velocities_text(const run_summary& s, const case_config& c) {
                           units.suffix(dimensions::velocity));
   }
   if (c.force.acceleration)
-    text += fmt::format("; the force moved {:.2g} of the mass into the last ones", s.velocity_held);
+    text += fmt::format(
+        "; the force moved {:.2g} of the mass into the last ones and lost at most {:.2g} of its momentum and "
+        "{:.2g} of its energy",
+        s.velocity_held, s.force_lost_momentum, s.force_lost_energy);
   return text;
 }
 

@@ -4,6 +4,7 @@
 #include <apsis/run/setup.hpp>
 #include <apsis/run/simulation.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -85,6 +86,35 @@ TEST(accelerated_gas, is_a_shifted_maxwellian_without_collisions) {
     return largest;
   };
   EXPECT_NEAR(std::log2(error("40") / error("80")), 5.0, 0.3);
+}
+
+TEST(accelerated_gas, near_the_end_of_the_velocities_reports_what_the_force_does_not_give) {
+  // A stream of u = 2.2 in [−5, 5]: the last velocities have a hundredth of the largest f.
+  const std::vector<std::string> fast = {"initial.u=2.2",   "velocity.max=5",       "velocity.points=40",
+                                         "model.epsilon=1", "force.acceleration=1", "time.end=0.2",
+                                         "time.dt=0.01"};
+  testing::internal::CaptureStderr();
+  simulation run(apsis::parse_case(accelerated_gas, "force.toml", fast));
+  double momentum = 0.0, energy = 0.0, share = 0.0;
+  const auto before = run.initial_record().total;
+  while (!run.finished()) {
+    const auto& at = run.advance();
+    ASSERT_EQ(at.lost.size(), 2U);
+    momentum += at.dt * at.lost[0];
+    energy += at.dt * at.lost[1];
+    share = std::max(share, std::abs(at.lost[0]));
+  }
+  const std::string warnings = testing::internal::GetCapturedStderr();
+  // ρ = 1 and a = 1: the momentum would grow by 0.2.
+  EXPECT_NEAR(run.last().total[1] - before[1] + momentum, 0.2, 1e-12);
+  EXPECT_GT(momentum, 1e-4);
+  EXPECT_GT(energy, momentum);  // lost at velocities above 1
+  EXPECT_NEAR(run.summary().force_lost_momentum, share, 1e-12);
+  const std::string wanted = "the force gives the gas less ";
+  EXPECT_EQ(run.summary().force_lost_momentum > 0.01 || run.summary().force_lost_energy > 0.01,
+            warnings.find(wanted) != std::string::npos)
+      << warnings << run.summary().force_lost_momentum << " " << run.summary().force_lost_energy;
+  EXPECT_LT(run_of({}).summary().force_lost_momentum, 1e-9);
 }
 
 TEST(accelerated_gas, has_balances_to_rounding) {

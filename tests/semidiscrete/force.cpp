@@ -11,6 +11,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <utility>
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -145,6 +146,71 @@ RC_GTEST_PROP(force, gives_momentum_and_energy_to_rounding, ()) {
   // The budget has the same rates, over a domain of length 1, after no face.
   for (std::size_t k = 0; k < rates.size(); ++k)
     RC_ASSERT(std::abs(problem->budget_rates()[k] - rates[k]) <= 1e-12);
+}
+
+TEST(force, loses_what_the_edges_beyond_the_ends_would_give) {
+  // A Maxwellian with u = ±5 in [−7, 7]. Sums over all edges of f̂ give ρ and ρu; those beyond the last and
+  // before the first velocity have no flux. With f = 0 outside they depend on the outermost three or two
+  // values, with the coefficients 2, −13, 47, 27, −3 of the reconstruction.
+  const int n = 24;
+  const double spacing = 14.0 / n;
+  for (const double u : {5.0, -5.0, 0.0})
+    for (const double a : {1.7, -0.6}) {
+      const auto gas = gas_of(1, 3, n);
+      const auto problem = problem_of(*gas, constant({a, 0.0, 0.0}), false);
+      std::vector<double> row(static_cast<std::size_t>(gas->components()));
+      ASSERT_EQ(gas->data_forms().front().row(std::vector<double>{1.3, u, 0.8}, row), "");
+      field state(cells, gas->components());
+      for (int cell = 0; cell < cells; ++cell) std::copy(row.begin(), row.end(), state.row(cell));
+      combined(*problem, state, 0.0, 1.0);
+      // Counted in the direction of the force, with velocities along it.
+      const auto f = [&](int j) { return row[static_cast<std::size_t>(a > 0.0 ? j : n - 1 - j)]; };
+      const auto edge = [&](int j) { return -7.0 + spacing * (j + 1); };  // behind point j
+      const std::vector<std::pair<int, double>> missing = {
+          {n - 1, 47.0 * f(n - 1) - 13.0 * f(n - 2) + 2.0 * f(n - 3)},
+          {n, -13.0 * f(n - 1) + 2.0 * f(n - 2)},
+          {n + 1, 2.0 * f(n - 1)},
+          {-1, 27.0 * f(0) - 3.0 * f(1)},
+          {-2, -3.0 * f(0)}};
+      double momentum = 0.0, energy = 0.0;
+      for (const auto& [j, flux] : missing) {
+        momentum += a * spacing * flux / 60.0;
+        energy += std::abs(a) * spacing * edge(j) * flux / 60.0;
+      }
+      // Behind the rates of mass, momentum and energy: the mass into the last velocity, what is lost, ρ|a|.
+      const auto rates = problem->budget_rates();
+      ASSERT_EQ(rates.size(), 7U);
+      EXPECT_NEAR(rates[4], momentum, 1e-13) << u << a;
+      EXPECT_NEAR(rates[5], energy, 1e-12) << u << a;
+      EXPECT_NEAR(rates[6], 1.3 * std::abs(a), 1e-13);
+      EXPECT_NEAR(rates[1] + rates[4], 1.3 * a, 1e-13);
+      EXPECT_NEAR(rates[2] + rates[5], 1.3 * u * a, 1e-12);
+      if (u * a > 0.0) {
+        EXPECT_GT(std::abs(momentum), 1e-3);
+      }
+      if (u == 0.0) {
+        EXPECT_LT(std::abs(momentum) + std::abs(energy), 1e-7);
+      }
+    }
+}
+
+TEST(force, of_first_order_loses_the_energy_of_its_diffusion) {
+  // f̂ is f at the point before the edge: v there is half a spacing less than at the edge.
+  const auto gas = gas_of(2, 3, 24);
+  const std::array<double, 3> a = {0.7, -0.4, 0.0};
+  const auto problem = problem_of(*gas, constant(a), false, "upwind1");
+  std::vector<double> row(static_cast<std::size_t>(gas->components()));
+  ASSERT_EQ(gas->data_forms().front().row(std::vector<double>{1.3, 0.2, 0.5, 0.8}, row), "");
+  field state(cells, gas->components());
+  for (int cell = 0; cell < cells; ++cell) std::copy(row.begin(), row.end(), state.row(cell));
+  combined(*problem, state, 0.0, 1.0);
+  const auto rates = problem->budget_rates();
+  ASSERT_EQ(rates.size(), 9U);
+  // The last values are 1e-9 of f at rest.
+  EXPECT_NEAR(rates[5], 0.0, 1e-8);
+  EXPECT_NEAR(rates[6], 0.0, 1e-8);
+  EXPECT_NEAR(rates[7], -0.5 * 14.0 / 24.0 * 1.3 * (0.7 + 0.4), 1e-7);
+  EXPECT_NEAR(rates[8], 1.3 * std::hypot(0.7, 0.4), 1e-12);
 }
 
 TEST(force, has_fifth_order_along_velocities) {

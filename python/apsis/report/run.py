@@ -72,6 +72,9 @@ def velocities(manifest: dict[str, Any]) -> str:
         rows.append(["largest velocity that would do", number(numbers["velocity_needed"])])
     if manifest["case"].get("force"):
         rows.append(["share of the mass that the force moved into the last velocities", number(numbers["velocity_held"])])
+        if "force_lost_momentum" in numbers:
+            rows.append(["largest share of its momentum that the force did not give", number(numbers["force_lost_momentum"])])
+            rows.append(["largest share of its energy that the force did not give", number(numbers["force_lost_energy"])])
     return "<h2>Velocities</h2>\n" + table([], rows)
 
 

@@ -6,6 +6,7 @@
 #include <apsis/exec/parallel.hpp>
 #include <apsis/exec/profile.hpp>
 #include <apsis/scheme/row_check.hpp>
+#include <apsis/semidiscrete/force_losses.hpp>
 
 #include <algorithm>
 #include <array>
@@ -36,7 +37,8 @@ monitor::monitor(const run_setup& setup)
       torques_(setup),
       parts_(std::make_unique<per_thread<partial>>()),
       differences_(setup.mesh().size()),
-      velocities_(setup) {}
+      velocities_(setup),
+      losses_(setup.config().force.acceleration ? force_losses::size(equation_.invariants().size()) : 0) {}
 
 monitor::~monitor() = default;
 
@@ -162,6 +164,7 @@ step_record monitor::start(const field& u) {
   if (!equation_.cut_moment().empty()) record.cut = {0.0};
   record.received.assign(ends_.size() * invariants_.size(), 0.0);
   record.flux = record.received;
+  if (!losses_.empty()) record.lost.assign(invariants_.size() - 1, 0.0);
   record.torque = torques_.of({});
   record.min_value = t.lowest;
   record.negative_values = t.negative;
@@ -178,7 +181,9 @@ void monitor::keep_velocities(const totals& t) {
 
 void monitor::watch_velocities(const field& u, const step_record& last, run_summary& summary) {
   if (last.step == 0) return velocities_.start(extremes_, margins_, u, summary);
-  if (held_ > 0.0) velocities_.add_held(held_ / last.total.front(), u, last, summary);
+  if (!losses_.empty() && losses_[force_losses::held] > 0.0)
+    velocities_.add_held(losses_[force_losses::held] / last.total.front(), u, last, summary);
+  if (!losses_.empty()) velocities_.add_lost(u, last, summary);
   velocities_.update(extremes_, margins_, u, last, summary);
 }
 
@@ -199,8 +204,7 @@ step_record monitor::check(const budgeted_state& after, double dt, const step_re
   record.torque = torques_.of(after.budget.amounts());
   for (double& torque : record.torque) torque /= dt;
   std::vector<double> received = received_through_faces(after.budget.amounts());
-  held_ = received.back();
-  received.pop_back();
+  take_losses(received, dt, t, record);
   for (std::size_t k = 0; k < entropy_bounds_.size(); ++k)
     record.entropy_change -= entropy_bounds_[k] * received[k];
   record.received = previous.received;
@@ -212,18 +216,34 @@ step_record monitor::check(const budgeted_state& after, double dt, const step_re
   return record;
 }
 
-/// The sums of the amounts of all ends at each face, [face][invariant], and what a force holds at the ends of
-/// the velocities, which is the last amount.
+/// Takes the losses of a force from the end of what was received.
+void monitor::take_losses(std::vector<double>& received, double dt, const totals& t, step_record& record) {
+  const auto first = received.end() - static_cast<std::ptrdiff_t>(losses_.size());
+  std::copy(first, received.end(), losses_.begin());
+  received.erase(first, received.end());
+  if (losses_.empty()) return;
+  const double drive = losses_.back();
+  double square = 0.0;
+  for (std::size_t k = force_losses::lost; k + 1 < losses_.size(); ++k) {
+    record.lost.push_back(losses_[k] / dt);
+    if (k + 2 < losses_.size()) square += losses_[k] * losses_[k];
+  }
+  if (!(drive > 0.0)) return;
+  const double speed = std::sqrt(2.0 * t.invariants.back() / t.invariants.front());
+  record.lost_share = {std::sqrt(square) / drive, std::abs(record.lost.back() * dt) / (speed * drive)};
+}
+
+/// The sums of the amounts of all ends at each face, [face][invariant], then the losses of a force.
 std::vector<double> monitor::received_through_faces(const std::vector<double>& amounts) const {
   const std::size_t count = invariants_.size();
-  std::vector<exact_sum> sums(ends_.size() * count + 1);
+  std::vector<exact_sum> sums(ends_.size() * count + losses_.size());
   std::size_t first = 0;
   for (std::size_t face = 0; face < ends_.size(); ++face) {
     for (std::size_t k = first; k < std::min(first + ends_[face] * count, amounts.size()); ++k)
       sums[face * count + (k - first) % count].add(amounts[k]);
     first += ends_[face] * count;
   }
-  if (first < amounts.size()) sums.back().add(amounts[first]);
+  for (std::size_t k = first; k < amounts.size(); ++k) sums[ends_.size() * count + k - first].add(amounts[k]);
   return global_values(setup_.processes(), sums);
 }
 

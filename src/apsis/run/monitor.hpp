@@ -59,6 +59,7 @@ class monitor {
   totals sum(const field& u) const;
   std::optional<condition_violation> violation_in(const field& u, const totals& t) const;
   std::vector<double> received_through_faces(const std::vector<double>& amounts) const;
+  void take_losses(std::vector<double>& received, double dt, const totals& t, step_record& record);
   void keep_velocities(const totals& t);
   void compare(const totals& t, const std::vector<double>& before, const std::vector<double>& received,
                step_record& record) const;
@@ -76,7 +77,7 @@ class monitor {
   velocity_watch velocities_;
   velocity_extremes extremes_;  ///< of the last state
   velocity_margins margins_;    ///< of all processes
-  double held_ = 0.0;           ///< mass held at the ends of the velocities in the last step
+  std::vector<double> losses_;  ///< force_losses in the last step; empty without force
 };
 
 }  // namespace apsis

@@ -28,7 +28,7 @@ struct row_writer {
 };
 
 /// Appends the names of the columns of a record; those of a vector are NAME_INVARIANT, NAME_FACE_INVARIANT,
-/// cut_MOMENT, or those of torque_columns().
+/// cut_MOMENT, lost_force_INVARIANT, or those of torque_columns().
 struct column_writer {
   const std::vector<std::string>&invariants, &faces, &torques;
   const std::string cut_moment;
@@ -54,6 +54,12 @@ struct column_writer {
       return;
     }
     if (head == "conservation" || head == "total") return add(head);
+    if (head == "lost") {
+      const auto force = std::find(faces.begin(), faces.end(), "force");
+      for (std::size_t k = 1; k < invariants.size() && force != faces.end(); ++k)
+        columns.push_back("lost_force_" + invariants[k]);
+      return;
+    }
     for (const auto& face : faces) add(fmt::format("{}_{}", head, face));
   }
   void add(const std::string& head) const {

@@ -5,6 +5,7 @@
 #include <apsis/integrate/integrate.hpp>
 #include <apsis/steady/negative_values.hpp>
 
+#include <array>
 #include <limits>
 #include <optional>
 #include <string>
@@ -47,13 +48,19 @@ struct step_record {
   /// Amounts of the invariants that the gas received through each face since the start, [face][invariant];
   /// on a line per area, in the plane per length.
   std::vector<double> received;
-  std::vector<double> flux;    ///< the same per unit of time, in the mean over the step
+  std::vector<double> flux;  ///< the same per unit of time, in the mean over the step
+  /// Per unit of time, what a force did not give in the mean over the step: ∫(ρa − given) of the components
+  /// of the momentum, ∫(ρu·a − given) of the energy; empty without force.
+  std::vector<double> lost;
   std::vector<double> torque;  ///< on the loaded_bodies(), body_load::torque of each; empty without
   /// |I − I₀ − received| of this step alone, relative to the same scales; not among the members that are
   /// kept.
   std::vector<double> defect_of_step = {};
   std::optional<condition_violation> violation = {};  ///< not kept either
-  removed_values removed = {};                        ///< steady_iteration::removed; not kept
+  /// |lost momentum|/∫ρ|a|, and |lost energy|/(c ∫ρ|a|) with the speed c = √(2E/M) of mass M and energy E;
+  /// not kept.
+  std::array<double, 2> lost_share = {};
+  removed_values removed = {};  ///< steady_iteration::removed; not kept
   /// Σ_cells |ρ^n − ρ^{n−1}| of the last invariant, relative to its scale; not kept.
   double density_change = 0.0;
   /// Σ_cells |ρ^n − 2ρ^{n−1} + ρ^{n−2}| of the same invariant, relative to the same scale; not kept.
@@ -76,6 +83,7 @@ struct step_record {
     visit("total", self.total);
     visit("received", self.received);
     visit("flux", self.flux);
+    visit("lost", self.lost);
     visit("torque", self.torque);
   }
 };
@@ -104,6 +112,8 @@ struct run_summary {
       velocity_missed = 0.0,                    ///< largest velocity_fit::missed; 0 if every cell was safe
       velocity_needed = 0.0;                    ///< largest velocity that would do; 0 if the room is enough
   double velocity_held = 0.0;  ///< mass that a force moved into the last velocities, relative to the mass
+  double force_lost_momentum = 0.0,  ///< largest step_record::lost_share
+      force_lost_energy = 0.0;       ///< the same of the energy
   double cpu_s = 0.0;  ///< CPU time of the calling thread in steps since the start or the last restart
 
   /// Calls visit(name, member) for every member of `self` that belongs to the result, in the order of the
@@ -129,6 +139,8 @@ struct run_summary {
     visit("velocity_missed", self.velocity_missed);
     visit("velocity_needed", self.velocity_needed);
     visit("velocity_held", self.velocity_held);
+    visit("force_lost_momentum", self.force_lost_momentum);
+    visit("force_lost_energy", self.force_lost_energy);
   }
 };
 

@@ -171,6 +171,25 @@ void velocity_watch::add_held(double share, const field& u, const step_record& a
                   totals.velocity_held, at.t, needed));
 }
 
+void velocity_watch::add_lost(const field& u, const step_record& at, run_summary& totals) {
+  constexpr double much = 0.01;
+  const auto [momentum, energy] = at.lost_share;
+  const bool iterates = setup_.config().steady_state.tolerance.has_value();
+  totals.force_lost_momentum = iterates ? momentum : std::max(totals.force_lost_momentum, momentum);
+  totals.force_lost_energy = iterates ? energy : std::max(totals.force_lost_energy, energy);
+  // Fluxes of first order diffuse f along v, which heats the gas at any range of velocities.
+  const bool of_energy = energy > momentum && !setup_.builder().first_order();
+  const double share = of_energy ? energy : momentum;
+  if (warned_of_loss_ || !(share > much)) return;
+  warned_of_loss_ = true;
+  const double needed = velocity_that_would_do(u, at);
+  log::warning(fmt::format(
+      "the force gives the gas less {} than it should (by a fraction {:.2g} at t = {:.6g}: f does "
+      "not vanish at the ends of the velocity grid, or its fluxes are limited); give "
+      "velocity.max = {:.3g} or more, or more velocity.points",
+      of_energy ? "energy" : "momentum", share, at.t, needed));
+}
+
 /// The largest velocity that the gas needs now, and where its streams come to rest: relative to walls, or
 /// without walls relative to the mean velocity, where a force may also accelerate it until the end.
 double velocity_watch::velocity_that_would_do(const field& u, const step_record& at) const {

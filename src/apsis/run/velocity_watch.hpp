@@ -52,6 +52,9 @@ class velocity_watch {
   /// Adds a share of the mass that a force moved into the last velocities in a step. Warns when it exceeds
   /// one percent. Collective.
   void add_held(double share, const field& u, const step_record& at, run_summary& totals) const;
+  /// Enters step_record::lost_share into the totals, which are those of the last iteration to a steady state.
+  /// Warns once when one of them exceeds one percent, of the energy only above first order. Collective.
+  void add_lost(const field& u, const step_record& at, run_summary& totals);
 
  private:
   struct candidate {
@@ -72,7 +75,7 @@ class velocity_watch {
   std::vector<double> epsilon_;  ///< of the cells of this process
   double volume_ = 1.0;          ///< of the gas
   double least_density_ = 0.0;
-  bool warned_of_ends_ = false, warned_of_spacing_ = false;
+  bool warned_of_ends_ = false, warned_of_spacing_ = false, warned_of_loss_ = false;
 };
 
 /// The cell of all processes whose Maxwellian the velocities miss most.

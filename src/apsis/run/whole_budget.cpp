@@ -1,6 +1,7 @@
 #include <apsis/run/whole_budget.hpp>
 
 #include <apsis/exec/global_sum.hpp>
+#include <apsis/semidiscrete/force_losses.hpp>
 
 #include <algorithm>
 #include <cstddef>
@@ -42,11 +43,11 @@ std::vector<std::size_t> places_of(const run_setup& setup) {
 }
 
 /// Force, rotation of axisymmetric flow and source have one set of totals each, after those of the ends, and
-/// a force what it holds at the ends of the velocities.
+/// a force its losses at the ends of the velocities.
 std::size_t size_of_totals(const run_setup& setup) {
   return (setup.open_faces().size() - setup.builder().space().budget_surfaces().size()) *
              setup.equation->invariants().size() +
-         (setup.config().force.acceleration ? 1 : 0);
+         (setup.config().force.acceleration ? force_losses::size(setup.equation->invariants().size()) : 0);
 }
 
 }  // namespace

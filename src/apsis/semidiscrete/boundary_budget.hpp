@@ -9,9 +9,8 @@ namespace apsis {
 /// Amounts of the invariants that a state has received through its surfaces, from a force, from the rotation
 /// of axisymmetric flow and from a source.
 /// Layout: [surface][end][invariant] over every end of a segment at a surface, in the order of
-/// domain::budget_surfaces(), then the totals of a force, of the rotation and of a source, then the mass that
-/// a force holds at the ends of the velocities. Empty where nothing was received; an empty budget counts as
-/// zeros.
+/// domain::budget_surfaces(), then the totals of a force, of the rotation and of a source, then the
+/// force_losses. Empty where nothing was received; an empty budget counts as zeros.
 class boundary_budget {
  public:
   boundary_budget() = default;

@@ -5,6 +5,7 @@
 #include <apsis/exec/profile.hpp>
 #include <apsis/scheme/limiter.hpp>
 #include <apsis/semidiscrete/block_sweep.hpp>
+#include <apsis/semidiscrete/force_losses.hpp>
 #include <apsis/semidiscrete/global_integrals.hpp>
 
 #include <algorithm>
@@ -69,8 +70,9 @@ force::force(const model& equation, std::shared_ptr<domain> space, acceleration 
     if (!(bound >= 0.0) || std::isinf(bound))
       throw input_error(
           fmt::format("the largest acceleration is {} (a finite number is needed); change it", bound));
-  of_cells_.resize(size(space_->mesh().size()) * (invariants_ + 1));
+  of_cells_.resize(size(space_->mesh().size()) * (invariants_ + force_losses::size(invariants_)));
   given_.resize(invariants_);
+  losses_.resize(force_losses::size(invariants_));
 }
 
 double force::rate() const {
@@ -106,9 +108,10 @@ void force::add(double t, const field& u, std::span<const target<field, double>>
       });
     });
   });
-  given_ = global_integrals(*space_, of_cells_, invariants_ + 1);
-  held_ = given_.back();
-  given_.pop_back();
+  const std::vector<double> all = global_integrals(*space_, of_cells_, invariants_ + losses_.size());
+  const auto first_loss = all.begin() + static_cast<std::ptrdiff_t>(invariants_);
+  std::copy(all.begin(), first_loss, given_.begin());
+  std::copy(first_loss, all.end(), losses_.begin());
   failure.rethrow();
 }
 
@@ -127,7 +130,7 @@ std::array<double, 3> force::acceleration_in(double t, int cell) const {
 void force::add_cell(double t, const field& u, std::span<const target<field, double>> targets, int cell,
                      workspace& here) const {
   const auto a = acceleration_in(t, cell);
-  double* sums = of_cells_.data() + static_cast<std::size_t>(cell) * (invariants_ + 1);
+  double* sums = of_cells_.data() + size(cell) * (invariants_ + losses_.size());
   double held = 0.0;
   bool fresh = true;
   for (std::size_t direction = 0; direction < lattice_.points.size(); ++direction) {
@@ -136,13 +139,30 @@ void force::add_cell(double t, const field& u, std::span<const target<field, dou
     fresh = false;
   }
   if (fresh) {
-    std::fill_n(sums, invariants_ + 1, 0.0);
+    std::fill_n(sums, invariants_ + losses_.size(), 0.0);
     return;
   }
   equation_.invariant_densities(here.sum.data(), sums);
-  sums[invariants_] = held;
+  set_losses(u.row(cell), a, held, sums);
   for (const auto& to : targets)
     lattice_rows::add(here.sum.data(), to.beta, u.components(), to.acc->row(cell));
+}
+
+/// Sets the losses behind the invariants that were given to a cell: mass, momentum and energy of a gas.
+void force::set_losses(const double* row, const std::array<double, 3>& a, double held, double* sums) const {
+  double* losses = sums + invariants_;
+  // First the densities, the mass in the place of what is held.
+  equation_.invariant_densities(row, losses);
+  const double mass = losses[force_losses::held];
+  double power = 0.0, square = 0.0;
+  for (std::size_t k = 0; k < lattice_.points.size(); ++k) {
+    power += losses[force_losses::lost + k] * a[k];
+    square += a[k] * a[k];
+    losses[force_losses::lost + k] = mass * a[k] - sums[1 + k];
+  }
+  losses[force_losses::held] = held;
+  losses[invariants_ - 1] = power - sums[invariants_ - 1];
+  losses[invariants_] = mass * std::sqrt(square);
 }
 
 /// Adds −a ∂f/∂v along one direction to the sum, or sets it; returns the mass that enters the last points.

@@ -20,7 +20,7 @@ namespace apsis {
 /// upwind reconstruction along v, no flux through the ends of the lattice, and limited fluxes where
 /// positivity is kept (limited_reconstruction). The sums of the reconstruction make the discrete force give
 /// the momentum ρa and the energy ρu·a per unit of time, to rounding, but for limited fluxes and molecules at
-/// the ends of the lattice. Dimensionless.
+/// the ends of the lattice. losses() measures the difference. Dimensionless.
 class force {
  public:
   /// `equation` must outlive the object. Throws input_error if its velocities are no lattice of at least five
@@ -35,9 +35,9 @@ class force {
   void add(double t, const field& u, std::span<const target<field, double>> targets) const;
   /// Returns the invariants that the last add() gave per unit of time and β.
   const std::vector<double>& given() const { return given_; }
-  /// Returns the mass per unit of time and β that entered the last points of the lattice in the last add(),
-  /// in the direction of the force: it cannot leave.
-  double held() const { return held_; }
+  /// Returns what the ends of the lattice changed in the last add(), per unit of time and β, in the layout of
+  /// force_losses.
+  const std::vector<double>& losses() const { return losses_; }
   /// Returns the rate 1/Δt_FE of the force alone: Σ_k |a_k|/Δv with the bounds, and 12 times that where
   /// fluxes are limited. Between neighbouring velocities f may differ by powers of ten, so that limiting
   /// fluxes for steps up to Δv/|a| would cost accuracy. A force is weak beside the motion through cells, so
@@ -50,6 +50,7 @@ class force {
   struct workspace;
   lattice_rows::layout layout_along(std::size_t direction) const;
   std::array<double, 3> acceleration_in(double t, int cell) const;
+  void set_losses(const double* row, const std::array<double, 3>& a, double held, double* sums) const;
   void add_cell(double t, const field& u, std::span<const target<field, double>> targets, int cell,
                 workspace& here) const;
   double add_direction(const double* row, std::size_t direction, double a, bool fresh, workspace& here) const;
@@ -63,9 +64,8 @@ class force {
   double share_ = 1.0;  ///< that the limiter is for
   bool fifth_order_;
   std::size_t invariants_;
-  mutable std::vector<double> of_cells_;  ///< invariants given to a cell, and mass into the last points
-  mutable std::vector<double> given_;
-  mutable double held_ = 0.0;
+  mutable std::vector<double> of_cells_;  ///< invariants given to a cell, and its losses
+  mutable std::vector<double> given_, losses_;
   std::unique_ptr<per_thread<workspace>> workspaces_;
 };
 

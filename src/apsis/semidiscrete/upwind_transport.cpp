@@ -166,7 +166,7 @@ void upwind_transport::add_inside(double t, const field& u, targets_view targets
     failure.run([&] { source_->add(t, u, targets); });
     given.insert(given.end(), source_->given().begin(), source_->given().end());
   }
-  if (force_) given.push_back(force_->held());
+  if (force_) given.insert(given.end(), force_->losses().begin(), force_->losses().end());
   failure.rethrow();
   // One process keeps what all have received together.
   if (!space_->processes().is_root()) std::fill(given.begin(), given.end(), 0.0);

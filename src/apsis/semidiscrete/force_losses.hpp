@@ -1,0 +1,22 @@
+#pragma once
+
+#include <cstddef>
+
+namespace apsis {
+
+/// Losses of a force at the ends of the velocities and by limited fluxes, among the amounts of a
+/// boundary_budget. Layout, with N invariants of a gas:
+///     held       mass that entered the last velocities in the direction of the force, which it cannot leave
+///     lost       ∫(ρa − given) of the N − 2 components of the momentum, ∫(ρu·a − given) of the energy
+///     drive      ∫ρ|a|
+namespace force_losses {
+
+inline constexpr std::size_t held = 0,  ///< place of the mass
+    lost = 1;                           ///< place of the first component of the momentum
+/// Returns the number of amounts; the last one is the drive.
+constexpr std::size_t size(std::size_t invariants) {
+  return invariants + 1;
+}
+
+}  // namespace force_losses
+}  // namespace apsis

@@ -4,6 +4,7 @@
 #include <apsis/model/model_registry.hpp>
 #include <apsis/model/velocity_support.hpp>
 #include <apsis/run/body_loads.hpp>
+#include <apsis/run/found_walls.hpp>
 #include <apsis/run/result_units.hpp>
 #include <apsis/run/setup.hpp>
 
@@ -98,6 +99,12 @@ std::string summary_text(const simulation& run, run_end end, const run_records& 
           coefficients.push_back(fmt::format("{} {:.6g}", one.name, one.value));
       line("coefficients", fmt::format("{} ({})", fmt::join(coefficients, ", "), body.name));
     }
+  const auto walls = found_walls(run.setup());
+  for (std::size_t k = 0; k < walls.size(); ++k)
+    line("wall temperature",
+         fmt::format("{:.6g}{} in the mean ({})",
+                     run.last().wall_temperature.at(k) * units.factor(dimensions::temperature),
+                     units.suffix(dimensions::temperature), walls[k].name));
   if (!iterates && !std::isnan(run.initial_record().entropy))
     line("max entropy increase", fmt::format("{:.2e}", s.max_entropy_increase));
   if (std::isfinite(s.velocity_room)) line("velocities", velocities_text(s, c));

@@ -72,6 +72,10 @@ class domain : public construction_count<domain> {
   const std::shared_ptr<const boundary>& solid_boundary(int solid) const {
     return solids_[static_cast<std::size_t>(solid)];
   }
+  /// Returns the boundary at a budget surface: that of its face as prepared, of a solid box or body as given.
+  const boundary& boundary_at(const budget_surface& one) const {
+    return one.solid < 0 ? *side(one.surfaces.front()) : *solid_boundary(one.solid);
+  }
   /// Returns the point at which a segment meets a surface.
   position meeting_point(int surface, int place) const;
   /// Returns the cell in front of a surface: local if segment::ends_here(), otherwise possibly of another
@@ -142,11 +146,11 @@ class domain : public construction_count<domain> {
 
   void set_sides(const std::vector<faces>& sides, const std::vector<std::shared_ptr<const boundary>>& solids);
   void add_cut_ends();
+  double open_area(const budget_surface& one) const;
   bool repeats(int surface) const;
   /// Number of rows inside that a boundary may read.
   int rows_inside() const { return std::max(width_, 3); }
   int pencil_of(int direction, const segment& one) const;
-  double open_area(const budget_surface& one) const;
   int visible(int direction, const segment& one, bool upper) const;
   const double* inside_row(const field& u, int direction, const segment& one, bool upper, int cell) const;
   const double* ghost_row(const field& u, int direction, int segment, bool upper, int ghost) const;

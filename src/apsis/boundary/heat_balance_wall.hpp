@@ -32,6 +32,7 @@ class heat_balance_wall : public incoming_boundary, public wall_temperature {
   /// as where f has a few values ≠ 0, such a wall re-emits all of it.
   std::shared_ptr<const oblique_wall> oblique(const velocity_set& velocities) const final;
   std::array<double, 3> wall_velocity(double t, const position& at) const final;
+  bool follows_from_gas() const final { return true; }
   /// Throws as incoming() does. Nothing where nothing is re-emitted.
   std::optional<double> temperature(const wall_point& where, const velocity_set& velocities,
                                     const arriving_gas& arriving) const final;

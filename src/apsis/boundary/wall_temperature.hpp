@@ -19,6 +19,8 @@ struct arriving_gas {
 class wall_temperature {
  public:
   virtual ~wall_temperature() = default;
+  /// Whether the temperature is found from what arrives; the alternative, the default, is that it is given.
+  virtual bool follows_from_gas() const { return false; }
   /// Returns T_w at a point of a face or of a wall with any normal, given what arrives; nothing where it has
   /// no effect. Throws as the wall does when it emits.
   virtual std::optional<double> temperature(const wall_point& where, const velocity_set& velocities,

@@ -66,7 +66,7 @@ class surface_writer {
 
   surface_table table(const std::string& name, const budget_surface& one, std::size_t first) const {
     surface_table table = with_columns(name);
-    of_walls_.add_name(table, boundary_of(one));
+    of_walls_.add_name(table, &space_.boundary_at(one));
     for (const int number : one.surfaces)
       for (std::size_t place = 0; place < space_.surfaces()[at(number)].segments.size(); ++place) {
         table.faces.push_back(face_names[face_beside(space_.surfaces()[at(number)]).index()]);
@@ -140,7 +140,7 @@ class surface_writer {
     std::vector<double> row = place_and_fluxes(s, one.middle, normal_at(of.where), area, given);
     const int side = static_cast<int>(of.where.index());
     loads_.add_values(row, given, of.where, space_.side(side)->wall_velocity(middle_of_step(), one.middle));
-    add_state(row, first, boundary_of(of), normal_at(of.where), one.middle);
+    add_state(row, first, &space_.boundary_at(of), normal_at(of.where), one.middle);
     return row;
   }
 
@@ -151,7 +151,7 @@ class surface_writer {
     const auto given = fluxes_at(first, area);
     std::vector<double> row = place_and_fluxes(0.0, one.middle, one.normal, area, given);
     loads_.add_values(row, given, one.normal, wall.velocity({one.normal, one.middle, middle_of_step()}));
-    add_state(row, first, boundary_of(of), one.normal, one.middle);
+    add_state(row, first, &space_.boundary_at(of), one.normal, one.middle);
     return row;
   }
 
@@ -168,12 +168,6 @@ class surface_writer {
       given.push_back(last_.received.empty() ? std::numeric_limits<double>::quiet_NaN()
                                              : (0.0 - last_.received[k]) / (area * last_.dt));
     return given;
-  }
-
-  /// Returns the boundary of a surface.
-  const boundary* boundary_of(const budget_surface& one) const {
-    return one.solid < 0 ? space_.side(static_cast<int>(one.where.index()))
-                         : space_.solid_boundary(one.solid).get();
   }
 
   /// Adds the state at the end whose amounts begin at `first`, what arrives there and leaves, and the

@@ -6,6 +6,7 @@
 #include <apsis/model/model_registry.hpp>
 #include <apsis/output/provenance.hpp>
 #include <apsis/run/body_loads.hpp>
+#include <apsis/run/found_walls.hpp>
 #include <apsis/run/result_units.hpp>
 
 #include <cmath>
@@ -91,6 +92,17 @@ void add_bodies(json& out, const simulation& run) {
   }
 }
 
+/// Adds the mean temperatures of walls that find them, at bodies and at sides of the domain.
+void add_wall_temperatures(json& out, const simulation& run) {
+  const double kelvin = result_units(run.config()).factor(dimensions::temperature);
+  const auto walls = found_walls(run.setup());
+  for (std::size_t k = 0; k < walls.size(); ++k) {
+    const double T = run.last().wall_temperature.at(k) * kelvin;
+    out[walls[k].is_side ? "sides" : "bodies"][walls[k].name]["T_w"] =
+        std::isfinite(T) ? json(T) : json(nullptr);
+  }
+}
+
 /// Adds the scales of a gas, and the units of history and fields if they have any.
 void add_units(json& out, const simulation& run) {
   const auto& scales = run.config().scales;
@@ -142,6 +154,7 @@ json to_json(const simulation& run, const run_records& records) {
   add_iterations(out, run);
   add_steady(out, run, estimate_steady_state(records.history()));
   add_bodies(out, run);
+  add_wall_temperatures(out, run);
   json fields = json::object();
   const field_series series = result_units(run.config()).convert(records.fields());
   for (const auto& axis : series.axes) fields[axis.name] = axis.centres;
@@ -172,6 +185,7 @@ json manifest(const simulation& run, const session_record& session) {
   add_iterations(out["result"], run);
   add_steady(out["result"], run, session.steady);
   add_bodies(out["result"], run);
+  add_wall_temperatures(out["result"], run);
   add_units(out, run);
   out["build"] = build_info();
   out["machine"] = machine_info();

@@ -5,6 +5,7 @@
 #include <apsis/core/version.hpp>
 #include <apsis/run/body_loads.hpp>
 #include <apsis/run/distribution_rows.hpp>
+#include <apsis/run/found_walls.hpp>
 #include <apsis/run/result_units.hpp>
 #include <apsis/run/setup.hpp>
 #include <apsis/run/wall_outlines.hpp>
@@ -28,9 +29,9 @@ struct row_writer {
 };
 
 /// Appends the names of the columns of a record; those of a vector are NAME_INVARIANT, NAME_FACE_INVARIANT,
-/// cut_MOMENT, lost_force_INVARIANT, or those of torque_columns().
+/// cut_MOMENT, lost_force_INVARIANT, or those of torque_columns() and temperature_columns().
 struct column_writer {
-  const std::vector<std::string>&invariants, &faces, &torques;
+  const std::vector<std::string>&invariants, &faces, &torques, &walls;
   const std::string cut_moment;
   const bool steady;
   std::vector<std::string>& columns;
@@ -51,6 +52,10 @@ struct column_writer {
     }
     if (head == "torque") {
       columns.insert(columns.end(), torques.begin(), torques.end());
+      return;
+    }
+    if (head == "T_w") {
+      columns.insert(columns.end(), walls.begin(), walls.end());
       return;
     }
     if (head == "conservation" || head == "total") return add(head);
@@ -141,11 +146,13 @@ struct number_reader {
 
 std::vector<std::string> history_columns(const simulation& run) {
   const std::vector<std::string> invariants = run.setup().equation->invariants(),
-                                 faces = run.setup().open_faces(), torques = torque_columns(run.setup());
+                                 faces = run.setup().open_faces(), torques = torque_columns(run.setup()),
+                                 walls = temperature_columns(run.setup());
   std::vector<std::string> columns;
-  step_record::visit_members(run.initial_record(),
-                             column_writer{invariants, faces, torques, run.setup().equation->cut_moment(),
-                                           run.config().steady_state.tolerance.has_value(), columns});
+  step_record::visit_members(
+      run.initial_record(),
+      column_writer{invariants, faces, torques, walls, run.setup().equation->cut_moment(),
+                    run.config().steady_state.tolerance.has_value(), columns});
   return columns;
 }
 

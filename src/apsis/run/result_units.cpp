@@ -1,6 +1,7 @@
 #include <apsis/run/result_units.hpp>
 
 #include <apsis/run/body_loads.hpp>
+#include <apsis/run/found_walls.hpp>
 #include <apsis/run/setup.hpp>
 
 #include <algorithm>
@@ -89,6 +90,8 @@ std::vector<std::pair<std::string, dimension>> history_dimensions(const simulati
       all.emplace_back("flux_" + face + "_" + names[k], amount / time);
     }
   }
+  for (auto& column : temperature_columns(run.setup()))
+    all.emplace_back(std::move(column), dimensions::temperature);
   for (auto& one : load_dimensions(run)) all.push_back(std::move(one));
   return all;
 }

@@ -52,7 +52,8 @@ struct step_record {
   /// Per unit of time, what a force did not give in the mean over the step: ∫(ρa − given) of the components
   /// of the momentum, ∫(ρu·a − given) of the energy; empty without force.
   std::vector<double> lost;
-  std::vector<double> torque;  ///< on the loaded_bodies(), body_load::torque of each; empty without
+  std::vector<double> torque;            ///< on the loaded_bodies(), body_load::torque of each; empty without
+  std::vector<double> wall_temperature;  ///< of found_walls(), their means after the step; empty without
   /// |I − I₀ − received| of this step alone, relative to the same scales; not among the members that are
   /// kept.
   std::vector<double> defect_of_step = {};
@@ -85,6 +86,7 @@ struct step_record {
     visit("flux", self.flux);
     visit("lost", self.lost);
     visit("torque", self.torque);
+    visit("T_w", self.wall_temperature);
   }
 };
 

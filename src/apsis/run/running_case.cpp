@@ -25,6 +25,7 @@ running_case::running_case(std::unique_ptr<run_setup> prepared, const state_sour
       problem(problem_of(setup)),
       watch(setup),
       flows(setup),
+      walls(setup),
       rounding(rounding_of(setup)),
       now{start ? start(setup) : setup.initial_state(), {}},
       march(times_of(setup)) {}

@@ -4,6 +4,7 @@
 #include <apsis/integrate/integrate.hpp>
 #include <apsis/mesh/field.hpp>
 #include <apsis/run/flow_watch.hpp>
+#include <apsis/run/internal/wall_temperatures.hpp>
 #include <apsis/run/monitor.hpp>
 #include <apsis/run/rounding.hpp>
 #include <apsis/run/run_promises.hpp>
@@ -37,6 +38,7 @@ struct running_case {
   std::unique_ptr<semidiscrete_problem> problem;  ///< T and Q
   monitor watch;                                  ///< of every step
   flow_watch flows;                               ///< of its stages
+  wall_temperatures walls;                        ///< after every step
   rounding_bound rounding;                        ///< of the sums of a step
   budgeted_state now;                             ///< the state, and the budget of the present step
   field& state = now.unknowns;                    ///< its unknowns

@@ -14,6 +14,7 @@
 
 #include <array>
 #include <chrono>
+#include <optional>
 #include <span>
 #include <utility>
 
@@ -29,20 +30,34 @@ struct simulation::impl {
       : run(std::move(prepared), start), progress(make_progression(run)) {
     run.start_records();
     progress->start();
+    record_walls();
+    run.first.wall_temperature = run.last.wall_temperature;
   }
 
-  /// face_fluxes::observed() at the ends of the whole mesh; nothing where a step failed, or a boundary has no
+  /// face_fluxes::observed() at the ends of this process; nothing where a step failed, or a boundary has no
   /// condition for the state.
-  std::vector<double> observe_surfaces() {
-    if (inside_step) return {};
-    std::vector<double> own;
+  std::optional<std::vector<double>> observe_surfaces() {
+    if (inside_step) return std::nullopt;
     try {
-      own = run.problem->observe_surfaces(run.march.t(), run.state);
+      return run.problem->observe_surfaces(run.march.t(), run.state);
     } catch (const error&) {
-      return {};
+      return std::nullopt;
     }
-    return whole_ends(run.setup, own,
+  }
+
+  /// The same at the ends of the whole mesh.
+  std::vector<double> observe_all_surfaces() {
+    const auto own = observe_surfaces();
+    if (!own) return {};
+    return whole_ends(run.setup, *own,
                       face_fluxes::observed_moments * run.setup.equation->invariants().size());
+  }
+
+  /// Enters the temperatures of walls into the last record.
+  void record_walls() {
+    if (run.walls.size() > 0)
+      run.last.wall_temperature =
+          run.walls.of(run.march.t(), observe_surfaces().value_or(std::vector<double>{}));
   }
 
   running_case run;
@@ -121,6 +136,7 @@ const step_record& simulation::advance() {
   impl_->inside_step = true;
   impl_->progress->advance();
   impl_->inside_step = false;
+  impl_->record_walls();
   run.totals.wall_s += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   run.totals.cpu_s += thread_seconds() - cpu;
   impl_->progress->check();
@@ -160,7 +176,7 @@ field_table simulation::fields() const {
 std::vector<surface_table> simulation::surfaces() const {
   if (config().output.surfaces.empty()) return {};
   const std::vector<double> budget = whole_budget(impl_->run.setup, impl_->run.budget),
-                            observed = impl_->observe_surfaces();
+                            observed = impl_->observe_all_surfaces();
   if (!processes().is_root()) return {};
   return compute_surfaces(impl_->run.setup, {t(), last().dt, budget, observed});
 }

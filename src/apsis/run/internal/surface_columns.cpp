@@ -157,15 +157,17 @@ void wall_temperature_column::add_name(surface_table& table, const boundary* sid
 
 void wall_temperature_column::add_value(std::vector<double>& row, const boundary* side,
                                         const wall_point& where, std::span<const double> arriving) const {
+  if (of(side) != nullptr)
+    row.push_back(value(side, where, arriving).value_or(std::numeric_limits<double>::quiet_NaN()));
+}
+
+std::optional<double> wall_temperature_column::value(const boundary* side, const wall_point& where,
+                                                     std::span<const double> arriving) const {
   const wall_temperature* wall = of(side);
-  if (wall == nullptr) return;
-  std::optional<double> found;
-  if (!arriving.empty()) {
-    arriving_gas gas{arriving[*mass_], {}, arriving[*energy_]};
-    for (std::size_t k = 0; k < momenta_.size(); ++k) gas.momentum[k] = arriving[momenta_[k]];
-    found = wall->temperature(where, equation_.velocities(), gas);
-  }
-  row.push_back(found.value_or(std::numeric_limits<double>::quiet_NaN()));
+  if (wall == nullptr || arriving.empty()) return std::nullopt;
+  arriving_gas gas{arriving[*mass_], {}, arriving[*energy_]};
+  for (std::size_t k = 0; k < momenta_.size(); ++k) gas.momentum[k] = arriving[momenta_[k]];
+  return wall->temperature(where, equation_.velocities(), gas);
 }
 
 }  // namespace apsis

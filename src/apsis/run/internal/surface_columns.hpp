@@ -96,6 +96,10 @@ class wall_temperature_column {
   void add_value(std::vector<double>& row, const boundary* side, const wall_point& where,
                  std::span<const double> arriving) const;
 
+  /// Returns this value; nothing in place of NaN, and for a boundary without a temperature.
+  std::optional<double> value(const boundary* side, const wall_point& where,
+                              std::span<const double> arriving) const;
+
  private:
   const wall_temperature* of(const boundary* side) const;
 

@@ -71,7 +71,7 @@ action define(CLI::App& command) {
                      "from the one with most cells");
   command.add_option(
       "--slice", given->slice,
-      "of a result in space: the plane AXIS=PLACE, z=0.5, in place of those through the middle");
+      "of a result in space: the plane AXIS=PLACE, z=0.5, in place of those in the middle or of symmetry");
   command.add_flag("--frames", given->frames,
                    "also every snapshot as frame-NUMBER, with one range of colours, for an animation");
   return [given] { return plot(*given); };

@@ -1,4 +1,5 @@
 """Content of the pictures of runs in two and three dimensions, from results with known numbers."""
+from dataclasses import replace
 from types import SimpleNamespace
 
 import apsis
@@ -7,7 +8,7 @@ import pytest
 from apsis.plot import __main__ as command
 from apsis.plot import comparison_figure, fields_figure, history_figure, read_result
 from apsis.plot.comparison import differences
-from apsis.plot.maps import Plane, colours_of, draw_streamlines, frames
+from apsis.plot.maps import Plane, colours_of, draw_streamlines, frames, planes_of
 from apsis.plot.probes import probe_comparisons, probe_figures
 from apsis.plot.style import PictureError, plt
 
@@ -199,6 +200,20 @@ def test_space_is_drawn_on_planes_through_the_middle_or_the_chosen_one(space):
         np.testing.assert_array_equal(axes.collections[0].get_array().filled(np.nan).reshape(cut.T.shape), cut.T)
     chosen = maps(fields_figure(result, "z=0.2"))[0][1]
     np.testing.assert_array_equal(chosen.collections[0].get_array().filled(np.nan).reshape(7, 8), rho[:, :, 0].T)
+
+
+def test_a_plane_of_symmetry_at_one_end_is_drawn_in_place_of_the_middle(space):
+    whole = read_result(space)
+    def places(**kinds):
+        case = whole.manifest["case"] | {"boundary": {face: {"kind": kind} for face, kind in kinds.items()}}
+        result = replace(whole, manifest=whole.manifest | {"case": case})
+        return [plane.place for plane in planes_of(result, None)]
+    # All ends are symmetric: none is drawn. Centres of cells along z, y and x.
+    assert places() == pytest.approx([1.5, 0.5, 1.125])
+    assert places(front="outflow", bottom="outflow") == pytest.approx([1 / 6, 1 - 1 / 14, 1.125])
+    assert places(front="outflow", back="outflow", right="inflow") == pytest.approx([1.5, 0.5, 0.125])
+    result = replace(whole, manifest=whole.manifest | {"case": {}})
+    assert [plane.place for plane in planes_of(result, None)] == pytest.approx([1.5, 0.5, 1.125])
 
 
 @pytest.mark.parametrize("options, message", [

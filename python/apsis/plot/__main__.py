@@ -28,7 +28,7 @@ def parse(arguments: list[str] | None) -> argparse.Namespace:
                         "with --compare also LABEL=FOLDER")
     parser.add_argument("--out", type=Path, help="folder for the pictures")
     parser.add_argument("--format", choices=FORMATS, default="png")
-    parser.add_argument("--slice", metavar="AXIS=PLACE", help="of a result in space: this plane in place of those through the middle")
+    parser.add_argument("--slice", metavar="AXIS=PLACE", help="of a result in space: this plane in place of those in the middle or of symmetry")
     parser.add_argument("--frames", action="store_true", help="also every snapshot as frame-NUMBER, with one range of colours")
     parser.add_argument("--compare", metavar="NAME", help="one picture NAME of all these runs")
     return parser.parse_args(arguments)

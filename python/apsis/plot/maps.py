@@ -13,6 +13,7 @@ from .style import BLACK, PictureError, plt
 from .walls import SOLID, draw_walls
 
 AXES = ("x", "y", "z")
+FACES = {"x": ("left", "right"), "y": ("bottom", "top"), "z": ("back", "front")}  # ends of the domain along an axis
 VECTORS = {"u": "speed", "m": "momentum"}  # fields u_x, u_y, … and the name of their length
 Colours = tuple[float, float, str]
 
@@ -42,16 +43,27 @@ def dimensions(result: RunResult) -> int:
     return max((values.ndim for values in result.fields.values()), default=1)
 
 
+def middle_of(result: RunResult, normal: str) -> int:
+    """The cells in the middle along an axis; where one end alone is a plane of symmetry, the cells beside it, since the flow continues
+    beyond as its mirror image."""
+    count = len(result.arrays[normal])
+    case = result.manifest.get("case", {})
+    usual = case.get("space", {}).get("boundary")
+    lower, upper = (case.get("boundary", {}).get(face, {}).get("kind", usual) == "symmetry" for face in FACES[normal])
+    return count // 2 if lower == upper else 0 if lower else count - 1
+
+
 def plane_at(result: RunResult, normal: str, place: float | None = None) -> Plane:
-    """The plane of cells nearest to a place along an axis, the middle by default."""
+    """The plane of cells nearest to a place along an axis, by default in the middle or at a plane of symmetry."""
     x = result.arrays[normal]
-    index = len(x) // 2 if place is None else int(np.abs(x - place).argmin())
+    index = middle_of(result, normal) if place is None else int(np.abs(x - place).argmin())
     across, up = (axis for axis in AXES if axis != normal)
     return Plane(across, up, normal, index, float(x[index]))
 
 
 def planes_of(result: RunResult, chosen: str | None) -> list[Plane]:
-    """All planes to draw: that of a result in the plane; in space those through the middle, or the chosen "z=0.5". Raises PictureError."""
+    """All planes to draw: that of a result in the plane; in space those in the middle or at planes of symmetry, or the
+    chosen "z=0.5". Raises PictureError."""
     if dimensions(result) == 2:
         if chosen is not None:
             raise PictureError(f"the slice '{chosen}' has no meaning (the result has two dimensions); leave it out", 2)

@@ -16,7 +16,7 @@ from .surfaces import surface_figures
 
 def fields_figure(result: RunResult, slice_at: str | None = None) -> Any:
     """A panel for each macroscopic field: over x at the end and, thin, at earlier snapshots; without space over t; in several dimensions
-    a map, on planes through the middle or at "z=0.5". None if there is nothing to draw."""
+    a map, on planes in the middle, of symmetry, or at "z=0.5". None if there is nothing to draw."""
     if maps.dimensions(result) > 1:
         return maps.maps_figure(result, title_of(result), end_of(result), slice_at)
     if slice_at is not None:

@@ -7,14 +7,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .maps import AXES, borders, dimensions, limits_of, without_solids
+from .maps import AXES, FACES, borders, dimensions, limits_of, without_solids
 from .run_result import Array, RunResult
 from .style import BLUE, GREY, plt
 
 Columns = dict[str, NDArray[Any]]
 DERIVED = ("pressure", "shear_stress", "heat_flux")
 COEFFICIENTS = ("C_p", "C_f", "C_h")  # with reference values
-NORMALS = {"left": "x", "right": "x", "bottom": "y", "top": "y", "back": "z", "front": "z"}
+NORMALS = {face: axis for axis, faces in FACES.items() for face in faces}
 
 
 def quantities(columns: Columns) -> list[str]:

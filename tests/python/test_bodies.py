@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 from apsis.plot import read_result
 from apsis.plot.results import figures
-from apsis.plot.style import plt
 from apsis.plot.surfaces import angle_profiles
 from apsis.plot.walls import behind, solid_parts
 
@@ -28,12 +27,6 @@ SPACE = {**PLANE, "model": {"name": "bgk", "epsilon": 0.3}, "initial": {"rho": 1
                    "body": [{"name": "ball", "shape": "sphere", "centre": [0.1, 0.2, 0], "radius": 1.1}]},
          "velocity": {"max": 5, "points": 10}, "time": {"method": "md-imex-3-2", "end": 0.02, "safety": 1},
          "output": {"surfaces": "all", "reference": {**REFERENCE, "velocity": [1.2, 0, 0], "area": 3, "up": [0, 1, 0]}}}
-
-
-@pytest.fixture(autouse=True)
-def _closed_figures():
-    yield
-    plt.close("all")
 
 
 @pytest.fixture(scope="module", params=[PLANE, SPACE], ids=["plane", "space"])

@@ -14,12 +14,6 @@ from apsis.plot.comparison import differences
 from apsis.plot.style import PictureError, plt
 
 
-@pytest.fixture(autouse=True)
-def _closed_figures():
-    yield
-    plt.close("all")
-
-
 def describe(name):
     m = apsis.method(name)
     return {"name": name, "A_hat": m.A_hat, "A": m.A, "A_dot": m.A_dot}

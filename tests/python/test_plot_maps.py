@@ -45,12 +45,6 @@ every = 0.001
 """
 
 
-@pytest.fixture(autouse=True)
-def _closed_figures():
-    yield
-    plt.close("all")
-
-
 @pytest.fixture(scope="module")
 def plane(tmp_path_factory):
     folder = tmp_path_factory.mktemp("plane")

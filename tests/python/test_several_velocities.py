@@ -8,17 +8,10 @@ import h5py
 import numpy as np
 import pytest
 from apsis.plot import distribution_figure, fields_figure, read_result, results
-from apsis.plot.style import plt
 from apsis.report import make_report
 
 POINTS = {2: 48, 3: 24}
 WIDTH = {2: 15.0, 3: 9.0}
-
-
-@pytest.fixture(autouse=True)
-def _closed_figures():
-    yield
-    plt.close("all")
 
 
 def overrides(d):

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from apsis.plot import read_result
 from apsis.plot.results import figures
-from apsis.plot.style import PictureError, plt
+from apsis.plot.style import PictureError
 
 PLANE = {
     "model": {"name": "bgk", "epsilon": 0.2, "degrees_of_freedom": 3},
@@ -20,12 +20,6 @@ SPACE = {**PLANE, "space": {"cells": [4, 5, 3], "domain": [[0, 1], [0, 1], [0, 1
                             "solid": [{"name": "box", "from": [0.25, 0.2, 0], "to": [0.75, 0.6, 0.5], "T": 0.9}]},
          "boundary": {"back": {"velocity": [0.2, 0, 0]}}, "output": {"surfaces": ["bottom", "box"]},
          "time": {"method": "md-imex-3-2", "end": 0.02, "safety": 1}}
-
-
-@pytest.fixture(autouse=True)
-def _closed_figures():
-    yield
-    plt.close("all")
 
 
 @pytest.fixture(scope="module", params=[PLANE, SPACE], ids=["plane", "space"])

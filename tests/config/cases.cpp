@@ -4,6 +4,7 @@
 #include <apsis/core/errors.hpp>
 
 #include <algorithm>
+#include <set>
 #include <string>
 
 #include <gmock/gmock.h>
@@ -159,6 +160,18 @@ TEST(schema, a_parameter_name_has_one_type_in_all_models) {
       for (const model_entry* other : model_entries())
         for (const model_parameter& p : other->parameters) EXPECT_NE(text.name, p.name);
     }
+}
+
+TEST(schema, has_every_key_once_and_the_keys_of_a_table_together) {
+  std::set<std::string> keys, tables;
+  std::string table = "none";
+  for (const case_key& key : case_schema()) {
+    EXPECT_TRUE(keys.insert(key.path).second) << key.path;
+    const auto dot = key.path.find('.');
+    const std::string here = dot == std::string::npos ? "" : key.path.substr(0, dot);
+    EXPECT_TRUE(here == table || tables.insert(here).second) << key.path;
+    table = here;
+  }
 }
 
 TEST(schema, documents_every_key_with_its_default) {

@@ -5,13 +5,13 @@
 #include <apsis/config/at_place.hpp>
 #include <apsis/config/boundary_reader.hpp>
 #include <apsis/config/case_value.hpp>
-#include <apsis/config/solid_reader.hpp>
+#include <apsis/config/list_of_tables.hpp>
+#include <apsis/config/surface_names.hpp>
 #include <apsis/core/index.hpp>
 #include <apsis/core/suggest.hpp>
 #include <apsis/model/expression.hpp>
 
 #include <algorithm>
-#include <charconv>
 #include <set>
 
 #include <fmt/format.h>
@@ -19,7 +19,6 @@
 namespace apsis {
 namespace {
 
-constexpr int most_bodies = 1000;
 const std::string head_of_bodies = "space.body.";
 
 std::string path_of_body(std::size_t body) {
@@ -53,17 +52,10 @@ class reader_of_bodies {
 
   /// Returns the number of a body, from 1.
   static std::size_t number_in(const std::string& path, const raw_value& raw) {
-    const auto dot = path.find('.', head_of_bodies.size());
-    const std::string number =
-        path.substr(head_of_bodies.size(), dot == std::string::npos ? dot : dot - head_of_bodies.size());
-    int body = 0;
-    const auto [stop, error] = std::from_chars(number.data(), number.data() + number.size(), body);
-    if (error != std::errc{} || stop != number.data() + number.size() || body < 1 || body > most_bodies ||
-        dot == std::string::npos)
-      throw input_error(
-          raw.place,
-          fmt::format("unknown key '{}' (bodies are a list of tables); write [[space.body]]", shown(path)));
-    return static_cast<std::size_t>(body);
+    if (const auto split = split_key(path, head_of_bodies)) return split->number;
+    throw input_error(
+        raw.place,
+        fmt::format("unknown key '{}' (bodies are a list of tables); write [[space.body]]", shown(path)));
   }
 
   void read_body(std::size_t number) {
@@ -84,7 +76,10 @@ class reader_of_bodies {
     std::vector<std::string> names = {"name", "kind", "shape"};
     names.insert(names.end(), variables.begin(), variables.end());
     check_all_taken(path, body.shape, names);
-    check_name(path, body.name);
+    std::vector<std::string> earlier;
+    for (const auto& solid : config_.solids) earlier.push_back(solid.name);
+    for (const auto& other : config_.bodies) earlier.push_back(other.name);
+    check_surface_name(config_, path, body.name, earlier);
     config_.bodies.push_back(std::move(body));
   }
 
@@ -179,18 +174,6 @@ class reader_of_bodies {
                         fmt::format("unknown key '{}' (shape '{}' and its wall have no such key); {}",
                                     shown(other), shape.shape, suggest(last_of(other), names)));
     }
-  }
-
-  void check_name(const std::string& path, const std::string& name) const {
-    std::vector<std::string> taken(face_names.begin(), face_names.end());
-    taken.insert(taken.end(), {"force", "source", all_surfaces});
-    for (const auto& solid : config_.solids) taken.push_back(solid.name);
-    for (const auto& body : config_.bodies) taken.push_back(body.name);
-    if (is_surface_name(name) && std::find(taken.begin(), taken.end(), name) == taken.end()) return;
-    throw input_error(
-        place_of(config_, path + ".name"),
-        fmt::format("'{}.name' = \"{}\" cannot be used ({}); choose another name", path, shown(name),
-                    is_surface_name(name) ? "it is taken" : "letters, digits, - and _ only"));
   }
 
   const case_text& text_;

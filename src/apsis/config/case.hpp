@@ -28,8 +28,8 @@ namespace apsis {
 /// steady.tolerance of a case with a table [steady] that gives none.
 inline constexpr double usual_steady_tolerance = 1e-8;
 
-/// A resolved case: every key has a value, every name exists. Keys are documented in case_keys.cpp (`apsis
-/// show case`).
+/// A resolved case: every key has a value, every name exists. The files of config/keys/ document the
+/// keys (`apsis show case`).
 struct case_config {
   std::string source;                          ///< file or name of the built-in case
   std::map<std::string, source_place> places;  ///< places of keys and tables, for later messages

@@ -42,7 +42,7 @@ enum class key_scope {
   velocity  ///< those with a velocity grid
 };
 
-/// One key of a case file. The table of all keys (case_keys.cpp) drives reading, writing and documentation.
+/// One key of a case file. The tables of keys (config/keys/) drives reading, writing and documentation.
 struct case_key {
   std::string path{};                   ///< "space.cells"
   key_type type = key_type::text;       ///< which alternative of case_value it has

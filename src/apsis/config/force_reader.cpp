@@ -11,7 +11,7 @@
 namespace apsis {
 namespace {
 
-constexpr const char* key = "force.acceleration";
+constexpr const char* acceleration_key = "force.acceleration";
 
 /// The components of an acceleration.
 using formulas = std::vector<std::shared_ptr<const expression>>;
@@ -21,7 +21,7 @@ formulas compile(const case_config& config, const model& equation) {
   kind.variables.insert(kind.variables.begin(), "t");
   formulas all;
   for (const auto& text : *config.force.acceleration)
-    all.push_back(std::make_shared<const expression>(text, place_of(config, key), kind));
+    all.push_back(std::make_shared<const expression>(text, place_of(config, acceleration_key), kind));
   return all;
 }
 
@@ -45,9 +45,10 @@ std::optional<acceleration> make_acceleration(const case_config& config, const m
   const auto given = config.force.acceleration->size(), possible = equation.lattice().points.size();
   if (given > possible)
     throw input_error(
-        place_of(config, key),
-        fmt::format("'{}' has {} formulas (model '{}' has {} velocity dimension{}); give at most {}", key,
-                    given, config.model.name, possible, possible == 1 ? "" : "s", possible));
+        place_of(config, acceleration_key),
+        fmt::format("'{}' has {} formulas (model '{}' has {} velocity dimension{}); give at most {}",
+                    acceleration_key, given, config.model.name, possible, possible == 1 ? "" : "s",
+                    possible));
   const formulas all = compile(config, equation);
   acceleration of;
   of.value = [all](double t, const position& x) { return value_of(all, t, x); };

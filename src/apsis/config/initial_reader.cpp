@@ -1,18 +1,16 @@
 #include <apsis/config/initial_reader.hpp>
 
 #include <apsis/config/case_value.hpp>
+#include <apsis/config/list_of_tables.hpp>
 #include <apsis/core/suggest.hpp>
 
 #include <algorithm>
-#include <charconv>
 #include <optional>
 
 #include <fmt/format.h>
 
 namespace apsis {
 namespace {
-
-constexpr int most_items = 1000;  ///< of a list of tables
 
 std::vector<std::string> parts_of(const std::string& path) {
   std::vector<std::string> parts;
@@ -145,17 +143,14 @@ class reader_of_initial_state {
   template <class Item>
   Item& item(const std::string& path, const words& key, std::size_t at, const raw_value& raw,
              std::vector<Item>& items) {
-    int number = 0;
-    const char* end = key[at].data() + key[at].size();
-    const auto [stop, problem] = std::from_chars(key[at].data(), end, number);
-    if (problem != std::errc() || stop != end || number < 1 || number > most_items || key.size() < at + 2)
+    const auto number = table_number(key[at]);
+    if (!number || key.size() < at + 2)
       throw input_error(
           raw.place, fmt::format("unknown key '{}' ({} is a list of tables, numbered from 1 to at most {}); "
                                  "write [[initial.{}]], or on the command line initial.{}.1.T=2",
-                                 shown(path), key[at - 1], most_items, key[at - 1], key[at - 1]));
-    const auto index = static_cast<std::size_t>(number);
-    if (items.size() < index) items.resize(index);
-    return items[index - 1];
+                                 shown(path), key[at - 1], most_listed_tables, key[at - 1], key[at - 1]));
+    if (items.size() < *number) items.resize(*number);
+    return items[*number - 1];
   }
 
   [[noreturn]] void unknown(const std::string& path, const raw_value& raw, const std::string& word,

@@ -2,12 +2,12 @@
 
 #include <apsis/config/boundary_reader.hpp>
 #include <apsis/config/case_value.hpp>
+#include <apsis/config/list_of_tables.hpp>
 #include <apsis/core/suggest.hpp>
 #include <apsis/mesh/cell_at.hpp>
 
 #include <algorithm>
 #include <cctype>
-#include <charconv>
 #include <cmath>
 #include <map>
 
@@ -17,7 +17,6 @@
 namespace apsis {
 namespace {
 
-constexpr int most_tables = 1000;          ///< of a list
 constexpr long longest_probe = 1'000'000;  ///< of a probe
 constexpr std::size_t longest_name = 64;   ///< of a file
 
@@ -45,7 +44,7 @@ class reader_of_output {
 
   /// Returns the tables of a list in the order of their numbers.
   std::vector<output_item> items_of(const std::string& list, const std::vector<std::string>& valid) const {
-    std::map<int, output_item> items;
+    std::map<std::size_t, output_item> items;
     const std::string head = "output." + list;
     for (const auto& [path, raw] : text_.values) {
       if (path == head) refuse(raw, path, "it is a list of tables", fmt::format("write [[{}]]", path));
@@ -71,19 +70,14 @@ class reader_of_output {
     return all;
   }
 
-  static std::pair<int, std::string> number_and_key(const std::string& path, const std::string& head,
-                                                    const std::string& list, const raw_value& raw) {
-    const std::size_t begin = head.size() + 1, dot = std::min(path.find('.', begin), path.size());
-    int number = 0;
-    const auto [stop, problem] = std::from_chars(path.data() + begin, path.data() + dot, number);
-    if (problem != std::errc() || stop != path.data() + dot || dot == path.size() || number < 1 ||
-        number > most_tables)
-      throw input_error(
-          raw.place,
-          fmt::format("unknown key '{}' ({} is a list of tables, numbered from 1 to at most {}); write "
-                      "[[{}]], or on the command line {}.1.name=middle",
-                      shown(path), list, most_tables, head, head));
-    return {number, path.substr(dot + 1)};
+  static key_of_table number_and_key(const std::string& path, const std::string& head,
+                                     const std::string& list, const raw_value& raw) {
+    if (auto split = split_key(path, head + ".")) return *std::move(split);
+    throw input_error(
+        raw.place,
+        fmt::format("unknown key '{}' ({} is a list of tables, numbered from 1 to at most {}); write "
+                    "[[{}]], or on the command line {}.1.name=middle",
+                    shown(path), list, most_listed_tables, head, head));
   }
 
   void add_probe(const output_item& item) {

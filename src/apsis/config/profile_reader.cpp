@@ -22,7 +22,7 @@
 namespace apsis {
 namespace {
 
-const std::string key = ".profile.file";
+const std::string profile_key = ".profile.file";
 
 /// A side of an earlier result.
 class earlier_side {
@@ -143,7 +143,7 @@ std::map<std::string, std::vector<std::string>> formulas_of(const case_text& tex
                                                             const raw_value& file,
                                                             const std::optional<gas_scales>& scales) {
   const std::string& path =
-      text_of(file, table + key, "write for example file = \"results/earlier/solution.h5\"");
+      text_of(file, table + profile_key, "write for example file = \"results/earlier/solution.h5\"");
   const face where = side_for(text, table, file.place);
   try {
     const earlier_side from(path, where, scales);
@@ -153,8 +153,8 @@ std::map<std::string, std::vector<std::string>> formulas_of(const case_text& tex
                                     from.dimensions(), from.dimensions() == 1 ? "" : "s", wanted));
     return from.formulas();
   } catch (const error& problem) {
-    throw input_error(file.place, fmt::format("'{}{}' = \"{}\" cannot be used: {}", table, key, shown(path),
-                                              problem.what()));
+    throw input_error(file.place, fmt::format("'{}{}' = \"{}\" cannot be used: {}", table, profile_key,
+                                              shown(path), problem.what()));
   }
 }
 
@@ -164,8 +164,8 @@ void read_profiles(case_text& text, const std::optional<gas_scales>& scales) {
   std::map<std::string, raw_value> made;
   std::vector<std::string> tables;
   for (const auto& [path, raw] : text.values) {
-    if (path.rfind("boundary.", 0) != 0 || !path.ends_with(key)) continue;
-    const std::string table = path.substr(0, path.size() - key.size());
+    if (path.rfind("boundary.", 0) != 0 || !path.ends_with(profile_key)) continue;
+    const std::string table = path.substr(0, path.size() - profile_key.size());
     const auto formulas = formulas_of(text, table, raw, scales);
     for (const auto& [name, components] : formulas) {
       const std::string variable = fmt::format("{}.{}", table, name);
@@ -182,7 +182,7 @@ void read_profiles(case_text& text, const std::optional<gas_scales>& scales) {
     tables.push_back(table);
   }
   for (const auto& table : tables) {
-    text.values.erase(table + key);
+    text.values.erase(table + profile_key);
     text.values.erase(table + ".profile.side");
   }
   text.values.merge(made);

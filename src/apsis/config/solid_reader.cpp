@@ -3,12 +3,12 @@
 #include <apsis/boundary/boundary_registry.hpp>
 #include <apsis/config/boundary_reader.hpp>
 #include <apsis/config/case_value.hpp>
+#include <apsis/config/list_of_tables.hpp>
+#include <apsis/config/surface_names.hpp>
 #include <apsis/core/suggest.hpp>
 #include <apsis/model/expression.hpp>
 
 #include <algorithm>
-#include <cctype>
-#include <charconv>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -17,7 +17,6 @@
 namespace apsis {
 namespace {
 
-constexpr int most_boxes = 1000;
 const std::string head = "space.solid.";
 
 std::string path_of(std::size_t box) {
@@ -66,19 +65,14 @@ class reader_of_solids {
 
  private:
   void take(const std::string& path, const raw_value& raw, bool kinds) {
-    const auto dot = path.find('.', head.size());
-    const std::string number = path.substr(head.size(), dot == std::string::npos ? dot : dot - head.size());
-    int box = 0;
-    const auto [stop, error] = std::from_chars(number.data(), number.data() + number.size(), box);
-    if (error != std::errc{} || stop != number.data() + number.size() || box < 1 || box > most_boxes ||
-        dot == std::string::npos)
+    const auto split = split_key(path, head);
+    if (!split)
       throw input_error(raw.place, fmt::format("unknown key '{}' (solid boxes are a list of tables); write "
                                                "[[space.solid]]",
                                                shown(path)));
-    if (config_.solids.size() < static_cast<std::size_t>(box))
-      config_.solids.resize(static_cast<std::size_t>(box));
-    solid_table& here = config_.solids[static_cast<std::size_t>(box - 1)];
-    const std::string key = path.substr(dot + 1);
+    if (config_.solids.size() < split->number) config_.solids.resize(split->number);
+    solid_table& here = config_.solids[split->number - 1];
+    const std::string& key = split->key;
     if ((key == "kind") != kinds) return;
     if (key == "kind" || key == "name") {
       const auto* text = std::get_if<std::string>(&raw.value);
@@ -106,14 +100,9 @@ class reader_of_solids {
     solid_table& here = config_.solids[box];
     const std::string path = path_of(box);
     if (here.name.empty()) here.name = fmt::format("solid-{}", box + 1);
-    std::vector<std::string> taken(face_names.begin(), face_names.end());
-    taken.insert(taken.end(), {"force", "source", all_surfaces});
-    for (std::size_t other = 0; other < box; ++other) taken.push_back(config_.solids[other].name);
-    if (!is_surface_name(here.name) || std::find(taken.begin(), taken.end(), here.name) != taken.end())
-      throw input_error(
-          place_of(config_, path + ".name"),
-          fmt::format("'{}.name' = \"{}\" cannot be used ({}); choose another name", path, shown(here.name),
-                      is_surface_name(here.name) ? "it is taken" : "letters, digits, - and _ only"));
+    std::vector<std::string> earlier;
+    for (std::size_t other = 0; other < box; ++other) earlier.push_back(config_.solids[other].name);
+    check_surface_name(config_, path, here.name, earlier);
     for (const char* key : {"from", "to"})
       if ((key[0] == 'f' ? here.from : here.to).empty())
         throw input_error(
@@ -129,12 +118,6 @@ class reader_of_solids {
 };
 
 }  // namespace
-
-bool is_surface_name(const std::string& text) {
-  return !text.empty() && std::isalpha(static_cast<unsigned char>(text.front())) != 0 &&
-         std::all_of(text.begin(), text.end(),
-                     [](unsigned char c) { return std::isalnum(c) != 0 || c == '-' || c == '_'; });
-}
 
 void read_solids(const case_text& text, const model& equation, case_config& config) {
   reader_of_solids(text, equation, config).read();

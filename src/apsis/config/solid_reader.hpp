@@ -4,13 +4,9 @@
 #include <apsis/config/case_text.hpp>
 
 #include <memory>
-#include <string>
 #include <vector>
 
 namespace apsis {
-
-/// Whether a text may name a solid box or a body: a letter, then letters, digits, - and _.
-bool is_surface_name(const std::string& text);
 
 /// Reads the tables [[space.solid]] into `config`, whose mesh is known. Throws input_error at the place of a
 /// key: no box inside the domain with its faces on edges of cells, a name that occurs twice, or a variable

@@ -1,10 +1,12 @@
-"""A boundary, model with its fields, reconstruction, discretization, command, claim, quantity, case and method are one file each,
-a kind of integrator three.
+"""A boundary, shape of bodies, model with its fields, reconstruction, discretization, command, claim, quantity, case and method are
+one file each, a kind of integrator three.
 
 The files of planted/ are laid over a copy of the sources; a kind of integrator needs an entry of integrate/any_stepper.hpp,
 no other file changes. The program that is built from them lists and uses them all.
 """
+import csv
 import json
+import math
 import os
 import shutil
 import subprocess
@@ -146,6 +148,21 @@ class OneFile(unittest.TestCase):
                                  text=True, check=False)
         self.assertEqual(refused.returncode, 2)
         self.assertIn("planted averages are those of intervals: one space dimension only", refused.stderr)
+
+    def test_a_shape_of_bodies_is_one_file(self):
+        self.assertIn("planted-diamond", self.names("shapes"))
+        out = Path(self.folder.name) / "past_a_diamond"
+        output_of(self.program, "run", "gas/cylinder", "space.body.1.shape=planted-diamond", "space.cells=[16,8]",
+                  "space.domain=[[-2,2],[0,2]]", "velocity.points=16", "time.end=0", "output.surfaces=[\"cylinder\"]",
+                  "--out", str(out))
+        with open(out / "surfaces/cylinder.csv", newline="", encoding="utf-8") as file:
+            areas = [float(row["area"]) for row in csv.DictReader(file)]
+        # Two straight walls of the length √2, whose ends lie on edges of cells: no error but rounding.
+        self.assertAlmostEqual(sum(areas), 2 * math.sqrt(2), delta=1e-12)
+        refused = subprocess.run([self.program, "run", "gas/sphere", "space.body.1.shape=planted-diamond"], capture_output=True,
+                                 text=True, check=False)
+        self.assertEqual(refused.returncode, 2)
+        self.assertIn("polygon", refused.stderr)
 
     def test_a_claim_is_reproduced(self):
         self.assertIn("C99", output_of(self.program, "reproduce", "C99", folder=self.folder.name))

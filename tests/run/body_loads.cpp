@@ -27,12 +27,22 @@ namespace {
 
 using namespace apsis;
 
-/// A stream past a disc that turns, beside a box.
-const std::string flat = R"toml(
+/// A gas in the plane with few velocities.
+const std::string plane_gas = R"toml(
 [model]
 name = "bgk"
 epsilon = 0.3
 degrees_of_freedom = 3
+[velocity]
+max = 7
+points = 12
+[time]
+method = "md-imex-3-2"
+end = 0.1
+safety = 1
+)toml";
+
+const std::string open_stream = plane_gas + R"toml(
 [initial]
 rho = 1.1
 u = [1.2, 0.4]
@@ -52,6 +62,9 @@ kind = "diffuse"
 T = 1.2
 [boundary.bottom]
 kind = "symmetry"
+)toml";
+
+const std::string disc = R"toml(
 [[space.body]]
 name = "disc"
 shape = "circle"
@@ -59,17 +72,16 @@ centre = [-0.4, 0.1]
 radius = 0.8
 T = 1.3
 velocity = ["-0.5*(y - 0.1)", "0.5*(x + 0.4)"]
+)toml";
+
+const std::string box = R"toml(
 [[space.solid]]
 name = "box"
 from = [1, 0.5]
 to = [1.5, 1]
-[velocity]
-max = 7
-points = 12
-[time]
-method = "md-imex-3-2"
-end = 0.1
-safety = 1
+)toml";
+
+const std::string loads_of_stream = R"toml(
 [output]
 surfaces = "all"
 [output.reference]
@@ -79,6 +91,9 @@ temperature = 1
 length = 1.6
 centre = [-0.4, 0.1]
 )toml";
+
+/// A stream past a disc that turns, beside a box.
+const std::string flat = open_stream + disc + box + loads_of_stream;
 
 /// The same in space.
 const std::string deep = R"toml(
@@ -250,7 +265,7 @@ TEST(loads_of_bodies, are_in_the_history_and_the_summary_in_units_of_the_results
     }
   }
   // Without a stream there are force, torque and heat.
-  std::string text = flat.substr(0, flat.find("[output.reference]"));
+  const std::string text = flat.substr(0, flat.find("[output.reference]"));
   const simulation without = finished(text, {"time.end=0.05"});
   const auto short_json = to_json(without, run_records(without));
   EXPECT_EQ(short_json["bodies"]["disc"].size(), 3U);
@@ -262,11 +277,7 @@ TEST(loads_of_bodies, are_in_the_history_and_the_summary_in_units_of_the_results
 
 TEST(loads_of_bodies, are_those_of_a_turned_flow) {
   // x → y, y → −x: the same numbers with turned vectors.
-  const std::string turned = R"toml(
-[model]
-name = "bgk"
-epsilon = 0.3
-degrees_of_freedom = 3
+  const std::string turned = plane_gas + R"toml(
 [initial]
 rho = 1
 u = [0, 1.2]
@@ -281,13 +292,6 @@ shape = "ellipse"
 centre = [0.1, -0.2]
 semi_axes = [0.6, 1]
 angle = 20
-[velocity]
-max = 7
-points = 12
-[time]
-method = "md-imex-3-2"
-end = 0.1
-safety = 1
 [output.reference]
 density = 1
 velocity = [0, 1.2]
@@ -352,15 +356,12 @@ TEST(coefficients_of_pieces, are_the_columns_over_the_pressure_of_the_stream) {
 }
 
 TEST(a_body_on_edges_of_cells, has_the_loads_and_the_arc_length_of_a_solid_box) {
-  std::string text = flat;
-  const auto body = text.find("[[space.body]]");
-  text.replace(body, text.find("[[space.solid]]") - body,
-               "[[space.body]]\nname = \"disc\"\nshape = \"box\"\nfrom = [-1, -0.5]\nto = [0, 0.5]\n");
-  std::string same = text;
-  const auto again = same.find("[[space.body]]");
-  same.replace(again, same.find("[[space.solid]]") - again,
-               "[[space.solid]]\nname = \"disc\"\nfrom = [-1, -0.5]\nto = [0, 0.5]\n");
-  const simulation a = finished(text, {"time.end=0.05"}), b = finished(same, {"time.end=0.05"});
+  const std::string square = "name = \"disc\"\nfrom = [-1, -0.5]\nto = [0, 0.5]\n";
+  const simulation a = finished(
+                       open_stream + "[[space.body]]\nshape = \"box\"\n" + square + box + loads_of_stream,
+                       {"time.end=0.05"}),
+                   b = finished(open_stream + "[[space.solid]]\n" + square + box + loads_of_stream,
+                                {"time.end=0.05"});
   const auto load = [](const simulation& run) {
     for (const body_load& one : body_loads(run.setup(), run.last()))
       if (one.name == "disc") return one;
@@ -377,14 +378,18 @@ TEST(a_body_on_edges_of_cells, has_the_loads_and_the_arc_length_of_a_solid_box) 
 
 TEST(tables_of_concave_bodies, follow_the_wall_from_piece_to_piece) {
   // A slot that opens to the right, and a disc on the floor.
-  std::string text = flat;
-  const auto body = text.find("[[space.body]]");
-  text.replace(body, text.find("[velocity]") - body,
-               "[[space.body]]\nname = \"slotted\"\nshape = \"difference\"\nshapes = [{ shape = \"circle\", "
-               "centre = [0, "
-               "0.4], radius = 1.1 }, { shape = \"box\", from = [-0.2, -0.1], to = [2, 0.9] }]\n"
-               "[[space.body]]\nname = \"mound\"\nshape = \"circle\"\ncentre = [-1.2, -2]\nradius = 0.6\n");
-  const simulation run = finished(text, {"time.end=0"});
+  const std::string bodies = R"toml(
+[[space.body]]
+name = "slotted"
+shape = "difference"
+shapes = [{ shape = "circle", centre = [0, 0.4], radius = 1.1 }, { shape = "box", from = [-0.2, -0.1], to = [2, 0.9] }]
+[[space.body]]
+name = "mound"
+shape = "circle"
+centre = [-1.2, -2]
+radius = 0.6
+)toml";
+  const simulation run = finished(open_stream + bodies + loads_of_stream, {"time.end=0"});
   for (const std::string name : {"slotted", "mound"}) {
     const surface_table table = table_of(run, name);
     const columns wall = columns_of(table);

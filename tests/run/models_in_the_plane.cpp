@@ -20,15 +20,7 @@ namespace models_in_the_plane_test {
 
 namespace {
 
-const char* const plane = R"case([model]
-name = "broadwell-plane"
-epsilon = 0.02
-[initial]
-f_right = "1 + 0.3*sin(pi*x)"
-f_left = "0.8 - 0.2*cos(pi*x)"
-f_up = "0.6 + 0.2*sin(pi*x)"
-f_down = "0.6 + 0.2*sin(pi*x)"
-[space]
+const std::string on_the_plane = R"case([space]
 cells = [24, 6]
 domain = [[0.0, 2.0], [0.0, 1.0]]
 limiter = "positivity"
@@ -37,6 +29,16 @@ method = "md-imex-6-3"
 end = 0.1
 dt = 0.004
 )case";
+
+const std::string plane = R"case([model]
+name = "broadwell-plane"
+epsilon = 0.02
+[initial]
+f_right = "1 + 0.3*sin(pi*x)"
+f_left = "0.8 - 0.2*cos(pi*x)"
+f_up = "0.6 + 0.2*sin(pi*x)"
+f_down = "0.6 + 0.2*sin(pi*x)"
+)case" + on_the_plane;
 
 const char* const line = R"case([model]
 name = "broadwell"
@@ -57,7 +59,7 @@ dt = 0.004
 )case";
 
 /// The same gas as a table.
-const char* const table = R"case([model]
+const std::string table = R"case([model]
 name = "discrete-velocity"
 velocities = [[1, 0], [-1, 0], [0, 1], [0, -1]]
 collisions = [[1, 2, 3, 4]]
@@ -67,15 +69,7 @@ f_1 = "1 + 0.3*sin(pi*x)"
 f_2 = "0.8 - 0.2*cos(pi*x)"
 f_3 = "0.6 + 0.2*sin(pi*x)"
 f_4 = "0.6 + 0.2*sin(pi*x)"
-[space]
-cells = [24, 6]
-domain = [[0.0, 2.0], [0.0, 1.0]]
-limiter = "positivity"
-[time]
-method = "md-imex-6-3"
-end = 0.1
-dt = 0.004
-)case";
+)case" + on_the_plane;
 
 double largest_difference(const std::vector<double>& a, const std::vector<double>& b) {
   EXPECT_EQ(a.size(), b.size());

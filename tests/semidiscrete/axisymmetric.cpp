@@ -1,16 +1,13 @@
 // Axisymmetric flow without collisions: uniform gas, conservation, positivity, order and the way through the
 // axis.
+#include "blocks.hpp"
 #include "polar_gas.hpp"
 
 #include <apsis/core/errors.hpp>
 #include <apsis/semidiscrete/ring_rotation.hpp>
 
-#include <stdexcept>
-
-#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <support/processes.hpp>
 #include <support/property.hpp>
 
 namespace axisymmetric_test {
@@ -371,25 +368,10 @@ TEST(axisymmetric, blocks_have_the_bits_of_one_process) {
     if (random.one_in(2)) of.body = ball;
     const polar_flow whole = make(of);
     const field u = random_state(whole.mesh(), whole.equation->components(), random);
-    const field expected = whole.step(u, 2.0, 0.01);
     const std::array<int, 3> blocks = {random.integer(1, 4), random.integer(1, 4), 1};
-    ASSERT_NO_THROW(threads_as_processes::run(
-        blocks[0] * blocks[1],
-        [&](const std::shared_ptr<apsis::communicator>& processes) {
-          const polar_flow part = make(of, processes, blocks);
-          const grid& block = part.mesh();
-          if (part.problem->forward_euler_step(0.0, u) != whole.problem->forward_euler_step(0.0, u))
-            throw std::runtime_error("another step");
-          field own(block.size(), u.components());
-          for (int cell = 0; cell < block.size(); ++cell)
-            std::copy_n(u.row(whole.mesh().cell_of(block, cell)), u.stride(), own.row(cell));
-          const field found = part.step(own, 2.0, 0.01);
-          for (int cell = 0; cell < block.size(); ++cell) {
-            const double* there = expected.row(whole.mesh().cell_of(block, cell));
-            if (block.solid(cell) < 0 && !std::equal(there, there + u.components(), found.row(cell)))
-              throw std::runtime_error(fmt::format("cell {} of process {} differs", cell, processes->rank()));
-          }
-        }))
+    ASSERT_NO_THROW(check_blocks(
+        whole, u, blocks,
+        [&](const std::shared_ptr<apsis::communicator>& processes) { return make(of, processes, blocks); }))
         << repetition;
   }
 }

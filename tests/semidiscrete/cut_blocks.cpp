@@ -5,14 +5,12 @@
 #include <algorithm>
 #include <array>
 #include <random>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
-#include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <semidiscrete/blocks.hpp>
 #include <semidiscrete/gas_past_bodies.hpp>
-#include <support/processes.hpp>
 
 namespace cut_blocks_test {
 namespace {
@@ -40,21 +38,8 @@ void expect_the_bits_of_one_process(const choices& flow, const std::array<int, 3
   std::mt19937 generator(seed);
   const gas_past_bodies whole = make(flow);
   const field u = random_state(whole.mesh(), whole.equation->components(), generator);
-  const field expected = whole.step(u, 2.0, 0.01);
-  const int count = blocks[0] * blocks[1] * blocks[2];
-  threads_as_processes::run(count, [&](const std::shared_ptr<communicator>& processes) {
-    const gas_past_bodies part = make(flow, processes, blocks);
-    const grid& block = part.mesh();
-    field own(block.size(), u.components());
-    for (int cell = 0; cell < block.size(); ++cell)
-      std::copy_n(u.row(whole.mesh().cell_of(block, cell)), u.stride(), own.row(cell));
-    const field found = part.step(own, 2.0, 0.01);
-    for (int cell = 0; cell < block.size(); ++cell) {
-      const double* there = expected.row(whole.mesh().cell_of(block, cell));
-      if (block.solid(cell) < 0 && !std::equal(there, there + u.components(), found.row(cell)))
-        throw std::runtime_error(fmt::format("cell {} of process {} differs", cell, processes->rank()));
-    }
-  });
+  check_blocks(whole, u, blocks,
+               [&](const std::shared_ptr<communicator>& processes) { return make(flow, processes, blocks); });
 }
 
 }  // namespace

@@ -57,6 +57,32 @@ TEST(formula_table, of_all_digits_has_the_values_of_its_points) {
   for (auto& one : threads) one.join();
 }
 
+TEST(formula_table, of_two_arguments_is_linear_in_each) {
+  // 1 + 2x + 4y + 8xy at the corners of [0, 1]²; the interpolation of binary fractions is exact.
+  const formula_kind plane{.variables = {"x", "y"}, .nonnegative = false};
+  const expression f("1 + table2(x, y + 1, 2, 0, 1, 1, 0, 2, 2, 4, 14)", {}, plane);
+  for (const double x : {0.0, 0.25, 0.5, 1.0})
+    for (const double y : {0.0, 0.125, 0.75, 1.0})
+      EXPECT_EQ(f.value(std::vector{x, y}), 1 + 2 * x + 4 * y + 8 * x * y) << x << " " << y;
+  EXPECT_EQ(f.value(std::vector{-3.0, 7.0}), 5.0);
+  EXPECT_EQ(f.value(std::vector{9.0, -7.0}), 3.0);
+  EXPECT_TRUE(std::isnan(f.value(std::vector{0.0, std::nan("")})));
+  EXPECT_EQ(expression("table2(x, 5, 3, 0, 1, 2, 0, 7, 8, 9)").value(1.5), 8.5);
+  // Tables of both kinds within each other.
+  const expression nested(
+      "table2(table(x, 0, 0, 1, 10), table2(x, x, 1, 0, 0, 1), 2, 0, 10, 0, 0, 0, 2, 4, 8)");
+  EXPECT_EQ(nested.value(0.5), 3.0);
+}
+
+TEST(formula_table, of_two_arguments_and_all_digits_has_the_values_of_its_points) {
+  const std::vector<double> a = {-1.0 / 3.0, 0.1, 0.7}, b = {0.3, 2.0 / 7.0 + 1.0};
+  const std::vector<double> values = {std::sin(1), std::sin(2), std::sin(3),
+                                      std::sin(4), std::sin(5), std::sin(6)};
+  const expression f(formula_of_table("x", "y", a, b, values), {}, {.variables = {"x", "y"}});
+  for (std::size_t j = 0; j < b.size(); ++j)
+    for (std::size_t i = 0; i < a.size(); ++i) EXPECT_EQ(f.value(std::vector{a[i], b[j]}), values[3 * j + i]);
+}
+
 TEST(formula_table, that_cannot_be_read_has_one_message_with_its_place) {
   const std::vector<std::pair<std::string, std::string>> wrong = {
       {"1 + table",
@@ -70,6 +96,20 @@ TEST(formula_table, that_cannot_be_read_has_one_message_with_its_place) {
       {"table(x, 0, 1 2, 2)", "a table does not end here at character 15"},
       {"table(x, 0, 1", "a table does not end here"},
       {"table(x,", "a point of a table is not a finite number"},
+      {"table2(x, 1)", "a table without points at character 1); write for example table2(x, y, 2, "},
+      {"table2(x, x, 1.5, 0, 1, 2)",
+       "this is not the number of the first arguments of a table at character 14"},
+      {"table2(x, x, 0, 0, 1, 2)",
+       "this is not the number of the first arguments of a table at character 14"},
+      {"table2(x, x, 9, 0, 1, 2)",
+       "this is not the number of the first arguments of a table at character 14"},
+      {"table2(x, x, 2, 0, 1)", "the last row of a table has no 2 values at character 21"},
+      {"table2(x, x, 2, 0, 1, 0, 5)", "the last row of a table has no 2 values at character 27"},
+      {"table2(x, x, 2, 1, 1, 0, 5, 6)", "arguments of a table do not increase at character 20"},
+      {"table2(x, x, 1, 0, 2, 5, 1, 6)", "arguments of a table do not increase at character 26"},
+      {"table2(x, foo, 1, 0, 2, 5)", "unknown name 'foo' at character 11"},
+      {"table2(x, x, 1, 0, 2, 5) + foo", "unknown name 'foo' at character 28"},
+      {"table3(x, 0, 1)", "unknown name 'table3' at character 1"},
       {"table(foo, 0, 1)", "unknown name 'foo' at character 7"},
       {"table(x, 0, 1) + foo", "unknown name 'foo' at character 18"}};
   for (const auto& [text, says] : wrong) {
@@ -79,7 +119,8 @@ TEST(formula_table, that_cannot_be_read_has_one_message_with_its_place) {
   std::string nested = "x";
   for (int k = 0; k < 101; ++k) nested = "table(" + nested + ",0,1)";
   EXPECT_THAT(message_of(nested), HasSubstr("more than 100 tables"));
-  EXPECT_EQ(why_not_a_constant("table"), "formulas have a function or constant of this name");
+  for (const char* name : {"table", "table2"})
+    EXPECT_EQ(why_not_a_constant(name), "formulas have a function or constant of this name");
 }
 
 }  // namespace formula_table_test

@@ -1,5 +1,7 @@
 // Runs with tables in time, ends of given mass flux, walls without a given temperature, and profiles of
 // earlier results.
+#include "cases_in_space.hpp"
+
 #include <apsis/config/case.hpp>
 #include <apsis/config/case_schema.hpp>
 #include <apsis/core/errors.hpp>
@@ -183,6 +185,45 @@ std::string refusal(const std::string& text) {
 }
 
 }  // namespace
+
+TEST(ends_of_flows, take_profiles_in_space_from_earlier_results) {
+  // A solid box covers a part of the right side: its cells have the values of the nearest gas.
+  const std::string text =
+      in_several_dimensions::in_space + "[[space.solid]]\nfrom = [0.75, 0, 0]\nto = [1, \"2/7\", \"4/9\"]\n";
+  const test_folder folder;
+  in_several_dimensions::run_into(folder / "earlier", text, {"output.fields=[]"});
+  const std::string inlet =
+      fmt::format("[boundary.left]\nkind = \"inflow\"\nprofile = {{ file = \"{}\", side = \"right\" }}\n",
+                  folder / "earlier/solution.h5");
+  const case_config config = parse_case(text + inlet, "c.toml", {"output.fields=[]"});
+  const auto earlier = run_of(text).fields();
+  const grid mesh = make_mesh(config);
+  const auto& values = config.faces[0].values;
+  ASSERT_EQ(values.at("u").size(), 3U);
+  const expression rho(values.at("rho").front(), {}, formula_of_position(3, false)),
+      T(values.at("T").front(), {}, formula_of_position(3, false));
+  const auto last_cell = [](int j, int k) { return (7 * 7 + j) * 9 + k; };
+  const auto value_at = [&](const expression& of, int j, int k) {
+    return of.value(mesh.centre(last_cell(j, k)));
+  };
+  const auto of_cell = [&](const std::string& name, int j, int k) {
+    const auto found = std::find(earlier.names.begin(), earlier.names.end(), name) - earlier.names.begin();
+    return earlier.values.at(static_cast<std::size_t>(found)).at(static_cast<std::size_t>(last_cell(j, k)));
+  };
+  for (int j = 0; j < 7; ++j)
+    for (int k = 0; k < 9; ++k) {
+      if (j < 2 && k < 2) continue;
+      EXPECT_EQ(value_at(rho, j, k), of_cell("rho", j, k)) << j << " " << k;
+      EXPECT_EQ(value_at(T, j, k), of_cell("T", j, k)) << j << " " << k;
+    }
+  // Cells are 1/7 along y and 2/9 along z: the gas beyond the box in y is nearer.
+  EXPECT_EQ(value_at(rho, 1, 0), of_cell("rho", 2, 0));
+  EXPECT_EQ(value_at(rho, 0, 1), of_cell("rho", 0, 2));
+  EXPECT_EQ(to_toml(parse_case(to_toml(config), "again")), to_toml(config));
+  expect_promises(run_of(to_toml(config)));
+  EXPECT_THAT(refusal(in_several_dimensions::in_plane + inlet),
+              HasSubstr("it has 3 space dimensions (the case has 2); give another result"));
+}
 
 TEST(ends_of_flows, take_profiles_from_earlier_results) {
   const test_folder folder;

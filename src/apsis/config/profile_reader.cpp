@@ -4,25 +4,33 @@
 #include <apsis/config/case_json.hpp>
 #include <apsis/config/case_units.hpp>
 #include <apsis/config/case_value.hpp>
+#include <apsis/core/index.hpp>
 #include <apsis/core/suggest.hpp>
 #include <apsis/mesh/face.hpp>
 #include <apsis/model/formula_table.hpp>
 #include <apsis/output/hdf5_file.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
+#include <functional>
 #include <map>
+#include <numeric>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 namespace apsis {
 namespace {
 
 const std::string profile_key = ".profile.file";
+/// Five variables of so many cells fit into a file of longest_case_file bytes, from which runs continue.
+constexpr std::size_t most_cells = 8000;
 
 /// A side of an earlier result.
 class earlier_side {
@@ -33,11 +41,12 @@ class earlier_side {
       throw input_error("it is no result of a gas (rho and T are needed); give a solution.h5");
     shape_ = file_.extents("fields/rho");
     check_scales();
-    if (shape_.size() > 2)
-      throw input_error(
-          "it has three space dimensions (profiles are read along lines); give formulas in their place");
     if (static_cast<std::size_t>(where.direction) >= shape_.size())
-      throw input_error("it has no such side (it has one space dimension); give left or right");
+      throw input_error(fmt::format(
+          "it has no such side (it has {} space dimension{}); give {}", shape_.size(),
+          shape_.size() == 1 ? "" : "s",
+          fmt::join(face_names.begin(), face_names.begin() + 2 * static_cast<std::ptrdiff_t>(shape_.size()),
+                    shape_.size() == 1 ? " or " : ", ")));
   }
 
   std::size_t dimensions() const { return shape_.size(); }
@@ -77,26 +86,78 @@ class earlier_side {
     return values;
   }
 
-  /// A table through the cells at the side, without those in solids, or the number on a line.
+  /// The number on a line, or a table through the cells at the side.
   std::string formula(const std::string& name, const dimension& wanted) const {
     const std::vector<double> values = numbers("fields/" + name, wanted);
-    const auto side = static_cast<std::size_t>(where_.direction), along = 1 - side;
-    const std::size_t last = where_.upper ? shape_[side] - 1 : 0;
-    if (shape_.size() == 1) return fmt::format("{}", values.at(last));
-    const std::string coordinate(1, along == 0 ? 'x' : 'y');
-    const std::vector<double> centres = numbers(coordinate, dimensions::length);
-    if (centres.size() != shape_[along] || values.size() != shape_[0] * shape_[1])
-      throw input_error(
-          fmt::format("'{}' and '{}' do not belong together (damaged file); give another", name, coordinate));
-    std::vector<std::pair<double, double>> points;
-    for (std::size_t k = 0; k < centres.size(); ++k) {
-      const double value = values[side == 0 ? last * shape_[1] + k : k * shape_[1] + last];
-      if (std::isfinite(value)) points.emplace_back(centres[k], value);
+    const auto count = std::accumulate(shape_.begin(), shape_.end(), std::size_t{1}, std::multiplies<>());
+    std::vector<std::size_t> along;  // directions
+    std::vector<std::vector<double>> centres;
+    for (std::size_t k = 0; k < shape_.size(); ++k) {
+      if (k == at(where_.direction)) continue;
+      along.push_back(k);
+      centres.push_back(numbers(coordinate(k), dimensions::length));
+      if (centres.back().size() != shape_[k] || values.size() != count)
+        throw input_error(fmt::format("'{}' and '{}' do not belong together (damaged file); give another",
+                                      name, coordinate(k)));
     }
-    if (points.empty())
+    if (along.empty()) return fmt::format("{}", values.at(where_.upper ? shape_[0] - 1 : 0));
+    if (along.size() == 1) return along_side(name, coordinate(along[0]), centres[0], values_at_side(values));
+    return over_side(name, {coordinate(along[0]), coordinate(along[1])}, centres, values_at_side(values));
+  }
+
+  static std::string coordinate(std::size_t direction) { return std::string(1, "xyz"[direction]); }
+
+  /// Returns the values of the cells at the side, in their order in the file.
+  std::vector<double> values_at_side(const std::vector<double>& values) const {
+    const std::size_t side = at(where_.direction), last = where_.upper ? shape_[side] - 1 : 0;
+    std::size_t stride = 1;
+    for (std::size_t k = side + 1; k < shape_.size(); ++k) stride *= shape_[k];
+    std::vector<double> found;
+    for (std::size_t k = 0; k < values.size(); ++k)
+      if (k / stride % shape_[side] == last) found.push_back(values[k]);
+    return found;
+  }
+
+  [[noreturn]] static void fail_without_gas(const std::string& name) {
+    throw input_error(fmt::format("'{}' has no values at this side (solid cells); give another side", name));
+  }
+
+  /// A table without the cells in solids.
+  static std::string along_side(const std::string& name, const std::string& argument,
+                                const std::vector<double>& centres, const std::vector<double>& values) {
+    std::vector<std::pair<double, double>> points;
+    for (std::size_t k = 0; k < centres.size(); ++k)
+      if (std::isfinite(values[k])) points.emplace_back(centres[k], values[k]);
+    if (points.empty()) fail_without_gas(name);
+    return formula_of_table(argument, points);
+  }
+
+  /// A table in which cells in solids have the value of the nearest cell with gas.
+  static std::string over_side(const std::string& name, const std::array<std::string, 2>& arguments,
+                               const std::vector<std::vector<double>>& centres,
+                               const std::vector<double>& values) {
+    const std::vector<double>&first = centres[0], &second = centres[1];
+    if (values.size() > most_cells)
       throw input_error(
-          fmt::format("'{}' has no values at this side (solid cells); give another side", name));
-    return formula_of_table(coordinate, points);
+          fmt::format("it has {} cells at this side (at most {} become part of a case); give a "
+                      "coarser result",
+                      values.size(), most_cells));
+    std::vector<std::size_t> with_gas;
+    for (std::size_t k = 0; k < values.size(); ++k)
+      if (std::isfinite(values[k])) with_gas.push_back(k);
+    if (with_gas.empty()) fail_without_gas(name);
+    const std::size_t n = second.size();
+    const auto nearest = [&](std::size_t to) {
+      const auto distance = [&](std::size_t k) {
+        return std::hypot(first[k / n] - first[to / n], second[k % n] - second[to % n]);
+      };
+      return *std::min_element(with_gas.begin(), with_gas.end(),
+                               [&](std::size_t a, std::size_t b) { return distance(a) < distance(b); });
+    };
+    std::vector<double> filled = values;
+    for (std::size_t k = 0; k < values.size(); ++k)
+      if (!std::isfinite(values[k])) filled[k] = values[nearest(k)];
+    return formula_of_table(arguments[1], arguments[0], second, first, filled);
   }
 
   hdf5_file file_;

@@ -27,9 +27,9 @@ namespace apsis {
 namespace {
 
 const std::vector<std::string>& names_of_the_language() {
-  static const std::vector<std::string> names = {"pi",   "e",    "sin",  "cos",  "tan",  "asin", "acos",
-                                                 "atan", "sinh", "cosh", "tanh", "exp",  "log",  "log10",
-                                                 "sqrt", "abs",  "min",  "max",  "table"};
+  static const std::vector<std::string> names = {"pi",   "e",    "sin",  "cos",  "tan",   "asin",  "acos",
+                                                 "atan", "sinh", "cosh", "tanh", "exp",   "log",   "log10",
+                                                 "sqrt", "abs",  "min",  "max",  "table", "table2"};
   return names;
 }
 
@@ -169,7 +169,10 @@ class variable_parser {
     for (std::size_t k = 0; k < values_.size(); ++k) parser_.DefineVar(kind.variables[k], &values_[k]);
     for (const auto& [name, value] : kind.constants) parser_.DefineConst(name, value);
     for (std::size_t k = 0; k < text.tables.size(); ++k)
-      parser_.DefineFunUserData(name_of_table(k), value_of_table, table_of(text, k));
+      if (text.tables[k].arguments() == 2)
+        parser_.DefineFunUserData(text.names[k], value_of_two, table_of(text, k));
+      else
+        parser_.DefineFunUserData(text.names[k], value_of_one, table_of(text, k));
     parser_.SetExpr(text.text);
   }
 
@@ -184,8 +187,11 @@ class variable_parser {
   static void* table_of(const text_of_tables& text, std::size_t k) {
     return const_cast<formula_table*>(&text.tables[k]);
   }
-  static double value_of_table(void* table, double a) {
+  static double value_of_one(void* table, double a) {
     return static_cast<const formula_table*>(table)->at(a);
+  }
+  static double value_of_two(void* table, double a, double b) {
+    return static_cast<const formula_table*>(table)->at(a, b);
   }
 
   std::vector<double> values_;

@@ -47,7 +47,7 @@ struct value_conversion {
 
 /// A formula for coefficients that a case file gives as text (ε(x), a flux F(u)); dimensionless. Operators
 /// + - * / ^, comparisons and `a ? b : c`; functions sin cos tan asin acos atan sinh cosh tanh exp log
-/// (natural) log10 sqrt abs min max, and table (formula_table); constants pi and e. No assignment.
+/// (natural) log10 sqrt abs min max, table and table2 (formula_table); constants pi and e. No assignment.
 class expression {
  public:
   /// Returns the number of texts compiled by this process so far.

@@ -2,6 +2,7 @@
 #include "method_document.hpp"
 #include "print.hpp"
 
+#include <apsis/body/read_stl.hpp>
 #include <apsis/config/case.hpp>
 #include <apsis/config/case_schema.hpp>
 #include <apsis/core/embedded.hpp>
@@ -60,6 +61,9 @@ int show(const options& given) {
     only_text(given);
     for (const auto& built_in : embedded::cases())
       if (built_in.name == given.what) print(std::string(built_in.text));
+  } else if (const auto surface = built_in_stl(given.what)) {
+    only_text(given);
+    print(*surface);
   } else if (is_method_name(given.what)) {
     print(method_document(find_method(given.what), given.format.empty() ? "text" : given.format));
   } else if (contains(names_of_several_steps(), given.what)) {
@@ -70,16 +74,19 @@ int show(const options& given) {
     std::vector<std::string> all;
     for (const auto& file : embedded::methods()) all.emplace_back(file.name);
     all.insert(all.end(), cases.begin(), cases.end());
+    for (const auto& file : embedded::surfaces()) all.push_back(fmt::format("{}.stl", file.name));
     all.emplace_back("case");
-    throw input_error(fmt::format("nothing is called '{}' (no method, built-in case or method file); {}",
-                                  given.what.substr(0, 60), suggest(given.what, all)));
+    throw input_error(
+        fmt::format("nothing is called '{}' (no method, built-in case, STL file or method file); {}",
+                    given.what.substr(0, 60), suggest(given.what, all)));
   }
   return 0;
 }
 
 action define(CLI::App& command) {
   auto given = std::make_shared<options>();
-  command.add_option("WHAT", given->what, "a method, a method file, a built-in case, or: case")->required();
+  command.add_option("WHAT", given->what, "a method, a method file, a built-in case or STL file, or: case")
+      ->required();
   command.add_option("--format", given->format, "format for a method: text, json, latex or toml")
       ->check(CLI::IsMember({"text", "json", "latex", "toml"}));
   return [given] { return show(*given); };
@@ -91,7 +98,7 @@ action define(CLI::App& command) {
 extern const command_entry command_show;
 const command_entry command_show = {
     .name = "show",
-    .summary = "Show a method, a built-in case, or the keys of a case (show case)",
+    .summary = "Show a method, a built-in case or its STL file, or the keys of a case (show case)",
     .place = 40,
     .completion = completed_from_list("methods"),
     .define = show_command::define};

@@ -131,6 +131,21 @@ TEST(read_stl, reports_files_that_cannot_be_read) {
   EXPECT_THROW(read_stl(testing::TempDir()), apsis::io_error);
 }
 
+TEST(read_stl, finds_a_built_in_file_by_its_name) {
+  const auto triangles = apsis::read_stl("gas/satellite.stl");
+  double volume = 0.0;
+  for (const auto& [a, b, c] : triangles)
+    volume += (a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) +
+               a[2] * (b[0] * c[1] - b[1] * c[0])) /
+              6.0;
+  // A box and two panels; coordinates have single precision.
+  EXPECT_NEAR(volume, 1.2 * 1.2 * 1.2 + 2 * 0.4 * 1.0 * 0.8, 1e-6);
+  EXPECT_TRUE(apsis::built_in_stl("gas/satellite.stl")->starts_with("solid satellite\n"));
+  // Another path of the same letters is that of a file.
+  EXPECT_THROW(apsis::read_stl("./gas/satellite.stl"), apsis::io_error);
+  EXPECT_FALSE(apsis::built_in_stl("gas/satellite"));
+}
+
 TEST(shape_stl, is_scaled_rotated_and_then_shifted) {
   const std::string path = written("box.stl", binary_stl(cuboid({0, 0, 0}, {1, 2, 3})));
   const auto stl = body_examples::made(

@@ -37,6 +37,13 @@ inline apsis::case_config small(const std::string& method, const std::string& ho
   return c;
 }
 
+/// Returns how many cells in each direction suffice: the thin parts of an STL surface need 8.
+inline int enough_cells(const apsis::case_config& c, int usual) {
+  const bool thin = std::any_of(c.bodies.begin(), c.bodies.end(),
+                                [](const auto& body) { return body.shape.shape == "stl"; });
+  return thin ? std::max(usual, 8) : usual;
+}
+
 inline void finish(apsis::simulation& run) {
   while (!run.finished()) run.advance();
 }

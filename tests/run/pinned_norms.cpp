@@ -2,6 +2,8 @@
 // that a case depends on, even if no property of the solution reveals it. A new case fails until its norms
 // are pinned.  After an intended change, pin the norms again and review the difference before it is
 // committed:   APSIS_PIN_NORMS=1 build/release/tests/test_run --gtest_filter='*pinned_norms*'
+#include "cases.hpp"
+
 #include <apsis/config/case.hpp>
 #include <apsis/integrate/schedule.hpp>
 #include <apsis/method/method.hpp>
@@ -55,7 +57,7 @@ std::vector<std::string> small_version(const std::string& name) {
   // Enough for the widest stencil and for the jumps of the data to be several cells apart.
   if (whole.places.contains("space.cells") && whole.solids.empty()) {
     constexpr std::array<int, 3> most_cells = {24, 12, 5};
-    const int most = most_cells.at(whole.space.cells.size() - 1);
+    const int most = enough_cells(whole, most_cells.at(whole.space.cells.size() - 1));
     std::vector<int> cells;
     for (const int n : whole.space.cells) cells.push_back(std::min(n, most));
     overrides.push_back(cells.size() == 1 ? fmt::format("space.cells={}", cells.front())

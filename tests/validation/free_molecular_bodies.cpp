@@ -1,7 +1,9 @@
 // Free molecules past a circle and a sphere: the reference values against integrals over the molecules that
 // arrive, runs with specular walls, and pressure, shear and heat at every piece of a wall.
+#include <apsis/body/read_stl.hpp>
 #include <apsis/config/case.hpp>
 #include <apsis/core/errors.hpp>
+#include <apsis/run/body_loads.hpp>
 #include <apsis/run/simulation.hpp>
 
 #include <algorithm>
@@ -18,6 +20,7 @@
 namespace free_molecular_bodies_test {
 namespace {
 
+using apsis::position;
 using apsis::simulation;
 using apsis::validation::compute_quantity;
 using apsis::validation::find_quantity;
@@ -64,6 +67,39 @@ std::array<double, 2> coefficients(double mach, double alpha, bool sphere) {
   return {drag / (0.5 * U * U), heat / (0.5 * U * U * U)};
 }
 
+/// Returns drag, lift and heat of a surface whose triangles are free plates, turned by an angle in degrees
+/// about y in a stream along x. Those of a convex body are exact.
+std::array<double, 3> loads_of_plates(const std::string& file, double U, double incidence) {
+  // In the coordinates of the file the stream turns backwards.
+  const double turn = incidence * std::numbers::pi / 180.0, c = std::cos(turn), s = std::sin(turn);
+  const position stream = {U * c, 0.0, U * s}, along = {c, 0.0, s}, up = {-s, 0.0, c};
+  const auto dot = [](const position& a, const position& b) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+  };
+  std::array<double, 3> loads{};
+  for (const auto& [a, b, d] : apsis::read_stl(file)) {
+    position p, q, n, tangential;
+    for (std::size_t k = 0; k < 3; ++k) {
+      p[k] = b[k] - a[k];
+      q[k] = d[k] - a[k];
+    }
+    n = {p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]};
+    const double twice = std::sqrt(dot(n, n));
+    for (double& component : n) component /= twice;
+    const double across = dot(stream, n);
+    for (std::size_t k = 0; k < 3; ++k) tangential[k] = stream[k] - across * n[k];
+    const double slip = std::sqrt(dot(tangential, tangential));
+    const wall_fluxes at = arriving(across, slip);
+    for (std::size_t k = 0; k < 2; ++k) {
+      const position& to = k == 0 ? along : up;
+      const double shear = slip > 0.0 ? at.shear * dot(tangential, to) / slip : 0.0;
+      loads[k] += 0.5 * twice * (shear - (at.pressure + at.reemitted_pressure) * dot(n, to));
+    }
+    loads[2] += 0.5 * twice * at.heat;
+  }
+  return loads;
+}
+
 }  // namespace
 
 TEST(free_molecular_bodies, have_the_coefficients_that_the_fluxes_of_molecules_give) {
@@ -93,6 +129,22 @@ TEST(free_molecular_bodies, have_the_drag_of_a_sphere_on_few_cells) {
   // Ten velocities in place of twelve, and an eighth of the time: 1.5 % as with those.
   EXPECT_NEAR(compute_quantity(find_quantity("sphere"), {"mach=1", "velocity.points=10", "time.end=0.1"}),
               5.110056, 0.02 * 5.110056);
+}
+
+TEST(free_molecular_bodies, have_less_than_the_loads_of_plates_that_shade_nothing) {
+  simulation run(apsis::load_case("gas/satellite", {"velocity.points=10", "time.end=0.1"}));
+  while (!run.finished()) run.advance();
+  const apsis::body_load half = apsis::body_loads(run.setup(), run.last()).front();
+  const auto [drag, lift, heat] =
+      loads_of_plates("gas/satellite.stl", run.config().output.reference.value().speed(), 20.0);
+  // Test particles of the shape, with shade and with what walls emit towards each other, have 4.4 % less drag
+  // and 4.8 % less heat than the plates. Cells of 0.2 cut off edges: 3 % to 5 % more are missing.
+  EXPECT_LT(2.0 * half.force[0], 0.95 * drag);
+  EXPECT_GT(2.0 * half.force[0], 0.88 * drag);
+  EXPECT_LT(2.0 * half.heat, 0.95 * heat);
+  EXPECT_GT(2.0 * half.heat, 0.88 * heat);
+  // Front and top have nearly opposite lift; their difference has the error of the drag.
+  EXPECT_NEAR(2.0 * half.force[2], lift, 0.02 * drag);
 }
 
 TEST(free_molecular_bodies, refuse_parameters_that_are_no_accommodation) {

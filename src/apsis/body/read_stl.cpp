@@ -1,5 +1,6 @@
 #include <apsis/body/read_stl.hpp>
 
+#include <apsis/core/embedded.hpp>
 #include <apsis/core/errors.hpp>
 #include <apsis/core/text_file.hpp>
 
@@ -9,6 +10,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string_view>
 #include <system_error>
 #include <utility>
@@ -166,9 +168,16 @@ std::vector<space_triangle> read_binary_stl(std::string_view bytes, const std::s
 
 }  // namespace
 
+std::optional<std::string> built_in_stl(const std::string& name) {
+  for (const auto& built_in : embedded::surfaces())
+    if (name == fmt::format("{}.stl", built_in.name)) return std::string(built_in.text);
+  return std::nullopt;
+}
+
 std::vector<space_triangle> read_stl(const std::string& path) {
   constexpr std::size_t longest = 2'000'000'000;
-  const std::string bytes = read_text_file(path, longest, "STL file");
+  const auto built_in = built_in_stl(path);
+  const std::string bytes = built_in ? *built_in : read_text_file(path, longest, "STL file");
   if (bytes.size() > longest)
     throw input_error(
         {path, 0, 0},

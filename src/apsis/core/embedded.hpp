@@ -12,8 +12,9 @@ struct embedded_text {
 };
 
 namespace embedded {
-std::vector<embedded_text> methods();  ///< returns every file of methods/
-std::vector<embedded_text> cases();    ///< returns every file of cases/
+std::vector<embedded_text> methods();   ///< returns every file of methods/
+std::vector<embedded_text> cases();     ///< returns every case of cases/
+std::vector<embedded_text> surfaces();  ///< returns every STL file of cases/
 }  // namespace embedded
 
 }  // namespace apsis

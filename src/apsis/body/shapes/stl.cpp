@@ -42,7 +42,9 @@ extern const shape_entry shape_stl;
 const shape_entry shape_stl = {
     .name = "stl",
     .description = "closed surface of triangles from an STL file, ASCII or binary",
-    .keys = {{.name = "file", .doc = "path of the STL file", .kind = shape_value_kind::text},
+    .keys = {{.name = "file",
+              .doc = "path of the STL file, or name of a built-in one: gas/satellite.stl",
+              .kind = shape_value_kind::text},
              {.name = "scale",
               .doc = "factor of all coordinates of the file",
               .value = 1.0,

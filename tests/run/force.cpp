@@ -110,10 +110,9 @@ TEST(accelerated_gas, near_the_end_of_the_velocities_reports_what_the_force_does
   EXPECT_GT(momentum, 1e-4);
   EXPECT_GT(energy, momentum);  // lost at velocities above 1
   EXPECT_NEAR(run.summary().force_lost_momentum, share, 1e-12);
-  const std::string wanted = "the force gives the gas less ";
-  EXPECT_EQ(run.summary().force_lost_momentum > 0.01 || run.summary().force_lost_energy > 0.01,
-            warnings.find(wanted) != std::string::npos)
-      << warnings << run.summary().force_lost_momentum << " " << run.summary().force_lost_energy;
+  // Less than one percent is no reason for a warning (velocity_range has one).
+  EXPECT_LT(run.summary().force_lost_energy, 0.01);
+  EXPECT_EQ(warnings.find("the force gives the gas less "), std::string::npos) << warnings;
   EXPECT_LT(run_of({}).summary().force_lost_momentum, 1e-9);
 }
 

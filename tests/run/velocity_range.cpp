@@ -287,6 +287,9 @@ TEST(velocity_range, the_mass_that_a_force_moves_into_the_last_velocities_is_wha
   EXPECT_GT(held, moved);
   EXPECT_LT(held, 1.5 * moved);
   EXPECT_EQ(times_in(warnings, "the force moves the gas into the ends of the velocity grid"), 1) << warnings;
+  // The share of the energy that is lost grows above one percent.
+  EXPECT_GT(run.summary().force_lost_energy, 0.01);
+  EXPECT_EQ(times_in(warnings, "the force gives the gas less energy than it should"), 1) << warnings;
   const outcome none = run_of(gas, {"space.boundary=periodic", "force.acceleration=0.1"});
   EXPECT_LT(none.summary.velocity_held, 1e-10);
 }

@@ -8,8 +8,7 @@ namespace apsis {
 const std::vector<case_key>& case_schema() {
   static const std::vector<case_key> schema = [] {
     auto tables = key_table_entries();
-    std::stable_sort(tables.begin(), tables.end(),
-                     [](const auto* a, const auto* b) { return a->place < b->place; });
+    std::sort(tables.begin(), tables.end(), [](const auto* a, const auto* b) { return a->place < b->place; });
     std::vector<case_key> all;
     for (const auto* table : tables)
       for (case_key& one : table->keys()) all.push_back(std::move(one));

@@ -163,12 +163,12 @@ formula_table::formula_table(const std::vector<std::pair<double, double>>& point
 
 double formula_table::at(double a, double b) const {
   if (std::isnan(a) || std::isnan(b)) return std::numeric_limits<double>::quiet_NaN();
-  const auto [i, share_of_a] = locate(a_, a);
-  const auto [j, share_of_b] = b_.empty() ? std::pair{std::size_t{0}, 0.0} : locate(b_, b);
-  const auto in_row = [&, i = i, j = j, share = share_of_a](std::size_t row) {
-    return between(share, [&](std::size_t k) { return values_[(j + row) * a_.size() + i + k]; });
+  const auto column = locate(a_, a), row = b_.empty() ? std::pair{std::size_t{0}, 0.0} : locate(b_, b);
+  const auto in_row = [&](std::size_t j) {
+    const double* values = values_.data() + (row.first + j) * a_.size() + column.first;
+    return between(column.second, [values](std::size_t i) { return values[i]; });
   };
-  return between(share_of_b, in_row);
+  return between(row.second, in_row);
 }
 
 text_of_tables take_tables(const std::string& formula, const reader_of_points::failure& fail) {

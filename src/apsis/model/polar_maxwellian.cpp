@@ -157,9 +157,9 @@ bool discrete_maxwellian_on_rings(const velocity_grid& grid, const double* omega
   }
   fluid_state state = to_fluid_state(omega, 3);
   // All of f ≥ 0 may have one velocity, up to the rounding of sums.
-  const double square = 2.0 * omega[4] / omega[0], rounding = 1e-14 * square;
+  const double square = 2.0 * omega[4] / omega[0], rounding = 1e-14 * square, coldest = 1e-15 * square;
   if (!std::isfinite(state.T) || !(state.T >= -rounding)) return false;
-  state.T = std::max({state.T, rounding, no_mass});
+  state.T = std::max({state.T, coldest, no_mass});
   factors of(grid, state);
   // A narrow Gaussian has nothing where few molecules far away are needed: the second start is wide.
   const double narrow = std::max(state.T, 0.1 * gap_square_on_rings(grid, state)),

@@ -157,7 +157,8 @@ target_correction moments_of_row::correction_of_row(const target_defect& found, 
   return by;
 }
 
-/// The equations are linear: the correction of a small defect is exact to rounding.
+/// The equations are linear: the correction of a small defect is exact to rounding, unless they are singular
+/// because nearly all of the row is at a few points.
 template <int size>
 bool moments_of_row::correct_by(target_shape& shape) const {
   constexpr double small = 1e-2;
@@ -165,7 +166,7 @@ bool moments_of_row::correct_by(target_shape& shape) const {
     const target_defect found = defect_of(shape);
     if (found.size() <= target_rounding) return true;
     correction_of_row<size>(found, shape.variance).add_to(shape.of_g, static_cast<int>(d_));
-    if (found.size() < small) return true;
+    if (found.size() < small) return defect_of(shape).size() <= target_accuracy;
   }
   return false;
 }

@@ -4,7 +4,7 @@
     bench/report.py [--results results/bench/speed.json] [--docs docs] [--readme README.md]
 
 Copies the results, if there are any, to DOCS/data/speed/PROCESSOR.json.gz. Writes the tables of the newest file there between the
-marks <!-- NAME --> and <!-- end --> of DOCS/speed.md, DOCS/scaling.md and DOCS/steady.md, draws DOCS/images/speed-*.png, and writes the table that compares processors
+marks <!-- NAME --> and <!-- end --> of DOCS/speed.md, DOCS/bodies.md, DOCS/scaling.md and DOCS/steady.md, draws DOCS/images/speed-*.png, and writes the table that compares processors
 there and its most important rows into the README.
 """
 import argparse
@@ -20,7 +20,7 @@ import scaling_model  # noqa: E402
 from plot.style import COLOURS, MARKERS, plt  # noqa: E402  (one style for all pictures)
 
 
-PAGES = {"processes": "scaling.md", "steady": "steady.md"}  # of tables that are not in speed.md
+PAGES = {"bodies": "bodies.md", "processes": "scaling.md", "steady": "steady.md"}  # of tables that are not in speed.md
 
 
 class ReportError(Exception):

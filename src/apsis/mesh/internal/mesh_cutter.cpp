@@ -70,10 +70,14 @@ int mesh_cutter::neighbour(int cell, int direction, bool upper) const {
   return cell + (there - here) * mesh_.stride(direction);
 }
 
+/// The open part of a face; none to a cell without gas, whose part may be a sliver.
 open_parts::part mesh_cutter::open_face_of(int cell, int direction, bool upper) {
   open_parts::corner corner = lowest_corner(cell);
   corner[at(direction)] += upper ? 1 : 0;
-  return parts_.face(direction, corner);
+  open_parts::part part = parts_.face(direction, corner);
+  if (const int beside = neighbour(cell, direction, upper); beside >= 0 && kinds_[at(beside)] == kind::body)
+    part.share = 0.0;
+  return part;
 }
 
 /// Throws input_error if a body that crosses a periodic face does not continue at the opposite one.
@@ -114,7 +118,10 @@ void mesh_cutter::sort_cells() {
     if (found == open_parts::thin_part::body) thin.push_back(cell);
   }
   check_thin_cells(thin, cut.size());
-  for (const int cell : cut) measure(cell);
+  for (const int cell : cut)
+    if (measured(cell).volume < no_gas * mesh_.cell_volume()) kinds_[at(cell)] = kind::body;
+  for (const int cell : cut)
+    if (kinds_[at(cell)] != kind::body) add_cut_cell(cell);
   for (const int cell : cut)
     if (kinds_[at(cell)] == kind::whole) check_closed_faces(cell);
   bool any = false;
@@ -195,7 +202,7 @@ void mesh_cutter::make_cut(int cell) {
 
 /// Measures the gas of a cell by the cones from the middle of the zeros of φ to the open faces: the cone to
 /// the wall has no volume where the wall is flat.
-void mesh_cutter::measure(int cell) {
+mesh_cutter::gas_of_cell mesh_cutter::measured(int cell) {
   const open_parts::corner corner = lowest_corner(cell);
   const position apex = parts_.middle_of_zeros(corner);
   const int dimensions = mesh_.dimensions();
@@ -210,13 +217,14 @@ void mesh_cutter::measure(int cell) {
       for (std::size_t d = 0; d < 3; ++d)
         moment[d] += volume * (dimensions * middle[d] + apex[d]) / (dimensions + 1);
     }
-  const double share = made.volume / mesh_.cell_volume();
-  if (share < no_gas) {
-    kinds_[at(cell)] = kind::body;
-    return;
-  }
-  if (share > all_gas && is_like_whole(cell)) return;
   for (std::size_t d = 0; d < 3; ++d) made.centre[d] = moment[d] / made.volume;
+  return made;
+}
+
+/// Makes a cell with corners in a body cut, unless all of it is gas.
+void mesh_cutter::add_cut_cell(int cell) {
+  gas_of_cell made = measured(cell);
+  if (made.volume > all_gas * mesh_.cell_volume() && is_like_whole(cell)) return;
   kinds_[at(cell)] = kind::cut;
   add_walls(cell, made);
   gas_.emplace(cell, std::move(made));

@@ -53,7 +53,8 @@ class mesh_cutter {
   void sort_cells();
   void check_thin_cells(const std::vector<int>& thin, std::size_t of_bodies) const;
   void check_bodies() const;
-  void measure(int cell);
+  gas_of_cell measured(int cell);
+  void add_cut_cell(int cell);
   bool is_whole(int cell);
   bool is_like_whole(int cell);
   void check_closed_faces(int cell);

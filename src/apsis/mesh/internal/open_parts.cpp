@@ -19,6 +19,9 @@ constexpr double at_corner = 1e-6;
 constexpr int halvings = 52;
 /// Parts of a line in which φ is sampled for the thickness of a body, and on the sides of a cell.
 constexpr int samples_of_line = 64, samples_of_edge = 16;
+/// A corner with |φ| below this share of its neighbours' values lies on the surface. The sign of its rounding
+/// would differ between mirror images.
+constexpr double on_surface = 1e-12;
 
 open_parts::corner shifted(open_parts::corner from, int direction, int by = 1) {
   from[at(direction)] += by;
@@ -42,6 +45,24 @@ open_parts::open_parts(const grid& mesh, const outside_function& phi) : mesh_(me
                                         fmt::join(x.begin(), x.begin() + mesh.dimensions(), ", ")));
         values_.push_back(value);
       }
+  close_corners_on_surface();
+}
+
+/// Sets φ to 0 at corners where it is rounding.
+void open_parts::close_corners_on_surface() {
+  std::vector<long> touched;
+  for (int i = 0; i < corners_[0]; ++i)
+    for (int j = 0; j < corners_[1]; ++j)
+      for (int k = 0; k < corners_[2]; ++k) {
+        const corner here = {i, j, k};
+        double around = 0.0;
+        for (int d = 0; d < mesh_.dimensions(); ++d)
+          for (const int by : {-1, 1})
+            if (const corner next = shifted(here, d, by); next[at(d)] >= 0 && next[at(d)] < corners_[at(d)])
+              around = std::max(around, std::abs(value(next)));
+        if (std::abs(value(here)) < on_surface * around) touched.push_back(number(here));
+      }
+  for (const long one : touched) values_[static_cast<std::size_t>(one)] = 0.0;
 }
 
 long open_parts::number(const corner& at_) const {
@@ -342,25 +363,43 @@ open_parts::thin_part open_parts::island_in(const corner& lowest) const {
   return inside ? thin_part::gap : thin_part::body;
 }
 
+/// What separates the open or the closed corners of a cell that are not connected by edges: the middle of a
+/// face whose corners alternate shows it, or the middle of the cell.
+open_parts::thin_part open_parts::between_corners(const corner& lowest) const {
+  if (corners_are_connected(lowest)) return thin_part::none;
+  const bool deep = mesh_.dimensions() == 3;
+  thin_part found = thin_part::none;
+  for (int normal = deep ? 0 : 2; normal < 3; ++normal)
+    for (int side = 0; side < (deep ? 2 : 1); ++side) {
+      const int first = (normal + 1) % 3, second = (normal + 2) % 3;
+      const corner a = shifted(lowest, normal, side), b = shifted(a, first), c = shifted(b, second),
+                   d = shifted(a, second);
+      if (is_open(a) != is_open(c) || is_open(b) != is_open(d) || is_open(a) == is_open(b)) continue;
+      std::array<double, 3> middle{};
+      middle[at(first)] = middle[at(second)] = 0.5;
+      if (phi_(point(a, middle)) > 0.0) return thin_part::gap;
+      found = thin_part::body;
+    }
+  if (found != thin_part::none) return found;
+  return phi_(point(lowest, {0.5, 0.5, deep ? 0.5 : 0.0})) > 0.0 ? thin_part::gap : thin_part::body;
+}
+
 open_parts::thin_part open_parts::thin_in(const corner& lowest) const {
   const bool deep = mesh_.dimensions() == 3;
-  thin_part found = island_in(lowest);
-  const auto take = [&](thin_part one) {
-    if (found != thin_part::gap && one != thin_part::none) found = one;
-  };
-  if (!corners_are_connected(lowest))
-    take(phi_(point(lowest, {0.5, 0.5, deep ? 0.5 : 0.0})) > 0.0 ? thin_part::gap : thin_part::body);
-  if (!deep) {
-    take(thin_in_square(lowest, {0, 1}, {}));
-    return found;
-  }
+  for (const thin_part one : {island_in(lowest), between_corners(lowest)})
+    if (one != thin_part::none) return one;
+  if (!deep) return thin_in_square(lowest, {0, 1}, {});
+  // A plate leaves strips in two faces at least, an edge of a body that ends in the cell in one.
+  int gaps = 0, strips = 0;
   for (int normal = 0; normal < 3; ++normal)
     for (const double side : {0.0, 1.0}) {
       std::array<double, 3> from{};
       from[at(normal)] = side;
-      take(thin_in_square(lowest, {(normal + 1) % 3, (normal + 2) % 3}, from));
+      const thin_part one = thin_in_square(lowest, {(normal + 1) % 3, (normal + 2) % 3}, from);
+      gaps += one == thin_part::gap ? 1 : 0;
+      strips += one == thin_part::body ? 1 : 0;
     }
-  return found;
+  return gaps > 1 ? thin_part::gap : strips > 1 ? thin_part::body : thin_part::none;
 }
 
 bool open_parts::may_be_thin(const corner& lowest) const {

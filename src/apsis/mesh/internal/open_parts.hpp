@@ -92,6 +92,8 @@ class open_parts {
   thin_part thin_in_square(const corner& lowest, const plane& of, const std::array<double, 3>& from) const;
   thin_part island_in(const corner& lowest) const;
   bool corners_are_connected(const corner& lowest) const;
+  thin_part between_corners(const corner& lowest) const;
+  void close_corners_on_surface();
 
   const grid& mesh_;
   const outside_function& phi_;

@@ -444,6 +444,35 @@ TEST(cut_cells, refuse_thin_plates_and_gaps_with_the_cells_that_they_need) {
   EXPECT_THAT(error_of(4, {disc(0.7, 0.5, 0.01)}), testing::HasSubstr("body 1 has no wall in the domain"));
 }
 
+TEST(cut_cells, of_plates_at_any_angle_keep_most_of_the_plate_or_are_refused) {
+  std::mt19937 generator(13);
+  std::uniform_real_distribution<double> any(0.0, 1.0);
+  int made = 0, refused = 0;
+  for (int k = 0; k < 300; ++k) {
+    const grid mesh = plane(20);
+    const double thickness = (0.2 + 2.3 * any(generator)) * mesh.spacing(0), angle = 3.2 * any(generator),
+                 x0 = any(generator) * mesh.spacing(0), y0 = any(generator) * mesh.spacing(0);
+    const auto plate = [=](const position& x) {
+      const double c = std::cos(angle), s = std::sin(angle), dx = x[0] - x0, dy = x[1] - y0;
+      return std::max(std::abs(c * dx + s * dy) - 1.0, std::abs(c * dy - s * dx) - 0.5 * thickness);
+    };
+    try {
+      const cut_cells cut(mesh, {plate}, closed);
+      // A fifth is the bound; the corners of the plate lose up to a cell more, which tips may.
+      EXPECT_GT(16.0 - gas_volume(mesh, cut), 0.8 * 2.0 * thickness - 0.5 * mesh.cell_volume())
+          << thickness << " " << angle;
+      ++made;
+    } catch (const apsis::input_error& error) {
+      EXPECT_THAT(error.what(), testing::AnyOf(testing::HasSubstr("a body is thinner than a cell near"),
+                                               testing::HasSubstr("body 1 has no wall in the domain")));
+      EXPECT_LT(thickness, 2.0 * mesh.spacing(0));
+      ++refused;
+    }
+  }
+  EXPECT_GT(made, 100);
+  EXPECT_GT(refused, 50);
+}
+
 TEST(cut_cells, accept_the_tip_of_a_wedge) {
   // A wedge of 20 degrees: its tip vanishes between the corners of two or three cells.
   const outside_function wedge = [](const position& x) {

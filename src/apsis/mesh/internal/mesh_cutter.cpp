@@ -19,6 +19,8 @@ constexpr double no_gas = 1e-15;
 constexpr double all_gas = 1.0 - 1e-9;
 /// Bodies with a larger share of cells in which they are too thin are refused: the others have tips.
 constexpr double most_thin_cells = 0.2;
+/// Bodies that lose a larger share of their volume between corners of cells are refused: they have holes.
+constexpr double largest_loss = 0.2;
 
 }  // namespace
 
@@ -101,7 +103,7 @@ void mesh_cutter::check_periodic_faces() {
 
 /// Finds out what each cell is.
 void mesh_cutter::sort_cells() {
-  std::vector<int> cut, thin;
+  std::vector<int> cut, thin, losing;
   result_.body_of_.assign(at(mesh_.size()), -1);
   for (int cell = 0; cell < mesh_.size(); ++cell) {
     const open_parts::corner corner = lowest_corner(cell);
@@ -114,8 +116,9 @@ void mesh_cutter::sort_cells() {
     if (state == open_parts::state::closed) kinds_[at(cell)] = kind::body;
     if (!parts_.may_be_thin(corner)) continue;
     const auto found = parts_.thin_in(corner);
-    if (found == open_parts::thin_part::gap) parts_.refuse_as_thin("a gap between bodies", corner);
-    if (found == open_parts::thin_part::body) thin.push_back(cell);
+    if (found.part == open_parts::thin_part::gap) parts_.refuse_as_thin("a gap between bodies", corner);
+    if (found.part == open_parts::thin_part::body) thin.push_back(cell);
+    if (found.loses) losing.push_back(cell);
   }
   check_thin_cells(thin, cut.size());
   for (const int cell : cut)
@@ -130,6 +133,7 @@ void mesh_cutter::sort_cells() {
     if (kinds_[at(cell)] == kind::body) result_.body_of_[at(cell)] = body_at(mesh_.centre(cell));
   }
   check_bodies();
+  check_lost_volume(losing);
   if (!any) throw input_error("no cell is left (all lie in bodies); give smaller bodies");
 }
 
@@ -158,6 +162,31 @@ void mesh_cutter::check_thin_cells(const std::vector<int>& thin, std::size_t of_
   for (const int cell : thin) by_thickness.emplace_back(parts_.thickness(lowest_corner(cell)), cell);
   std::sort(by_thickness.begin(), by_thickness.end());
   parts_.refuse_as_thin("a body", lowest_corner(by_thickness[by_thickness.size() / 2].second));
+}
+
+/// Throws input_error if a body has lost too much between the corners of some cells.
+void mesh_cutter::check_lost_volume(const std::vector<int>& losing) const {
+  if (losing.empty()) return;
+  const auto volume_of_body = [this](int cell) {
+    if (kinds_[at(cell)] == kind::body) return mesh_.cell_volume();
+    const auto cut = gas_.find(cell);
+    return cut == gas_.end() ? 0.0 : mesh_.cell_volume() - cut->second.volume;
+  };
+  std::vector<double> kept(bodies_.size(), 0.0), lost(bodies_.size(), 0.0), most(bodies_.size(), 0.0);
+  std::vector<int> worst(bodies_.size(), -1);
+  for (int cell = 0; cell < mesh_.size(); ++cell)
+    if (const double volume = volume_of_body(cell); volume > 0.0)
+      kept[at(body_at(mesh_.centre(cell)))] += volume;
+  for (const int cell : losing) {
+    const std::size_t body = at(body_at(mesh_.centre(cell)));
+    const double here = parts_.closed_share(lowest_corner(cell)) * mesh_.cell_volume() - volume_of_body(cell);
+    if (!(here > 0.0)) continue;
+    lost[body] += here;
+    if (here > most[body]) most[body] = here, worst[body] = cell;
+  }
+  for (std::size_t body = 0; body < bodies_.size(); ++body)
+    if (lost[body] > largest_loss * (kept[body] + lost[body]))
+      parts_.refuse_as_thin("a body", lowest_corner(worst[body]));
 }
 
 /// Whether no face of a cell is open in part.

@@ -53,6 +53,7 @@ class mesh_cutter {
   void sort_cells();
   void check_thin_cells(const std::vector<int>& thin, std::size_t of_bodies) const;
   void check_bodies() const;
+  void check_lost_volume(const std::vector<int>& losing) const;
   gas_of_cell measured(int cell);
   void add_cut_cell(int cell);
   bool is_whole(int cell);

@@ -331,7 +331,7 @@ void open_parts::count_stretches(const corner& lowest, const std::array<double, 
   }
 }
 
-open_parts::thin_part open_parts::thin_in_square(const corner& lowest, const plane& of,
+open_parts::thin_cell open_parts::thin_in_square(const corner& lowest, const plane& of,
                                                  const std::array<double, 3>& from) const {
   stretches sides;
   for (const auto& [along, across] : {std::pair{of.first, of.second}, {of.second, of.first}})
@@ -340,9 +340,10 @@ open_parts::thin_part open_parts::thin_in_square(const corner& lowest, const pla
       begin[at(across)] += side;
       count_stretches(lowest, begin, along, sides);
     }
-  if (sides.gaps > 1) return thin_part::gap;
-  if (sides.bodies > 1) return thin_part::body;
-  return thin_part::none;
+  const thin_part part = sides.gaps > 1     ? thin_part::gap
+                         : sides.bodies > 1 ? thin_part::body
+                                            : thin_part::none;
+  return {part, sides.bodies > 0};
 }
 
 /// Whether the middle of a cell differs from all its corners, and no side shows why.
@@ -384,22 +385,37 @@ open_parts::thin_part open_parts::between_corners(const corner& lowest) const {
   return phi_(point(lowest, {0.5, 0.5, deep ? 0.5 : 0.0})) > 0.0 ? thin_part::gap : thin_part::body;
 }
 
-open_parts::thin_part open_parts::thin_in(const corner& lowest) const {
+open_parts::thin_cell open_parts::thin_in(const corner& lowest) const {
   const bool deep = mesh_.dimensions() == 3;
   for (const thin_part one : {island_in(lowest), between_corners(lowest)})
-    if (one != thin_part::none) return one;
+    if (one != thin_part::none) return {one, one == thin_part::body};
   if (!deep) return thin_in_square(lowest, {0, 1}, {});
   // A plate leaves strips in two faces at least, an edge of a body that ends in the cell in one.
   int gaps = 0, strips = 0;
+  thin_cell found;
   for (int normal = 0; normal < 3; ++normal)
     for (const double side : {0.0, 1.0}) {
       std::array<double, 3> from{};
       from[at(normal)] = side;
-      const thin_part one = thin_in_square(lowest, {(normal + 1) % 3, (normal + 2) % 3}, from);
-      gaps += one == thin_part::gap ? 1 : 0;
-      strips += one == thin_part::body ? 1 : 0;
+      const thin_cell one = thin_in_square(lowest, {(normal + 1) % 3, (normal + 2) % 3}, from);
+      gaps += one.part == thin_part::gap ? 1 : 0;
+      strips += one.part == thin_part::body ? 1 : 0;
+      found.loses = found.loses || one.loses;
     }
-  return gaps > 1 ? thin_part::gap : strips > 1 ? thin_part::body : thin_part::none;
+  found.part = gaps > 1 ? thin_part::gap : strips > 1 ? thin_part::body : thin_part::none;
+  return found;
+}
+
+double open_parts::closed_share(const corner& lowest) const {
+  constexpr int samples = 8;
+  const int depth = mesh_.dimensions() == 3 ? samples : 1;
+  const auto middle = [](int k) { return (k + 0.5) / samples; };
+  int closed = 0;
+  for (int i = 0; i < samples; ++i)
+    for (int j = 0; j < samples; ++j)
+      for (int k = 0; k < depth; ++k)
+        closed += phi_(point(lowest, {middle(i), middle(j), depth > 1 ? middle(k) : 0.0})) > 0.0 ? 0 : 1;
+  return static_cast<double>(closed) / (samples * samples * depth);
 }
 
 bool open_parts::may_be_thin(const corner& lowest) const {

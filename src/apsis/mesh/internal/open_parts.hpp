@@ -44,9 +44,14 @@ class open_parts {
   position middle_of_zeros(const corner& lowest);
   /// Something that passes between the corners of a cell.
   enum class thin_part { none, body, gap };
-  /// Returns whether a body, or a gap between bodies, passes between the corners of a cell. The tip of a body
-  /// that ends in the cell does not.
-  thin_part thin_in(const corner& lowest) const;
+  struct thin_cell {
+    thin_part part = thin_part::none;  ///< without the tip of a body that ends in the cell
+    bool loses = false;                ///< whether a part of a body lies between the corners, also a tip
+  };
+  /// Returns what passes between the corners of a cell.
+  thin_cell thin_in(const corner& lowest) const;
+  /// Returns the share of a cell where φ ≤ 0, from 8 samples along each direction.
+  double closed_share(const corner& lowest) const;
   /// Whether a surface may pass between the corners of a cell, by the values of φ around it.
   bool may_be_thin(const corner& lowest) const;
   /// Throws input_error: `something` near a cell is too thin for the mesh.
@@ -89,7 +94,7 @@ class open_parts {
   };
   void count_stretches(const corner& lowest, const std::array<double, 3>& from, int direction,
                        stretches& found) const;
-  thin_part thin_in_square(const corner& lowest, const plane& of, const std::array<double, 3>& from) const;
+  thin_cell thin_in_square(const corner& lowest, const plane& of, const std::array<double, 3>& from) const;
   thin_part island_in(const corner& lowest) const;
   bool corners_are_connected(const corner& lowest) const;
   thin_part between_corners(const corner& lowest) const;

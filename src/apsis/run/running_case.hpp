@@ -4,13 +4,13 @@
 #include <apsis/integrate/integrate.hpp>
 #include <apsis/mesh/field.hpp>
 #include <apsis/run/flow_watch.hpp>
-#include <apsis/run/internal/wall_temperatures.hpp>
 #include <apsis/run/monitor.hpp>
 #include <apsis/run/rounding.hpp>
 #include <apsis/run/run_promises.hpp>
 #include <apsis/run/run_state.hpp>
 #include <apsis/run/setup.hpp>
 #include <apsis/run/simulation.hpp>
+#include <apsis/run/wall_temperatures.hpp>
 #include <apsis/semidiscrete/budgeted_problem.hpp>
 
 #include <memory>

@@ -9,14 +9,11 @@ namespace apsis {
 ///     held       mass that entered the last velocities in the direction of the force, which it cannot leave
 ///     lost       ∫(ρa − given) of the N − 2 components of the momentum, ∫(ρu·a − given) of the energy
 ///     drive      ∫ρ|a|
-namespace force_losses {
+struct force_losses {
+  static constexpr std::size_t held = 0;  ///< place of the mass
+  static constexpr std::size_t lost = 1;  ///< place of the first component of the momentum
+  /// Returns the number of amounts; the last one is the drive.
+  static constexpr std::size_t size(std::size_t invariants) { return invariants + 1; }
+};
 
-inline constexpr std::size_t held = 0,  ///< place of the mass
-    lost = 1;                           ///< place of the first component of the momentum
-/// Returns the number of amounts; the last one is the drive.
-constexpr std::size_t size(std::size_t invariants) {
-  return invariants + 1;
-}
-
-}  // namespace force_losses
 }  // namespace apsis

@@ -1,4 +1,4 @@
-#include <apsis/run/internal/wall_temperatures.hpp>
+#include <apsis/run/wall_temperatures.hpp>
 
 #include <apsis/core/index.hpp>
 #include <apsis/exec/global_sum.hpp>

@@ -31,6 +31,31 @@ TEST(cut_transport, leaves_a_gas_at_rest_alone) {
   }
 }
 
+TEST(cut_transport, gives_bodies_in_a_gas_at_rest_no_force) {
+  for (const std::string wall : {"diffuse", "symmetry"}) {
+    const gas_past_bodies gas = make({.cells = 20, .bodies = {ball({0.12, -0.12, 0}, 0.47)}, .wall = wall});
+    gas.step(gas.uniform(), 0.0, 1.0);
+    const auto rates = gas.problem->budget_rates();
+    const std::size_t count = gas.equation->invariants().size();
+    const auto& space = gas.builder->space();
+    std::vector<double> force(count), sizes(count);
+    std::size_t end = 0;
+    for (const auto& surface : space.budget_surfaces()) {
+      const std::size_t ends = space.ends_at(surface);
+      for (std::size_t k = end * count; k < (end + ends) * count && surface.solid >= 0; ++k) {
+        force[k % count] += rates[k];
+        sizes[k % count] += std::abs(rates[k]);
+      }
+      end += ends;
+    }
+    // Pressure 1 on both sides of a length of about 1, up to the rounding of sums.
+    for (std::size_t k = 1; k + 1 < count; ++k) {
+      EXPECT_GT(sizes[k], 1.0) << wall << k;
+      EXPECT_LE(std::abs(force[k]), 1e-13 * sizes[k]) << wall << k;
+    }
+  }
+}
+
 TEST(cut_transport, conserves_what_walls_do_not_give) {
   std::mt19937 generator(1);
   int reflecting = 0, without_heat = 0;

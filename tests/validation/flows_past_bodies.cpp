@@ -1,6 +1,7 @@
 // Flows past bodies as a whole: the order of the drag, its scatter with the place and direction of the mesh,
 // every model of a gas between coaxial cylinders, and an oblique shock in the limit of the Euler equations.
 #include <apsis/config/case.hpp>
+#include <apsis/core/errors.hpp>
 #include <apsis/run/simulation.hpp>
 
 #include <cmath>
@@ -103,6 +104,19 @@ struct oblique_shock {
 };
 
 }  // namespace
+
+TEST(flows_past_bodies, of_a_cylinder_at_mach_5_need_the_velocities_that_the_case_states) {
+  for (const std::string kn : {"0.1", "1"}) {
+    simulation run(
+        apsis::load_case("gas/cylinder", {"parameters.M=5", "parameters.Kn=" + kn, "velocity.max=14",
+                                          "velocity.points=36", "space.cells=[18,9]", "time.end=0.1"}));
+    while (!run.finished()) run.advance();
+    // A warning is given above 1e-3.
+    EXPECT_LT(run.summary().velocity_missed, 1e-3) << kn;
+  }
+  EXPECT_THROW(static_cast<void>(simulation(apsis::load_case("gas/cylinder", {"parameters.M=5"}))),
+               apsis::input_error);
+}
 
 TEST(SLOW_flows_past_bodies, have_a_drag_of_second_order_with_weights_and_limiter) {
   // Differences between meshes do not contain the error of the velocities, which all meshes have in common.

@@ -37,11 +37,14 @@ inline apsis::case_config small(const std::string& method, const std::string& ho
   return c;
 }
 
-/// Returns how many cells in each direction suffice: the thin parts of an STL surface need 8.
+/// Returns how many cells in each direction suffice: the thin parts of an STL surface need 8, a wing
+/// section 16.
 inline int enough_cells(const apsis::case_config& c, int usual) {
-  const bool thin = std::any_of(c.bodies.begin(), c.bodies.end(),
-                                [](const auto& body) { return body.shape.shape == "stl"; });
-  return thin ? std::max(usual, 8) : usual;
+  for (const auto& body : c.bodies) {
+    if (body.shape.shape == "stl") usual = std::max(usual, 8);
+    if (body.shape.shape == "formula") usual = std::max(usual, 16);
+  }
+  return usual;
 }
 
 inline void finish(apsis::simulation& run) {

@@ -364,8 +364,8 @@ open_parts::thin_part open_parts::island_in(const corner& lowest) const {
   return inside ? thin_part::gap : thin_part::body;
 }
 
-/// What separates the open or the closed corners of a cell that are not connected by edges: the middle of a
-/// face whose corners alternate shows it, or the middle of the cell.
+/// Finds the gap or the body between closed or open corners of a cell that no edges connect. The middle of a
+/// face whose corners alternate decides, otherwise the middle of the cell.
 open_parts::thin_part open_parts::between_corners(const corner& lowest) const {
   if (corners_are_connected(lowest)) return thin_part::none;
   const bool deep = mesh_.dimensions() == 3;

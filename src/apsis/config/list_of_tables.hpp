@@ -21,7 +21,7 @@ struct key_of_table {
 std::optional<std::size_t> table_number(std::string_view word);
 
 /// Splits a path that begins with the list, as in split_key("space.body.2.radius", "space.body."). Returns
-/// nothing where no number of a table and no key follow.
+/// nothing unless the number of a table and a key follow.
 std::optional<key_of_table> split_key(const std::string& path, std::string_view list);
 
 }  // namespace apsis

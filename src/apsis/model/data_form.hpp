@@ -19,7 +19,7 @@ struct data_variable {
   apsis::dimension dimension = {};   ///< its dimension in units of a gas (gas_scales.hpp)
   /// Whether it is a function of the velocity too, whose values at all velocities follow each other.
   bool of_velocity = false;
-  /// Name of another variable that may be given in its place; "" if there is none. Neither has a default.
+  /// Name of another variable that may be given in its place, or "". The two have no default.
   std::string alternative = {};
   /// Whether it is an integral over a whole surface: its area multiplies the dimension, and the value depends
   /// on t alone.

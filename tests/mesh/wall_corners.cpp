@@ -21,6 +21,7 @@ using apsis::cut_cells;
 using apsis::grid;
 using apsis::outside_function;
 using apsis::position;
+using apsis::wall_segment;
 
 constexpr std::array<bool, 3> closed = {false, false, false};
 
@@ -101,6 +102,44 @@ void expect_no_holes(const grid& mesh, const cut_cells& cut) {
 }
 
 }  // namespace
+
+TEST(moments_of_walls, of_a_uniform_pressure_vanish) {
+  const auto largest_moment = [](const cut_cells& cut) {
+    double most = 0.0;
+    for (int solid = 0; solid < 2; ++solid) {
+      std::array<double, 3> sum{};
+      for (const wall_segment& one : cut.walls()) {
+        if (one.solid != solid) continue;
+        for (std::size_t k = 0; k < 3; ++k) {
+          const std::size_t a = (k + 1) % 3, b = (k + 2) % 3;
+          sum[k] +=
+              one.area * (one.middle[a] * one.normal[b] - one.middle[b] * one.normal[a] + one.moment[k]);
+        }
+      }
+      for (const double x : sum) most = std::max(most, std::abs(x));
+    }
+    return most;
+  };
+  const auto triangle = [](const position& p) {
+    return std::max({0.3 * p[0] - p[1] - 0.8, 0.9 * p[0] + 0.4 * p[1] - 0.9, p[1] - p[0] - 1.0});
+  };
+  const auto cube = [](const position& p) {
+    const double a = 0.8 * p[0] + 0.6 * p[1], b = 0.8 * p[1] - 0.6 * p[0];
+    return std::max({std::abs(a), std::abs(b), std::abs(p[2] - 0.1)}) - 0.9;
+  };
+  // Sums of some hundred areas.
+  constexpr double rounding = 1e-14;
+  for (const int n : {12, 24, 31}) {
+    EXPECT_LT(largest_moment(cut_cells(plane(n), {triangle}, closed)), rounding) << n;
+    EXPECT_LT(largest_moment(cut_cells(plane(n), {ball(-0.9, 0.1, 0, 0.6), ball(0.9, -0.2, 0, 0.7)}, closed)),
+              rounding)
+        << n;
+  }
+  for (const int n : {10, 15}) {
+    EXPECT_LT(largest_moment(cut_cells(space(n), {ball(0.03, -0.02, 0.05, 1.2)}, closed)), rounding) << n;
+    EXPECT_LT(largest_moment(cut_cells(space(n), {cube}, closed)), rounding) << n;
+  }
+}
 
 TEST(corners_of_walls, in_the_plane_join_the_pieces_of_every_body) {
   for (const int n : {12, 31}) {

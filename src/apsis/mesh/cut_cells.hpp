@@ -34,7 +34,10 @@ struct wall_segment {
   double area = 0.0;                  ///< of the piece; a length in two dimensions
   std::array<double, 3> normal = {};  ///< unit vector into the gas
   position middle = {};               ///< point on the wall
-  position from_centre = {};          ///< vector to it from the centroid of the gas
+  /// ∫ (x − middle) × n dA / area, n into the gas: the moment of a uniform pressure about `middle`. With it
+  /// the moments of a uniform pressure on all pieces of a body add up to 0 to rounding.
+  std::array<double, 3> moment = {};
+  position from_centre = {};  ///< vector to it from the centroid of the gas
   /// Corners of the piece: in two dimensions its ends, the solid on the left from the first to the second; in
   /// three those of a polygon, counter-clockwise seen from the gas. Their vector area is area × normal to
   /// rounding. Pieces of a body share corners bit by bit.

@@ -170,7 +170,10 @@ void mesh_cutter::add_faces(int number) {
       wall_segment made{.cell = cell, .solid = wall.solid, .middle = wall.middle, .corners = wall.corners};
       for (const double x : wall.vector) made.area += x * x;
       made.area = std::sqrt(made.area);
-      for (std::size_t k = 0; k < 3; ++k) made.normal[k] = wall.vector[k] / made.area;
+      for (std::size_t k = 0; k < 3; ++k) {
+        made.normal[k] = wall.vector[k] / made.area;
+        made.moment[k] = wall.moment[k] / made.area;
+      }
       made.from_centre = from_centre(cell, wall.middle);
       group.walls.push_back(static_cast<int>(result_.walls_.size()));
       result_.walls_.push_back(made);

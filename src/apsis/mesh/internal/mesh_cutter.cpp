@@ -22,6 +22,17 @@ constexpr double most_thin_cells = 0.2;
 /// Bodies that lose a larger share of their volume between corners of cells are refused: they have holes.
 constexpr double largest_loss = 0.2;
 
+std::array<double, 3> cross(const std::array<double, 3>& a, const std::array<double, 3>& b) {
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+
+/// to ← to + by (x − from) × vector.
+void add_moment(const position& x, const position& from, const std::array<double, 3>& vector, double by,
+                std::array<double, 3>& to) {
+  const std::array<double, 3> made = cross({x[0] - from[0], x[1] - from[1], x[2] - from[2]}, vector);
+  for (std::size_t k = 0; k < 3; ++k) to[k] += by * made[k];
+}
+
 }  // namespace
 
 mesh_cutter::mesh_cutter(const grid& mesh, const std::vector<outside_function>& bodies,
@@ -296,9 +307,6 @@ std::vector<position> mesh_cutter::corners_of_wall(int cell, const position& mid
   for (std::size_t k = 1; k < 3; ++k)
     if (std::abs(vector[k]) < std::abs(vector[least])) least = k;
   axis[least] = 1.0;
-  const auto cross = [](const std::array<double, 3>& a, const std::array<double, 3>& b) {
-    return std::array{a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-  };
   first = cross(vector, axis);
   const double length = std::hypot(first[0], first[1], first[2]);
   for (double& x : first) x *= side / length;
@@ -329,21 +337,24 @@ void mesh_cutter::add_walls(int cell, gas_of_cell& to) {
   const open_parts::corner corner = lowest_corner(cell);
   // A plane through corners of a cell leaves its faces open or closed, and cuts off half of its volume.
   const bool whole = is_whole(cell) && to.volume > all_gas * mesh_.cell_volume();
-  std::array<double, 3> vector{};
+  const position centre = mesh_.centre(cell);
+  // Area and moment about the centre of a closed surface are 0: the wall has the opposite of the open faces'.
+  std::array<double, 3> vector{}, moment{};
   double size = 0.0;
   for (int k = 0; k < mesh_.dimensions(); ++k)
     for (const bool upper : {false, true}) {
       const auto [share, middle] = open_face_of(cell, k, upper);
       const double area = mesh_.face_area({k, upper}), inwards = upper ? -1.0 : 1.0;
       const int beside = neighbour(cell, k, upper);
-      std::array<double, 3> of_closed{};
+      std::array<double, 3> of_open{}, of_closed{};
+      of_open[at(k)] = inwards * share * area;
+      add_moment(middle, centre, of_open, -1.0, moment);
       if (beside >= 0 && kinds_[at(beside)] == kind::box && share > 0.0) {
-        of_closed[at(k)] = inwards * share * area;
-        to.walls.push_back({mesh_.solid(beside), of_closed, middle, corners_of_closed(cell, k, upper, true)});
+        to.walls.push_back({mesh_.solid(beside), of_open, middle, corners_of_closed(cell, k, upper, true)});
       }
-      vector[at(k)] -= inwards * share * area;
+      vector[at(k)] -= of_open[at(k)];
       if (!whole || share > 0.0) continue;
-      position x = mesh_.centre(cell);
+      position x = centre;
       x[at(k)] -= 0.5 * inwards * mesh_.spacing(k);
       of_closed[at(k)] = inwards * area;
       const int solids = static_cast<int>(mesh_.solids().size());
@@ -358,8 +369,9 @@ void mesh_cutter::add_walls(int cell, gas_of_cell& to) {
   std::array<double, 3> normal{};
   for (std::size_t k = 0; k < 3; ++k) normal[k] = vector[k] / size;
   const position x = on_surface(parts_.middle_of_zeros(corner), normal);
-  to.walls.push_back(
-      {static_cast<int>(mesh_.solids().size()) + body_at(x), vector, x, corners_of_wall(cell, x, vector)});
+  add_moment(x, centre, vector, -1.0, moment);
+  to.walls.push_back({static_cast<int>(mesh_.solids().size()) + body_at(x), vector, x,
+                      corners_of_wall(cell, x, vector), moment});
 }
 
 /// Returns the open parts of the faces of a cell that is not solid.

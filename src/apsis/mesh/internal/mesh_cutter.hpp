@@ -25,6 +25,7 @@ class mesh_cutter {
     std::array<double, 3> vector;  ///< area × normal
     position middle;
     std::vector<position> corners;
+    std::array<double, 3> moment = {};  ///< ∫ (x − middle) × n dA
   };
   /// The gas of a cell that is cut, or that has joined one.
   struct gas_of_cell {

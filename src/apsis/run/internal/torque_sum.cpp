@@ -24,14 +24,18 @@ torque_sum::torque_sum(const run_setup& setup) : setup_(setup), momenta_(places_
       first += space.ends_at(one) * count;
       continue;
     }
-    const auto add = [&](const position& x) {
-      arms_.push_back({body, first, x});
+    const auto add = [&](const position& x, const std::array<double, 3>& normal,
+                         const std::array<double, 3>& moment) {
+      arms_.push_back({body, first, x, normal, moment});
       first += count;
     };
     for (const int surface : one.surfaces)
       for (int place = 0; place < space.surfaces()[at(surface)].own; ++place)
-        add(space.meeting_point(surface, place));
-    for (const int wall : one.walls) add(space.mesh().cut()->walls()[at(wall)].middle);
+        add(space.meeting_point(surface, place), {}, {});
+    for (const int wall : one.walls) {
+      const wall_segment& piece = space.mesh().cut()->walls()[at(wall)];
+      add(piece.middle, piece.normal, piece.moment);
+    }
     ++body;
   }
 }
@@ -47,12 +51,16 @@ std::vector<double> torque_sum::of(std::span<const double> amounts) const {
       sums[one.body].add(-one.x[1] * amounts[one.first + momenta_[2]]);  // −r p_θ
       continue;
     }
+    double pressing = 0.0;  // p·n
+    for (std::size_t k = 0; k < momenta_.size(); ++k)
+      pressing += one.normal[k] * amounts[one.first + momenta_[k]];
     for (std::size_t c = 0; c < components; ++c) {
       // −(x × p) along the axis c; along z in the plane.
       const std::size_t a = in_plane ? 0 : (c + 1) % 3, b = in_plane ? 1 : (c + 2) % 3;
       exact_sum& sum = sums[one.body * components + c];
       sum.add(one.x[b] * amounts[one.first + momenta_[a]]);
       sum.add(-one.x[a] * amounts[one.first + momenta_[b]]);
+      sum.add(-one.moment[in_plane ? 2 : c] * pressing);
     }
   }
   return global_values(setup_.processes(), sums);

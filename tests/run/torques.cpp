@@ -1,0 +1,74 @@
+// Torques on bodies in a gas at rest.
+#include "cases_in_space.hpp"
+
+#include <apsis/run/body_loads.hpp>
+#include <apsis/run/simulation.hpp>
+
+#include <cmath>
+#include <string>
+
+#include <gtest/gtest.h>
+
+namespace torques_test {
+namespace {
+
+using namespace apsis;
+
+const std::string gas = R"toml(
+[model]
+name = "bgk"
+epsilon = 0.3
+[velocity]
+max = 5
+points = 10
+[time]
+method = "md-imex-3-2"
+end = 0.05
+safety = 1
+[output]
+surfaces = "all"
+)toml";
+
+const std::string plane = gas + R"toml(
+[initial]
+rho = 1
+u = [0, 0]
+T = 1
+[space]
+cells = [24, 24]
+domain = [[-2, 2], [-2, 2]]
+boundary = "outflow"
+)toml";
+
+const std::string space = gas + R"toml(
+[initial]
+rho = 1
+u = [0, 0, 0]
+T = 1
+[space]
+cells = [9, 9, 9]
+domain = [[-2, 2], [-2, 2], [-2, 2]]
+boundary = "outflow"
+)toml";
+
+}  // namespace
+
+/// A closed surface under a uniform pressure has no force and no torque, wherever the origin is.
+TEST(torques, of_a_gas_at_rest_vanish) {
+  for (const std::string& text :
+       {plane + "[[space.body]]\nshape = 'polygon'\npoints = [[-0.7, -0.5], [1.1, 0.1], [-0.1, 0.9]]\n",
+        plane + "[[space.body]]\nshape = 'circle'\ncentre = [0.6, 0.3]\nradius = 0.9\n",
+        space + "[[space.body]]\nshape = 'sphere'\ncentre = [0.3, -0.2, 0.1]\nradius = 1.1\n",
+        space +
+            "[[space.body]]\nshape = 'box'\nfrom = [-0.8, -0.7, -0.9]\nto = [0.9, 0.8, 1.1]\nrotate = [1, 2, -1, 25]\n"}) {
+    simulation run(parse_case(text, "case.toml", {}));
+    while (!run.finished()) run.advance();
+    const body_load load = body_loads(run.setup(), run.last()).front();
+    // Sums of some hundred terms of the size of the pressure times the area of a cell.
+    constexpr double rounding = 1e-13;
+    for (const double force : load.force) EXPECT_NEAR(force, 0.0, rounding) << text;
+    for (const double torque : load.torque) EXPECT_NEAR(torque, 0.0, rounding) << text;
+  }
+}
+
+}  // namespace torques_test

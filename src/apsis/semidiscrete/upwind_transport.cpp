@@ -211,15 +211,16 @@ void upwind_transport::add_weighted(const field& u, targets_view targets, const 
   const int longest = std::min(block_length(u.stride()), std::max(1, longest_row / std::max(u.stride(), 1)));
   parallel_blocks(u.cells(), longest, [&](int begin, int end) {
     auto& rows = scratch_->rows.here();
-    const int cells = end - begin;
-    upwind::rows_of(targets, begin, rows);
-    {
-      kernel_work each = traffic(targets);
-      each.bytes += sizeof(double);
-      each.operations = 2.0 * static_cast<double>(targets.size());
-      const profile::section timed(kernel::multiples, static_cast<double>(cells) * u.stride(), each);
-      upwind::add_weights(u.row(begin), cells * u.stride(), rows);
-    }
+    kernel_work each = traffic(targets);
+    each.bytes += sizeof(double);
+    each.operations = 2.0 * static_cast<double>(targets.size());
+    // Rows of solid cells are 0 in every state.
+    for_cells_in(mesh().fluid(), begin, end, [&](int from, int to) {
+      const int numbers = (to - from) * u.stride();
+      const profile::section timed(kernel::multiples, numbers, each);
+      upwind::rows_of(targets, from, rows);
+      upwind::add_weights(u.row(from), numbers, rows);
+    });
     if (then) then(begin, end);
   });
 }

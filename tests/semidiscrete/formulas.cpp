@@ -143,19 +143,22 @@ TEST(formulas, upwind_fluxes_are_those_of_single_numbers) {
   });
 }
 
-TEST(formulas, fluxes_of_one_cell_are_those_of_single_numbers) {
+TEST(formulas, fluxes_at_the_ends_of_a_run_are_those_of_single_numbers) {
   check_property("fluxes", [] {
     random_source random(*rc::gen::arbitrary<std::uint32_t>());
     const auto n = static_cast<std::size_t>(*rc::gen::inRange(1, 28));
-    const pencil p(1, n, random);
+    const pencil p(*rc::gen::inRange(1, 9), n, random);
     for (const bool limited : {false, true})
       for_each_number([&](auto number, int) {
         using N = decltype(number);
         std::vector<double> in(n), out(n);
-        apsis::upwind::fluxes_of_cell(p.run(), limited, in.data(), out.data());
+        apsis::upwind::cells run = p.run();
+        run.in = in.data();
+        run.out = out.data();
+        (limited ? apsis::upwind::add_limited : apsis::upwind::add)(run, {});
         for (std::size_t k = 0; k < n; ++k) {
           RC_ASSERT(same_bits(in[k], value_of(flux<N>(p, limited, -1, k))));
-          RC_ASSERT(same_bits(out[k], value_of(flux<N>(p, limited, 0, k))));
+          RC_ASSERT(same_bits(out[k], value_of(flux<N>(p, limited, p.cells - 1, k))));
         }
       });
   });
@@ -459,37 +462,63 @@ TEST(formulas, values_at_centres_are_those_of_single_numbers) {
   });
 }
 
-TEST(cut_rows, limit_lines_as_the_formula_does) {
+TEST(cut_rows, are_the_formulas_of_single_numbers) {
+  namespace cut_rows = apsis::cut_rows;
   random_source random(11);
   for (int k = 0; k < 200; ++k) {
     const auto n = static_cast<std::size_t>(1 + k % 19);
-    const rows u(1, n, random, any_size), outward(2, n, random, any_sign);
-    rows slopes(2, n, random, any_sign);
-    std::vector<double> size(n), outflow(n), increase(n), values(n, 7.0);
+    const rows u(2, n, random, any_size), v(2, n, random, any_sign);
+    rows slopes(2, n, random, any_sign), beyond(2, n, random, any_sign);
+    std::vector<double> size(n), outflow(n), increase(n), share(n), values(n, 7.0), alone(n), to_row(n, 0.5),
+        to_line(n, 0.5);
     const std::vector<double> x = slopes.all;
-    const apsis::cut_rows::gradient gradient = {slopes.all.data(), slopes.all.data() + n, nullptr};
-    const apsis::cut_rows::demand_rows demand{size.data(), outflow.data(), increase.data()};
-    const std::array<std::array<double, 3>, 2> at = {{{0.3, -0.2, 0.0}, {-0.4, 0.1, 0.0}}};
+    const bool limited = k % 2 == 0;
+    const std::array<std::array<double, 3>, 2> to = {{{0.3, -0.2, 0.0}, {-0.4, 0.1, 0.0}}};
+    const auto way_at = [&](std::size_t face) {
+      return cut_rows::way_out{{0.6, face == 0 ? 0.8 : -0.8, 0.0}, 1.5, {v.at[0], v.at[1], nullptr}};
+    };
+    const auto line_to = [&](std::size_t face) {
+      return cut_rows::line{u.at[0], {slopes.all.data(), slopes.all.data() + n, nullptr}, to[face], limited};
+    };
+    const cut_rows::line other{
+        u.at[1], {beyond.all.data(), beyond.all.data() + n, nullptr}, {0.2, 0.7, 0.0}, limited};
+    const cut_rows::demand_rows demand{size.data(), outflow.data(), increase.data()};
+    const cut_rows::extent of{2, static_cast<int>(n)};
     constexpr double step = 0.01;
     const auto kept = drawn(n, random, [](random_source& r) { return r.uniform(0.8, 1.0); });
-    const int width = static_cast<int>(n);
-    for (std::size_t f = 0; f < 2; ++f)
-      apsis::cut_rows::add_demand(outward.at[f], step, gradient, at[f], 2, width, demand);
-    apsis::cut_rows::limit(u.at[0], demand, kept.data(), 2, width, gradient);
-    apsis::cut_rows::leave(u.at[0], outward.at[0], gradient, at[0], k % 2 == 0, 2, width, values.data());
+    for (std::size_t face = 0; face < 2; ++face)
+      cut_rows::add_demand(way_at(face), step, line_to(face), of, demand);
+    cut_rows::limit(u.at[0], demand, kept.data(), of, line_to(0).slopes);
+    cut_rows::project(way_at(0), of, share.data());
+    cut_rows::leave(share.data(), line_to(0), of, values.data());
+    cut_rows::leave_alone(way_at(0), line_to(0), of, alone.data());
+    cut_rows::pass(way_at(0), line_to(0), u.at[1], of, to_row.data());
+    cut_rows::pass(way_at(0), line_to(0), other, of, to_line.data());
     for (std::size_t j = 0; j < n; ++j) {
+      const auto outward = [&](std::size_t face) {
+        return 1.5 * scalar::fma(v.at[1][j], way_at(face).normal[1], v.at[0][j] * 0.6);
+      };
+      const auto value = [&](double here, double slope_x, double slope_y, const std::array<double, 3>& by) {
+        const double correction = scalar::fma(slope_y, by[1], slope_x * by[0]);
+        return limited ? scalar::nonnegative_leaving_value(here, correction)
+                       : scalar::leaving_value(here, correction);
+      };
       scalar::cut_demand<double> sums{0.0, 0.0, 0.0};
-      for (std::size_t f = 0; f < 2; ++f) {
-        const double first = x[j] * at[f][0], second = x[n + j] * at[f][1];
-        sums.add(step * outward.at[f][j], first + second, std::abs(first) + std::abs(second));
+      for (std::size_t face = 0; face < 2; ++face) {
+        const double first = x[j] * to[face][0], second = x[n + j] * to[face][1];
+        sums.add(step * outward(face), first + second, std::abs(first) + std::abs(second));
       }
       const double factor = sums.factor(u.at[0][j], kept[j]);
       ASSERT_EQ(slopes.all[j], factor * x[j]);
       ASSERT_EQ(slopes.all[n + j], factor * x[n + j]);
-      const double correction = scalar::fma(slopes.all[n + j], at[0][1], slopes.all[j] * at[0][0]);
-      const double leaving = k % 2 == 0 ? scalar::nonnegative_leaving_value(u.at[0][j], correction)
-                                        : scalar::leaving_value(u.at[0][j], correction);
-      ASSERT_EQ(values[j], outward.at[0][j] > 0.0 ? leaving : 7.0);
+      ASSERT_EQ(share[j], outward(0));
+      const double leaving = value(u.at[0][j], slopes.all[j], slopes.all[n + j], to[0]),
+                   entering = value(u.at[1][j], beyond.all[j], beyond.all[n + j], other.vector);
+      const bool leaves = outward(0) > 0.0;
+      ASSERT_EQ(values[j], leaves ? leaving : 7.0);
+      ASSERT_EQ(alone[j], leaves ? leaving : 0.0);
+      ASSERT_EQ(to_row[j], scalar::negative_fma(outward(0), leaves ? leaving : u.at[1][j], 0.5));
+      ASSERT_EQ(to_line[j], scalar::negative_fma(outward(0), leaves ? leaving : entering, 0.5));
     }
   }
 }

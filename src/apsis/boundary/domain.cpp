@@ -341,16 +341,14 @@ const double* domain::row_at(int surface, int place) const {
 }
 
 void domain::segment_rows(const field& u, int direction, int number, int begin, int end,
-                          std::vector<const double*>& rows) const {
+                          const double** rows) const {
   const segment& one = segment_at(direction, number);
   const int n = one.cells, stride = mesh().stride(direction);
-  rows.resize(at(end - begin));
   for (int i = begin; i < std::min(end, 0); ++i)
-    rows[at(i - begin)] = ghost_row(u, direction, number, false, -1 - i);
-  for (int i = std::max(begin, 0); i < std::min(end, n); ++i)
-    rows[at(i - begin)] = u.row(one.first + i * stride);
+    rows[i - begin] = ghost_row(u, direction, number, false, -1 - i);
+  for (int i = std::max(begin, 0); i < std::min(end, n); ++i) rows[i - begin] = u.row(one.first + i * stride);
   for (int i = std::max(begin, n); i < end; ++i)
-    rows[at(i - begin)] = ghost_row(u, direction, number, true, i - n);
+    rows[i - begin] = ghost_row(u, direction, number, true, i - n);
 }
 
 }  // namespace apsis

@@ -136,7 +136,13 @@ class domain : public construction_count<domain> {
   /// rows[i − begin] ← pointer to the row of cell i of a segment, i = begin … end−1. Cells outside 0 … n−1
   /// are ghost cells within the reserved width, with the values of the last fill_ghosts().
   void segment_rows(const field& u, int direction, int segment, int begin, int end,
-                    std::vector<const double*>& rows) const;
+                    const double** rows) const;
+  /// The same, of a vector that it gives this size.
+  void segment_rows(const field& u, int direction, int segment, int begin, int end,
+                    std::vector<const double*>& rows) const {
+    rows.resize(static_cast<std::size_t>(end - begin));
+    segment_rows(u, direction, segment, begin, end, rows.data());
+  }
 
  private:
   domain();

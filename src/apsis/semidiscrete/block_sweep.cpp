@@ -68,8 +68,8 @@ void block_sweep::reserve(const context& of, int cells, int width, std::size_t t
   targets_.reserve(targets);
   make_room(cells, width);
   // Also for threads that come to the end of a segment in a later step.
-  for (auto* row : {&vacuum_, &in_, &out_})
-    row->resize(std::max(row->size(), static_cast<std::size_t>(width)));
+  const auto longest = static_cast<std::size_t>(width) * static_cast<std::size_t>(cells_of_a_row(width));
+  for (auto* row : {&vacuum_, &in_, &out_}) row->resize(std::max(row->size(), longest));
 }
 
 void block_sweep::run(const context& of, const field& u, const place& at, targets_view targets) {
@@ -77,25 +77,31 @@ void block_sweep::run(const context& of, const field& u, const place& at, target
   prepare(of, u, at);
   const int cells = at.end - at.begin;
   const double numbers = static_cast<double>(cells) * width_;
+  const auto [below, above] = seen_;
   {
-    const double repeated = 1.0 + 2.0 * halo_ / cells;  // edges of the halo are those of another block too
+    // Edges of the halo are those of another block too.
+    const double repeated = 1.0 + static_cast<double>(below + above) / cells;
     const profile::section timed(kernel::edges, numbers,
                                  {repeated * of.edges.scheme->operations(both_edges()), sizeof(double)});
-    for (int i = at.begin - halo_; i < at.end + halo_;) {
-      const run_of_cells run = run_from(i, at.end + halo_ - i);
+    for (int i = at.begin - below; i < at.end + above;) {
+      const run_of_cells run = run_from(i, at.end + above - i);
       make_edges(i, run);
       i += run.cells * run.joined;
     }
   }
-  for (const bool upper : {false, true}) empty_beyond_surface(upper, at);
+  for (int ghost = at.begin - halo_; ghost < at.begin - below; ++ghost) empty(ghost);
+  for (int ghost = at.end + above; ghost < at.end + halo_; ++ghost) empty(ghost);
   const profile::section timed(kernel::fluxes, numbers, work_of(targets, cells));
+  const segment_end *lower = surface_at(false, at), *upper = surface_at(true, at);
   for (int i = at.begin; i < at.end;) {
     const run_of_cells run = run_from(i, at.end - i);
-    add(i, run, at, targets);
-    i += run.cells * run.joined;
+    const int next = i + run.cells * run.joined;
+    const bool first = lower != nullptr && i == at.begin, last = upper != nullptr && next == at.end;
+    add(i, run, at, targets, first || last);
+    if (first) record(*lower, false, 0);
+    if (last) record(*upper, true, run.joined - 1);
+    i = next;
   }
-  for (const bool upper : {false, true})
-    if (const segment_end* end = surface_at(upper, at)) record(*end, upper, at);
 }
 
 /// The surface at which a block ends; null where it does not end at one.
@@ -105,46 +111,36 @@ const segment_end* block_sweep::surface_at(bool upper, const place& at) const {
   return there && segment_->ends_here(upper) && end.surface >= 0 ? &end : nullptr;
 }
 
-/// Replaces the cells of the halo behind a surface that prescribes the incoming components, as the fluxes see
-/// them, by vacuum. The surface may lie cells away from the block, also across periodic faces and behind
-/// cells of other processes: all sweeps that compute the same flux see the same.
-void block_sweep::empty_beyond_surface(bool upper, const place& at) {
+/// Returns the number of cells of the halo that are before a surface which prescribes the incoming
+/// components. The surface may lie cells away from the block, also across periodic faces and behind cells of
+/// other processes: all sweeps that compute the same flux see the same.
+int block_sweep::seen_beyond(bool upper, const place& at) const {
   const std::size_t side = upper ? 1 : 0;
   int distance = (upper ? segment_->cells - at.end : at.begin) + segment_->beyond[side];
   for (const segment* one = segment_; distance < halo_;) {
     const segment_end& end = one->ends[side];
-    if (end.surface >= 0 && !of_->faces.prescribes(end.surface, end.place)) return;
-    if (end.surface >= 0) break;
+    if (end.surface >= 0) return of_->faces.prescribes(end.surface, end.place) ? distance : halo_;
     one = &of_->space.segment_at(at.direction, end.place);
     distance += one->cells + one->beyond[side];
   }
-  for (; distance < halo_; ++distance) {
-    const int ghost = upper ? at.end + distance : at.begin - 1 - distance;
-    rows_[static_cast<std::size_t>(ghost - first_row_)] = vacuum_.data();
-    std::fill_n(left_.data() + offset(ghost), width_, 0.0);
-    std::fill_n(right_.data() + offset(ghost), width_, 0.0);
-  }
+  return halo_;
 }
 
-/// Stores the upwind values at a surface.
-void block_sweep::record(const segment_end& end, bool upper, const place& at) {
-  const int cell = upper ? at.end - 1 : 0;
-  const auto width = static_cast<std::size_t>(width_);
-  const double* right = right_.data() + offset(cell);
-  const upwind::cells one{row(cell),
-                          both_edges() ? left_.data() + offset(cell) : right,
-                          right,
-                          width_,
-                          1,
-                          width_,
-                          line_->forward.data() + at.first,
-                          line_->per_cell.data() + at.first,
-                          line_->inverse_cfl.data() + at.first,
-                          nullptr};
-  upwind::fluxes_of_cell(one, of_->edges.limits_fluxes(), in_.data(), out_.data());
-  double* values = of_->faces.recorded(end.surface, end.place) + at.first;
-  for (std::size_t k = 0; k < width; ++k)
-    values[k] = (line_->forward[k + static_cast<std::size_t>(at.first)] != 0.0) == upper ? out_[k] : in_[k];
+/// Replaces a cell, as the fluxes see it, by vacuum.
+void block_sweep::empty(int cell) {
+  rows_[static_cast<std::size_t>(cell - first_row_)] = vacuum_.data();
+  std::fill_n(left_.data() + offset(cell), width_, 0.0);
+  std::fill_n(right_.data() + offset(cell), width_, 0.0);
+}
+
+/// Stores the upwind values at a surface, which those of a run of cells are: of a cell among joined ones.
+void block_sweep::record(const segment_end& end, bool upper, int joined) {
+  const double* forward = line_->forward.data() + first_component_;
+  const std::ptrdiff_t first = static_cast<std::ptrdiff_t>(joined) * width_;
+  const double *of_forward = (upper ? out_ : in_).data() + first,
+               *of_backward = (upper ? in_ : out_).data() + first;
+  double* values = of_->faces.recorded(end.surface, end.place) + first_component_;
+  for (int k = 0; k < width_; ++k) values[k] = forward[k] != 0.0 ? of_forward[k] : of_backward[k];
 }
 
 bool block_sweep::both_edges() const {
@@ -170,12 +166,17 @@ void block_sweep::prepare(const context& of, const field& u, const place& at) {
   first_edge_ = at.begin - halo_;
   const int beyond = halo_ + reach_;
   first_row_ = at.begin - beyond;
-  of.space.segment_rows(u, at.direction, at.segment, first_row_, at.end + beyond, rows_);
+  seen_ = {seen_beyond(false, at), seen_beyond(true, at)};
+  // Nothing reads more rows behind a surface than edges before it need.
+  const int first = at.begin - seen_[0] - reach_, last = at.end + seen_[1] + reach_;
+  rows_.assign(static_cast<std::size_t>(at.end - at.begin + 2 * beyond), vacuum_.data());
+  const double** read = rows_.data() + (first - first_row_);
+  of.space.segment_rows(u, at.direction, at.segment, first, last, read);
   joined_.assign(rows_.size(), 1);
   if (cells_of_a_row(u.stride()) > 1)
     for (std::size_t j = rows_.size() - 1; j-- > 0;)
       if (rows_[j] + width_ == rows_[j + 1]) joined_[j] = joined_[j + 1] + 1;
-  for (auto& row : rows_) row += at.first;
+  for (int k = 0; k < last - first; ++k) read[k] += at.first;
   make_room(at.end - at.begin, width_);
 }
 
@@ -213,7 +214,8 @@ const double* block_sweep::source(int i, const run_of_cells& run) {
   return source_.data() + offset(i);
 }
 
-void block_sweep::add(int i, const run_of_cells& run, const place& at, targets_view targets) {
+void block_sweep::add(int i, const run_of_cells& run, const place& at, targets_view targets,
+                      bool at_surface) {
   const bool first = at.direction == 0;
   const int apart = of_->space.mesh().stride(at.direction), cell = segment_->first + i * apart;
   upwind::rows_of(targets, cell, targets_, {at.first, apart, first});
@@ -227,7 +229,9 @@ void block_sweep::add(int i, const run_of_cells& run, const place& at, targets_v
                            line_->forward.data() + at.first,
                            line_->per_cell.data() + at.first,
                            line_->inverse_cfl.data() + at.first,
-                           first && of_->equation.has_source() ? source(i, run) : nullptr};
+                           first && of_->equation.has_source() ? source(i, run) : nullptr,
+                           at_surface ? in_.data() : nullptr,
+                           at_surface ? out_.data() : nullptr};
   if (of_->edges.limits_fluxes()) {
     upwind::add_limited(some, targets_);
   } else {

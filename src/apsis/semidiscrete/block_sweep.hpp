@@ -7,6 +7,7 @@
 #include <apsis/semidiscrete/sweep.hpp>
 #include <apsis/semidiscrete/upwind_rows.hpp>
 
+#include <array>
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -66,8 +67,9 @@ class block_sweep {
   };
 
   const segment_end* surface_at(bool upper, const place& at) const;
-  void empty_beyond_surface(bool upper, const place& at);
-  void record(const segment_end& end, bool upper, const place& at);
+  int seen_beyond(bool upper, const place& at) const;
+  void empty(int cell);
+  void record(const segment_end& end, bool upper, int joined);
   bool both_edges() const;
   kernel_work work_of(targets_view targets, int cells) const;
   void prepare(const context& of, const field& u, const place& at);
@@ -79,7 +81,7 @@ class block_sweep {
   run_of_cells run_from(int i, int most) const;
   void make_edges(int i, const run_of_cells& run);
   const double* source(int i, const run_of_cells& run);
-  void add(int i, const run_of_cells& run, const place& at, targets_view targets);
+  void add(int i, const run_of_cells& run, const place& at, targets_view targets, bool at_surface);
 
   const context* of_ = nullptr;
   const segment* segment_ = nullptr;
@@ -90,6 +92,7 @@ class block_sweep {
   aligned_vector<double> left_, right_, source_, vacuum_, in_, out_;
   int width_ = 0, first_component_ = 0, halo_ = 0, reach_ = 0, first_row_ = 0, first_edge_ = 0;
   bool whole_rows_ = false;
+  std::array<int, 2> seen_ = {};  ///< cells of the halo before a surface that prescribes what enters
 };
 
 /// Returns the memory traffic of the accumulators per number: a write, and a read unless they are fresh.

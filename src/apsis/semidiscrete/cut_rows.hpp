@@ -7,15 +7,35 @@ namespace apsis {
 
 /// Loops over the rows of cut cells, for the instruction set of this processor. `outward` is the share of the
 /// gas of a cell that leaves through a face or wall per unit of time, of every component: < 0 where it
-/// enters.
+/// enters. Rows that are written do not overlap others.
 namespace cut_rows {
 
 /// The gradient of a row: one row for each direction.
 using gradient = std::array<double*, 3>;
 
-/// outward ← rate Σ_k vector[k] speeds[k]. The sign of the sum does not depend on the rate.
-void project(const std::array<double, 3>& vector, double rate, const std::array<const double*, 3>& speeds,
-             int directions, int n, double* outward);
+/// The sizes of all rows.
+struct extent {
+  int directions;  ///< of space
+  int components;
+};
+
+/// A face or wall of a cell.
+struct way_out {
+  std::array<double, 3> normal;         ///< unit vector
+  double rate;                          ///< area / volume
+  std::array<const double*, 3> speeds;  ///< of every component along each direction
+};
+
+/// The line of a cell.
+struct line {
+  const double* value;  ///< at the centroid of its gas
+  gradient slopes;
+  std::array<double, 3> vector;  ///< from the centroid to a point
+  bool limited;                  ///< no value that leaves is negative where that of the cell is not
+};
+
+/// outward ← rate Σ_k normal[k] speeds[k]. The sign of the sum does not depend on the rate.
+void project(const way_out& way, const extent& of, double* outward);
 
 /// A neighbour in a least-squares gradient.
 struct neighbour {
@@ -24,7 +44,7 @@ struct neighbour {
 };
 
 /// slopes[d] ← Σ weight[d] (row − u) over the neighbours.
-void fit(const double* u, std::span<const neighbour> around, int directions, int n, const gradient& slopes);
+void fit(const double* u, std::span<const neighbour> around, const extent& of, const gradient& slopes);
 
 /// Sums over the faces and walls of a cell for its limiter, a row each.
 struct demand_rows {
@@ -33,19 +53,25 @@ struct demand_rows {
       *increase;  ///< of the outflow by corrections
 };
 
-/// Adds a face or wall at a vector from the centroid, for a step of length `step`.
-void add_demand(const double* outward, double step, const gradient& slopes,
-                const std::array<double, 3>& vector, int directions, int n, const demand_rows& demand);
+/// Adds a face or wall where a line leaves, for a step of length `step`.
+void add_demand(const way_out& way, double step, const line& here, const extent& of,
+                const demand_rows& demand);
 
 /// Multiplies the slopes by the factor of the limiter. `kept`: the shares of u that transport may take,
 /// a row.
-void limit(const double* u, const demand_rows& demand, const double* kept, int directions, int n,
+void limit(const double* u, const demand_rows& demand, const double* kept, const extent& of,
            const gradient& slopes);
 
-/// values ← u + slopes·vector where outward > 0, and 0 for negligible u; elsewhere they stay as they are.
-/// `limited`: no value is negative where u is not.
-void leave(const double* u, const double* outward, const gradient& slopes,
-           const std::array<double, 3>& vector, bool limited, int directions, int n, double* values);
+/// values ← the line where `outward` > 0, and 0 of a negligible value; elsewhere they stay as they are.
+void leave(const double* outward, const line& here, const extent& of, double* values);
+
+/// values ← the line where it leaves, and 0 elsewhere.
+void leave_alone(const way_out& way, const line& here, const extent& of, double* values);
+
+/// rate ← rate − outward f through a face: f is the line where it leaves, and `beyond` elsewhere.
+void pass(const way_out& way, const line& here, const double* beyond, const extent& of, double* rate);
+/// The same to a cell with a line: f is this line where it leaves.
+void pass(const way_out& way, const line& here, const line& beyond, const extent& of, double* rate);
 
 /// rate ← rate − outward values.
 void take(const double* outward, const double* values, int n, double* rate);

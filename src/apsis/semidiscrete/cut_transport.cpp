@@ -33,10 +33,15 @@ void cut_transport::limit_for_steps(double step, aligned_vector<double> kept) {
   kept_ = std::move(kept);
 }
 
-cut_rows::gradient cut_transport::lines_of(int number) {
+cut_rows::gradient cut_transport::slopes_of(int number) {
   cut_rows::gradient slopes{};
   for (int d = 0; d < directions(); ++d) slopes[at(d)] = slopes_.row(number * directions() + d);
   return slopes;
+}
+
+/// Returns the line of a group, to a point at a vector from its centroid.
+cut_rows::line cut_transport::line_of(const field& u, int number, const std::array<double, 3>& vector) {
+  return {here_.row(u, groups_[at(number)].place), slopes_of(number), vector, limited_};
 }
 
 void cut_transport::make_scratch() {
@@ -62,39 +67,31 @@ void cut_transport::fit_group(const field& u, int number, scratch& own) {
   const group& of = groups_[at(number)];
   const int n = equation_.components();
   const double* here = here_.row(u, of.place);
-  const cut_rows::gradient slopes = lines_of(number);
+  const cut_rows::gradient slopes = slopes_of(number);
   own.around.clear();
   for (const neighbour& one : of.around) own.around.push_back({here_.row(u, one.place), one.weight});
-  cut_rows::fit(here, own.around, directions(), n, slopes);
+  cut_rows::fit(here, own.around, size(), slopes);
   if (!limited_) return;
   const cut_rows::demand_rows demand{own.rows.row(size_row), own.rows.row(outflow_row),
                                      own.rows.row(increase_row)};
   for (double* row : {demand.size, demand.outflow, demand.increase}) std::fill_n(row, n, 0.0);
-  double* outward = own.rows.row(outward_row);
-  for (const way& one : of.ways) {
-    cut_rows::project(one.normal, one.rate, speeds_, directions(), n, outward);
-    cut_rows::add_demand(outward, step_, slopes, one.from_centre, directions(), n, demand);
-  }
-  cut_rows::limit(here, demand, kept_.data(), directions(), n, slopes);
+  for (const way& one : of.ways)
+    cut_rows::add_demand(out_by(one), step_, line_of(u, number, one.from_centre), size(), demand);
+  cut_rows::limit(here, demand, kept_.data(), size(), slopes);
 }
 
 void cut_transport::complete(int surface, int place, const field& u,
                              std::span<const target<field, double>> targets) {
   const auto& [number, way_number] = ends_[at(surface)][at(place)];
-  const group& of = groups_[at(number)];
-  const way& one = of.ways[at(way_number)];
-  scratch& own = scratch_.here();
-  const int n = equation_.components();
-  double *outward = own.rows.row(outward_row), *values = own.rows.row(values_row);
-  std::fill_n(values, n, 0.0);
-  cut_rows::project(one.normal, one.rate, speeds_, directions(), n, outward);
-  cut_rows::leave(here_.row(u, of.place), outward, lines_of(number), one.from_centre, limited_, directions(),
-                  n, values);
+  const way& one = groups_[at(number)].ways[at(way_number)];
+  double* values = scratch_.here().rows.row(values_row);
+  cut_rows::leave_alone(out_by(one), line_of(u, number, one.from_centre), size(), values);
   const face where = space_->surfaces()[at(surface)].where;
   const int cell = space_->cell_at(surface, place);
   for (const auto& to : targets)
     face_rows::add_entering(inward_[where.index()].data(), values, to.beta,
-                            space_->mesh().spacing(where.direction), n, to.acc->row(cell));
+                            space_->mesh().spacing(where.direction), equation_.components(),
+                            to.acc->row(cell));
 }
 
 /// Returns the upwind values at the end of a segment at an open face.
@@ -129,42 +126,40 @@ void cut_transport::add(double t, const field& u, std::span<const target<field, 
 }
 
 void cut_transport::add_group(double t, const field& u, int number, double* rate, scratch& own) {
-  const group& of = groups_[at(number)];
   std::fill_n(rate, equation_.components(), 0.0);
-  for (const way& one : of.ways) add_way(t, u, of, number, one, rate, own);
+  for (const way& one : groups_[at(number)].ways) {
+    const cut_rows::line here = line_of(u, number, one.from_centre);
+    switch (one.to) {
+      case way::kind::whole:
+        cut_rows::pass(
+            out_by(one), here,
+            one.surface >= 0 ? faces_.recorded(one.surface, one.number) : here_.values_at_face(one.number),
+            size(), rate);
+        break;
+      case way::kind::group:
+        cut_rows::pass(out_by(one), here, line_of(u, one.number, one.from_other), size(), rate);
+        break;
+      default:
+        pass_end(t, one, here, rate, own);
+    }
+  }
 }
 
-void cut_transport::add_way(double t, const field& u, const group& of, int number, const way& one,
-                            double* rate, scratch& own) {
+/// Adds what passes through a face of the domain or a wall, and tells the boundary budget.
+void cut_transport::pass_end(double t, const way& one, const cut_rows::line& here, double* rate,
+                             scratch& own) {
   const int n = equation_.components();
   double *outward = own.rows.row(outward_row), *values = own.rows.row(values_row),
          *inward = own.rows.row(inward_row);
-  cut_rows::project(one.normal, one.rate, speeds_, directions(), n, outward);
-  const double* here = here_.row(u, of.place);
-  std::copy_n(here, n, values);
-  switch (one.to) {
-    case way::kind::whole:
-      std::copy_n(
-          one.surface >= 0 ? faces_.recorded(one.surface, one.number) : here_.values_at_face(one.number), n,
-          values);
-      break;
-    case way::kind::group: {
-      for (int k = 0; k < n; ++k) inward[k] = -outward[k];
-      cut_rows::leave(here_.row(u, groups_[at(one.number)].place), inward, lines_of(one.number),
-                      one.from_other, limited_, directions(), n, values);
-      break;
-    }
-    default:
-      break;
-  }
-  cut_rows::leave(here, outward, lines_of(number), one.from_centre, limited_, directions(), n, values);
+  cut_rows::project(out_by(one), size(), outward);
+  std::copy_n(here.value, n, values);  // of components along the wall
+  cut_rows::leave(outward, here, size(), values);
   if (one.to == way::kind::domain) {
     domain_values(t, one, values, own);
     faces_.receive_through(one.number, inward_[at(one.surface)], values, own.rows.row(inward_row));
-  }
-  if (one.to == way::kind::wall) {
+  } else {
     const wall_segment& wall = cut().walls()[at(one.number)];
-    cut_rows::project(one.normal, 1.0, speeds_, directions(), n, inward);
+    cut_rows::project({wall.normal, 1.0, speeds_}, size(), inward);
     double* emitted = own.rows.row(ghost_rows);
     walls_[at(wall.solid)]->emit({wall.normal, wall.middle, t}, inward, values, emitted);
     face_rows::take_entering(inward, emitted, n, values);

@@ -91,11 +91,13 @@ class cut_transport {
   way way_through(int number, int face) const;
   int border_at(int direction, bool cut_is_below) const;
   void add_neighbours(int number);
-  cut_rows::gradient lines_of(int group);
+  cut_rows::gradient slopes_of(int group);
+  cut_rows::line line_of(const field& u, int group, const std::array<double, 3>& vector);
+  cut_rows::way_out out_by(const way& one) const { return {one.normal, one.rate, speeds_}; }
+  cut_rows::extent size() const { return {directions(), equation_.components()}; }
   void fit_group(const field& u, int number, scratch& own);
   void add_group(double t, const field& u, int number, double* rate, scratch& own);
-  void add_way(double t, const field& u, const group& of, int number, const way& one, double* rate,
-               scratch& own);
+  void pass_end(double t, const way& one, const cut_rows::line& here, double* rate, scratch& own);
   void domain_values(double t, const way& one, double* values, scratch& own);
   const double* recorded_at(int face);
   void make_scratch();

@@ -53,15 +53,23 @@ HWY_INLINE void accumulate(const Walk& way, const cells& run, std::span<const ro
   }
 }
 
+/// Stores a pack in its row, if there is one.
+template <class Walk, class N = typename Walk::number>
+HWY_INLINE void store_row(const Walk& way, N value, double* row) {
+  if (row != nullptr) way.store(value, row, 0, 0);
+}
+
 template <class Walk, class N = typename Walk::number>
 HWY_INLINE void add_along(const Walk& way, N speed, const cells& run, std::span<const row_target> targets) {
   const step_factors<N> factors(targets, speed);
   N in = outflow(way, run, -1);
+  store_row(way, in, run.in);
   for (int j = 0; j < run.count; ++j) {
     const N out = outflow(way, run, j);
     accumulate(way, run, targets, factors, j, way.load(run.u, j), in - out);
     in = out;
   }
+  store_row(way, in, run.out);
 }
 
 void add(const cells& of, std::span<const row_target> targets) {
@@ -90,6 +98,7 @@ HWY_INLINE void add_limited_along(const Walk& way, N speed, N inverse_cfl, const
   const auto before = next_cell(way, run, -1, inverse_cfl, first_cell(way, run, -2, inverse_cfl));
   auto here = next_cell(way, run, 0, inverse_cfl, before);
   N in = limited_flux(before, here);
+  store_row(way, in, run.in);
   for (int j = 0; j < run.count; ++j) {
     const auto after = next_cell(way, run, j + 1, inverse_cfl, here);
     const N out = limited_flux(here, after);
@@ -97,6 +106,7 @@ HWY_INLINE void add_limited_along(const Walk& way, N speed, N inverse_cfl, const
     here = after;
     in = out;
   }
+  store_row(way, in, run.out);
 }
 
 void add_limited(const cells& of, std::span<const row_target> targets) {
@@ -104,23 +114,6 @@ void add_limited(const cells& of, std::span<const row_target> targets) {
   for_walks(run.forward, run.count, run.width, [&](const auto& way, int k) APSIS_PACKED {
     using N = typename std::decay_t<decltype(way)>::number;
     add_limited_along(way, N::load(run.per_cell + k), N::load(run.inverse_cfl + k), run, targets);
-  });
-}
-
-void fluxes_of_cell(const cells& of, bool limited, double* in, double* out) {
-  const cells run = of;
-  for_walks(run.forward, run.count, run.width, [&](const auto& way, int k) APSIS_PACKED {
-    using N = typename std::decay_t<decltype(way)>::number;
-    if (!limited) {
-      way.store(outflow(way, run, -1), in, 0, 0);
-      return way.store(outflow(way, run, 0), out, 0, 0);
-    }
-    const N inverse_cfl = N::load(run.inverse_cfl + k);
-    const auto before = next_cell(way, run, -1, inverse_cfl, first_cell(way, run, -2, inverse_cfl));
-    const auto here = next_cell(way, run, 0, inverse_cfl, before);
-    const auto after = next_cell(way, run, 1, inverse_cfl, here);
-    way.store(limited_flux(before, here), in, 0, 0);
-    way.store(limited_flux(here, after), out, 0, 0);
   });
 }
 
@@ -157,7 +150,6 @@ namespace {
 HWY_EXPORT(add);
 HWY_EXPORT(add_limited);
 HWY_EXPORT(add_weights);
-HWY_EXPORT(fluxes_of_cell);
 }  // namespace
 
 namespace upwind {
@@ -185,10 +177,6 @@ void add_limited(const cells& run, std::span<const row_target> targets) {
 
 void add_weights(const double* u, int width, std::span<const row_target> targets) {
   HWY_DYNAMIC_DISPATCH(add_weights)(u, width, targets);
-}
-
-void fluxes_of_cell(const cells& run, bool limited, double* in, double* out) {
-  HWY_DYNAMIC_DISPATCH(fluxes_of_cell)(run, limited, in, out);
 }
 
 }  // namespace upwind

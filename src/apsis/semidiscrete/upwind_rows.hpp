@@ -24,6 +24,9 @@ struct cells {
       *per_cell,          ///< of every component: |v|/Δx
       *inverse_cfl;       ///< of every component: 1/κ of add_limited(); not read by add()
   const double* source;   ///< S(u) of cell 0 at the same pitch; null without source
+  /// in ← the upwind values in the fluxes into the first cell that a component comes to, out ← those in the
+  /// fluxes out of the last one; rows, or null.
+  double *in = nullptr, *out = nullptr;
 };
 
 /// acc ← (fresh ? 0 : acc) + α u + β T.
@@ -58,10 +61,6 @@ void add(const cells& run, std::span<const row_target> targets);
 /// Adds T with limited fluxes (limiter::limiter_coefficient): a positive correction of the first-order upwind
 /// flux can make its donor cell negative, a negative one its receiver. Reads edges of cells −2 … count+1.
 void add_limited(const cells& run, std::span<const row_target> targets);
-
-/// in ← the upwind values in the fluxes into the only cell of a run, out ← those in the fluxes out of it, as
-/// add() uses them or, if `limited`, add_limited(); one row each.
-void fluxes_of_cell(const cells& run, bool limited, double* in, double* out);
 
 /// Returns the operation count per number of add() or add_limited() without targets, for runs of so many
 /// cells (exec/counted.hpp): the limiter repeats its work in a cell beyond either end.

@@ -29,7 +29,8 @@ class Result:
     number at the centres (empty where the model has none). In two and three space dimensions y and z are the centres in the other
     directions, and [cell] stands for [i, j] or [i, j, k], the numbers of the cell along x, y and z: a field has the shape (nt, nx, ny).
     probes[name] has the columns of probes/NAME.csv, surfaces[name] those of surfaces/NAME.csv. walls[name][piece, end] are the ends (x, y)
-    of the pieces of wall of a body in the plane, which is on their left. With two or three velocity dimensions v[component, dimension] are
+    of the pieces of wall of a body in the plane, which is on their left. In space walls[name][piece, corner] are the corners (x, y, z) of
+    its polygons, in the order of the rows of surfaces[name]; those with fewer corners repeat the last one. With two or three velocity dimensions v[component, dimension] are
     the velocities, v_weights[component] their quadrature weights, so that f @ v_weights is the density; where they are a tensor
     product, axes["v_x"], … are its nodes and marginals["v_x"][cell, node], … f integrated over the other components. fields[name][k, cell] are the macroscopic fields at the times t[k], ending with
     the final time, and labels[name] is what an axis says of one. history[name][n] is what was checked after step n. summary has the keys of `apsis run --json`, state how

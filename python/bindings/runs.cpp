@@ -91,15 +91,12 @@ std::vector<py::ssize_t> shape_of(const std::vector<mesh_axis>& axes, std::vecto
   return first;
 }
 
-/// Outlines of the bodies in the plane: [pieces][ends][2].
+/// Walls of the bodies: [pieces][corners][dimensions].
 py::dict walls_of(const simulation& run, double unit_of_length) {
   py::dict walls;
   for (const wall_outline& wall : wall_outlines(run.setup(), unit_of_length)) {
-    std::vector<double> ends;
-    for (const auto& piece : wall.corners)
-      for (const position& one : piece) ends.insert(ends.end(), one.begin(), one.begin() + 2);
-    walls[py::str(wall.name)] =
-        to_array(std::move(ends), {static_cast<py::ssize_t>(wall.corners.size()), 2, 2});
+    const auto size = wall.shape();
+    walls[py::str(wall.name)] = to_array(wall.array(), {size.begin(), size.end()});
   }
   return walls;
 }

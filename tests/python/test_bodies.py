@@ -9,7 +9,7 @@ import pytest
 from apsis.plot import read_result
 from apsis.plot.results import figures
 from apsis.plot.surfaces import angle_profiles
-from apsis.plot.walls import behind, solid_parts
+from apsis.plot.walls import behind, cut_of, solid_cells, solid_parts
 
 REFERENCE = {"density": 1, "velocity": [1.2, 0], "temperature": 1, "length": 1.6}
 PLANE = {
@@ -115,7 +115,6 @@ def test_loads_are_in_history_summary_and_stored_results(computed):
 def test_outlines_are_the_pieces_of_the_wall(computed):
     case, folder, result = computed
     if case is SPACE:
-        assert result.walls == {}
         return
     assert list(result.walls) == ["disc"]
     pieces = result.walls["disc"]
@@ -129,6 +128,69 @@ def test_outlines_are_the_pieces_of_the_wall(computed):
     changed = apsis.open(folder)
     changed.walls["disc"][0, 0, 0] += 1
     assert changed != result
+
+
+def test_polygons_are_the_pieces_of_the_wall_in_space(computed):
+    case, folder, result = computed
+    if case is PLANE:
+        return
+    polygons, table = result.walls["ball"], result.surfaces["ball"]
+    assert len(polygons) == len(table["area"]) and polygons.shape[2] == 3
+    np.testing.assert_allclose(np.linalg.norm(polygons - [0.1, 0.2, 0], axis=2), 1.1, atol=1e-6)
+    normals = np.stack([table[f"n_{axis}"] for axis in "xyz"], axis=1)
+    np.testing.assert_allclose([vector_area(one) for one in polygons], table["area"][:, None] * normals, atol=1e-14)
+    np.testing.assert_array_equal(read_result(folder).walls["ball"], polygons)
+    assert apsis.open(folder) == result
+
+
+def enclosed_area(segments):
+    return 0.5 * np.cross(segments[:, 0], segments[:, 1]).sum()
+
+
+@pytest.mark.parametrize("normal", range(3))
+def test_a_plane_cuts_polygons_along_closed_lines_around_the_body(computed, normal):
+    case, _, result = computed
+    if case is PLANE:
+        return
+    for place in (-0.25, 0.0, 0.7):
+        segments = cut_of(result.walls["ball"], normal, place)
+        ends = np.round(segments, 9)
+        assert sorted(map(tuple, ends[:, 0])) == sorted(map(tuple, ends[:, 1]))
+        # Counter-clockwise around a circle. The corners of a polygon in a cell of 0.5 lie on the sphere, within a circle of radius
+        # 0.5 sqrt(3)/2: so its points are at most that far inside of the sphere.
+        beside = (place - [0.1, 0.2, 0][normal])**2
+        inner = np.sqrt(1.1**2 - 3 * 0.25**2)
+        radii = np.sqrt(((segments - np.delete([0.1, 0.2, 0], normal))**2).sum(axis=2) + beside)
+        assert inner < radii.min() and radii.max() < 1.1 + 1e-6
+        assert np.pi * (inner**2 - beside) < enclosed_area(segments) < np.pi * (1.1**2 - beside)
+    assert cut_of(result.walls["ball"], normal, 1.9).shape == (0, 2, 2)
+
+
+@pytest.mark.parametrize("normal", range(3))
+def test_slices_cover_what_the_wall_encloses(computed, normal):
+    case, _, result = computed
+    if case is PLANE:
+        return
+    edges = [np.linspace(-2, 2, 9)] * 3
+    covered = 0
+    for layer in range(1, 7):
+        place = -1.75 + 0.5 * layer
+        segments, hidden = cut_of(result.walls["ball"], normal, place), list(solid_cells(result.walls["ball"], edges, normal, place))
+        parts = list(solid_parts(segments, edges[0], edges[1])) + hidden
+        area = sum(0.5 * abs(np.cross(part, np.roll(part, -1, axis=0)).sum()) for part in parts)
+        area += np.isnan(np.take(result.fields["rho"][-1], layer, axis=normal)).sum() * 0.25
+        assert area == pytest.approx(enclosed_area(segments), rel=1e-12, abs=1e-12)
+        covered += len(hidden)
+    assert covered > 0  # cells of gas whose middle lies in the body
+
+
+def test_slices_show_the_outline_of_a_body(computed):
+    case, folder, result = computed
+    if case is PLANE:
+        return
+    made = figures(read_result(folder), "z=0.25")
+    lines = [one for one in made["fields"].axes[0].collections if type(one).__name__ == "LineCollection"]
+    np.testing.assert_allclose(np.array(lines[-1].get_segments()), cut_of(result.walls["ball"], 2, 0.25), atol=1e-14)
 
 
 def test_pictures_show_outlines_and_coefficients(computed):

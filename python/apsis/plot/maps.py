@@ -10,7 +10,7 @@ import numpy as np
 
 from .run_result import Array, RunResult
 from .style import BLACK, PictureError, plt
-from .walls import SOLID, draw_walls
+from .walls import SOLID, draw_slice, draw_walls
 
 AXES = ("x", "y", "z")
 FACES = {"x": ("left", "right"), "y": ("bottom", "top"), "z": ("back", "front")}  # ends of the domain along an axis
@@ -173,7 +173,9 @@ def draw_map(panel: Any, result: RunResult, name: str, values: Array, plane: Pla
     levels = np.linspace(low, high, 12)[1:-1]
     if min(shown.shape) > 1 and ((levels > shown.min()) & (levels < shown.max())).any():
         panel.contour(across, up, shown, levels=levels, colors=BLACK, linewidths=0.4, alpha=0.6, linestyles="solid")
-    if not plane.normal:
+    if plane.normal:
+        draw_slice(panel, result.walls, [borders(result.arrays[axis]) for axis in AXES], AXES.index(plane.normal), plane.place)
+    else:
         draw_walls(panel, result.walls, borders(across), borders(up))
     panel.set_xlabel(f"{plane.across} ({result.unit('x')})")
     panel.set_ylabel(f"{plane.up} ({result.unit('x')})")

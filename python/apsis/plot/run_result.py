@@ -26,7 +26,8 @@ class RunResult:
     arrays has those of f[cell, component], x, v, epsilon that the model has, and with several velocity dimensions v_weights and
     the nodes v_x, v_y, v_z; history[column][step] the checks of every step; labels the axis labels; case the case file;
     marginals[axis][cell, node] f integrated over the other velocity components; probes[name][column] the fields along lines; surfaces[name][column] what the gas
-    gives to faces, solid boxes and bodies; walls[name][piece, end] the ends (x, y) of the pieces of a body in the plane. In several space dimensions [cell] stands for [x, y(, z)]."""
+    gives to faces, solid boxes and bodies; walls[name][piece, corner] the ends (x, y) of the pieces of a body in the plane, or the corners
+    (x, y, z) of its polygons in space. In several space dimensions [cell] stands for [x, y(, z)]."""
 
     folder: Path
     manifest: dict[str, Any]
@@ -137,7 +138,7 @@ def read_result(folder: str | Path) -> RunResult:
                 for name, item in number_sets(file.get(group)):
                     found[name] = np.asarray(item, dtype=float)
                     labels[name] = words(item.attrs.get("long_name", f"{name} (dimensionless)"))
-            walls = {name: np.asarray(item, dtype=float) for name, item in number_sets(file.get("walls")) if item.shape[1:] == (2, 2)}
+            walls = {name: np.asarray(item, dtype=float) for name, item in number_sets(file.get("walls")) if len(item.shape) == 3}
             case = words(file.attrs.get("case", ""))
     except (OSError, MemoryError) as problem:
         raise PictureError(f"cannot read '{path}' ({problem}); run the case again with --out") from problem

@@ -112,10 +112,9 @@ void write_series(hdf5_file& file, const field_series& fields) {
 
 void write_walls(hdf5_file& file, const solution& s) {
   for (const wall_outline& one : s.walls) {
-    std::vector<double> ends;
-    for (const auto& piece : one.corners)
-      for (const position& end : piece) ends.insert(ends.end(), end.begin(), end.begin() + 2);
-    file.write("walls/" + one.name, ends, {one.corners.size(), 2, 2}, "ends of the pieces of a wall",
+    const auto size = one.shape();
+    file.write("walls/" + one.name, one.array(), {size.begin(), size.end()},
+               one.dimensions == 2 ? "ends of the pieces of a wall" : "corners of the pieces of a wall",
                precision::float64, s.fields.unit_of_x);
   }
 }
@@ -150,6 +149,24 @@ void write_contents(hdf5_file& file, const distribution_snapshot& s, precision s
 }
 
 }  // namespace
+
+std::array<std::size_t, 3> wall_outline::shape() const {
+  std::size_t most = 2;
+  for (const auto& piece : corners) most = std::max(most, piece.size());
+  return {corners.size(), most, static_cast<std::size_t>(dimensions)};
+}
+
+std::vector<double> wall_outline::array() const {
+  const std::size_t most = shape()[1];
+  std::vector<double> all;
+  all.reserve(corners.size() * most * static_cast<std::size_t>(dimensions));
+  for (const auto& piece : corners)
+    for (std::size_t k = 0; k < most; ++k) {
+      const position& corner = piece[std::min(k, piece.size() - 1)];
+      all.insert(all.end(), corner.begin(), corner.begin() + dimensions);
+    }
+  return all;
+}
 
 void write_solution(const std::string& path, const solution& s,
                     const std::shared_ptr<communicator>& processes) {

@@ -5,6 +5,8 @@
 #include <apsis/velocity/position.hpp>
 #include <apsis/velocity/velocity_set.hpp>
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -19,10 +21,18 @@ struct distribution_at_points {
   std::vector<double> f;           ///< [points][components]; empty if no cells are chosen
 };
 
-/// The wall of a body in the plane.
+/// The wall of a body.
 struct wall_outline {
-  std::string name;                            ///< of the body
-  std::vector<std::vector<position>> corners;  ///< [piece], the two ends, the body on their left
+  std::string name;  ///< of the body
+  /// [piece]: in the plane the two ends, the body on their left; in space the corners of a polygon,
+  /// counter-clockwise seen from the gas.
+  std::vector<std::vector<position>> corners;
+  int dimensions = 2;  ///< of space
+
+  /// Returns the shape of array(): pieces, the largest number of corners, dimensions.
+  std::array<std::size_t, 3> shape() const;
+  /// Returns the coordinates. Pieces of fewer corners repeat their last one.
+  std::vector<double> array() const;
 };
 
 /// The content of solution.h5: the state at the end of a run. On one of several processes f has the cells of
@@ -40,7 +50,7 @@ struct solution {
   velocity_set velocities;                ///< of the components; none without space
   std::vector<double> epsilon;            ///< [cells]
   field_series fields;                    ///< the last snapshot is the final state
-  std::vector<wall_outline> walls = {};   ///< of bodies in the plane, in units of the axes of the fields
+  std::vector<wall_outline> walls = {};   ///< of bodies, in units of the axes of the fields
   std::optional<dataset_part> part = {};  ///< of the mesh, of one of several processes
 };
 
@@ -50,7 +60,7 @@ struct solution {
 /// With several axes geometry/centres [nx][ny][nz][3] are the points of the grids of solution.xdmf. With two
 /// or three velocity dimensions v is [points][dimensions], and v_weights [points] are added; where the
 /// velocities are a tensor product, also the nodes v_x, v_y, v_z and, with f, its marginals/v_x, … [nodes].
-/// Walls of bodies in the plane are in walls/NAME [pieces][ends][2].
+/// Walls of bodies are in walls/NAME [pieces][ends][2], in space [pieces][corners][3].
 /// Chosen cells are in points/f [points][components], points/x, …. Every dataset has the attribute units; the
 /// file has title, case (TOML) and manifest (JSON). Throws io_error. `processes`: those that write the file
 /// together, each with its part; the texts are the same on all.

@@ -36,13 +36,14 @@ std::vector<position> corners_of_end(const domain& space, int surface, int place
 
 std::vector<wall_outline> wall_outlines(const run_setup& setup, double unit_of_length) {
   std::vector<wall_outline> outlines;
-  if (!setup.has_space() || setup.whole_mesh().dimensions() != 2) return outlines;
+  if (!setup.has_space() || setup.whole_mesh().dimensions() < 2) return outlines;
   const domain& space = setup.builder().whole_space();
   const auto boxes = static_cast<int>(setup.config().solids.size());
   for (const budget_surface& one : space.budget_surfaces()) {
     if (one.solid < boxes) continue;
     wall_outline& made = outlines.emplace_back();
     made.name = setup.config().bodies[at(one.solid - boxes)].name;
+    made.dimensions = space.mesh().dimensions();
     for (const int number : one.surfaces)
       for (int place = 0; place < static_cast<int>(space.surfaces()[at(number)].segments.size()); ++place)
         made.corners.push_back(corners_of_end(space, number, place));

@@ -11,7 +11,7 @@ namespace apsis {
 /// nothing on a line. Neighbouring faces have equal corners bit by bit.
 std::vector<position> corners_of_end(const domain& space, int surface, int place);
 
-/// Returns the walls of the bodies of the whole mesh in the plane, with lengths in this unit; none otherwise.
+/// Returns the walls of the bodies of the whole mesh, with lengths in this unit.
 std::vector<wall_outline> wall_outlines(const run_setup& setup, double unit_of_length);
 
 }  // namespace apsis

@@ -61,7 +61,8 @@ class random_bodies {
     text += is_round ? fmt::format("radius = {:.4f}\n", number(0.3, 0.7))
                      : "semi_axes = " + vector(d, 0.35, 0.8) + "\n";
     if (!is_round && d == 2) text += fmt::format("angle = {:.1f}\n", number(0.0, 180.0));
-    if (number(0.0, 1.0) < 0.2) return text + "kind = \"symmetry\"\n";
+    const double first = number(0.0, 1.0);
+    if (first < 0.3) return text + (first < 0.2 ? "kind = \"symmetry\"\n" : "kind = \"vacuum\"\n");
     const double T = number(0.4, 2.0), kind = number(0.0, 1.0);
     if (kind < 0.2)
       text += "kind = \"adiabatic\"\n";

@@ -45,7 +45,7 @@ void cut_transport::find_walls() {
     if (is_needed && !walls_.back())
       throw input_error(
           "a boundary of a body that serves faces of cells alone (a curved body has any normal); use a "
-          "diffuse wall, or symmetry");
+          "diffuse wall, symmetry, or vacuum");
   }
 }
 

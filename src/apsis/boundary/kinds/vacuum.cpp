@@ -2,10 +2,27 @@
 #include <apsis/core/errors.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
+#include <memory>
 
 namespace apsis {
 namespace {
+
+/// A wall with any normal that absorbs all that arrives, and emits nothing.
+class absorbing_wall final : public oblique_wall {
+ public:
+  explicit absorbing_wall(int components) : components_(components) {}
+
+  void emit(const wall_point&, const double*, const double*, double* values) const override {
+    std::fill_n(values, components_, 0.0);
+  }
+
+  std::array<double, 3> velocity(const wall_point&) const override { return {}; }
+
+ private:
+  int components_;
+};
 
 /// Vacuum behind the face: what arrives leaves for ever, and nothing enters, f = 0 for v_n into the domain.
 class vacuum_boundary final : public incoming_boundary {
@@ -14,6 +31,10 @@ class vacuum_boundary final : public incoming_boundary {
     auto own = std::make_shared<vacuum_boundary>(*this);
     own->components_ = entering_components(where, velocities).size();
     return own;
+  }
+
+  std::shared_ptr<const oblique_wall> oblique(const velocity_set& velocities) const override {
+    return std::make_shared<absorbing_wall>(velocities.components());
   }
 
   void incoming(const face&, double, const position&, const double*, double* values) const override {

@@ -120,7 +120,8 @@ double number_between(const quantity_values& parameters, const std::string& name
   const double value = number_of(parameters.at(name));
   if (!(value >= low && value <= high))
     throw input_error(fmt::format("{} = '{}' is not a number from {} to {}; write for example {}={}", name,
-                                  parameters.at(name).substr(0, 60), low, high, name, high));
+                                  parameters.at(name).substr(0, 60), low, high, name,
+                                  value > high ? high : low));
   return value;
 }
 

@@ -40,7 +40,15 @@ TEST(shape_registry, describes_every_kind_and_its_keys) {
     EXPECT_NE(entry->make, nullptr) << entry->name;
     EXPECT_FALSE(entry->dimensions.empty()) << entry->name;
     if (entry->dimensions.size() == 1) {
-      EXPECT_NO_THROW(apsis::find_shape(entry->alternative)) << entry->name;
+      // Another shape, or the shape in its list.
+      const std::string& advice = entry->alternative;
+      if (entry->keys.front().kind == apsis::shape_value_kind::shapes) {
+        EXPECT_THAT(advice,
+                    testing::StartsWith("give the shape in its list '" + entry->keys.front().name + "'"));
+      } else {
+        ASSERT_THAT(advice, testing::MatchesRegex("use '[a-z-]+'")) << entry->name;
+        EXPECT_NO_THROW(apsis::find_shape(advice.substr(5, advice.size() - 6))) << entry->name;
+      }
     }
     std::set<std::string> keys;
     for (const int dimensions : entry->dimensions)

@@ -150,7 +150,7 @@ TEST(diffuse_wall, values_that_no_wall_has_are_refused) {
   };
   EXPECT_EQ(error_of({}), "");
   EXPECT_THAT(error_of({{"velocity", {0.1, 0.0}}}),
-              HasSubstr("the velocity of a diffuse wall is 0.1 along its normal at t = 0.5"));
+              HasSubstr("the velocity of a wall is 0.1 along its normal at t = 0.5 near (0, 0) ("));
   EXPECT_THAT(error_of({{"accommodation", {1.5}}}),
               HasSubstr("the accommodation of a diffuse wall is 1.5 at t = 0.5 (a number from 0 to 1"));
   EXPECT_THAT(error_of({{"T", {-1.0}}}), HasSubstr("the boundary has no Maxwellian at t = 0 ("));

@@ -139,6 +139,14 @@ TEST(bodies, refuse_bad_input_with_its_place) {
   EXPECT_THAT(error_of(circle + "radios = 3\n"), message("unknown key 'space.body.1.radios'"));
   EXPECT_THAT(error_of(circle + "kind = \"inflow\"\nrho = 1\nT = 1\n"),
               message("a body cannot have the wall 'inflow'"));
+  EXPECT_THAT(
+      error_of(circle + "name = \"disc\"\nvelocity = [\"x\", 0]\n"),
+      testing::ContainsRegex("body 'disc': the velocity of a wall is -?[0-9.]+ along its normal at t = 0 "
+                             "near \\(-?[0-9.]+, -?[0-9.]+\\) \\(the body"));
+  EXPECT_EQ(error_of(circle + "kind = \"vacuum\"\n"), "");
+  EXPECT_THAT(
+      error_of(head + "shape = \"extruded\"\nof = [{ shape = \"circle\", centre = [0, 0], radius = 1 }]\n"),
+      message("it is a shape of 3); give the shape in its list 'of' alone"));
   EXPECT_THAT(error_of(circle + "name = \"left\"\n"), message("it is taken"));
   EXPECT_THAT(error_of(circle + circle), message("in another body"));
   EXPECT_THAT(error_of(head + "shape = \"box\"\nfrom = [-1, 0.01]\nto = [1, 0.05]\n"),

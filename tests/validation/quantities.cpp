@@ -211,6 +211,9 @@ TEST(quantities, refuse_what_they_do_not_know) {
   EXPECT_THAT(refusal("couette", {"model=bkg"}), HasSubstr("bgk"));
   for (const char* bad : {"distance=", "distance=-0.1", "distance=5.1", "distance=nan", "distance=1x"})
     EXPECT_THAT(refusal("kramers", {bad}), HasSubstr("is not a number from 0 to 5")) << bad;
+  // The nearest end of the range.
+  EXPECT_THAT(refusal("sphere", {"cells=2"}), HasSubstr("write for example cells=4"));
+  EXPECT_THAT(refusal("sphere", {"cells=100"}), HasSubstr("write for example cells=64"));
   EXPECT_THAT(refusal("riemann", {"degrees_of_freedom=0.5"}), HasSubstr("is not a number from 1 to 100"));
   EXPECT_THAT(refusal("riemann", {"initial.u=-3", "space.cells=40", "velocity.max=10"}),
               HasSubstr("give more space.cells"));  // nothing moves to the right

@@ -23,7 +23,7 @@ void check_dimensions(const shape_entry& entry, int dimensions) {
                                   entry.name, dimensions));
   if (std::find(entry.dimensions.begin(), entry.dimensions.end(), dimensions) != entry.dimensions.end())
     return;
-  throw input_error(fmt::format("shape '{}' has no form in {} dimensions (it is a shape of {}); use '{}'",
+  throw input_error(fmt::format("shape '{}' has no form in {} dimensions (it is a shape of {}); {}",
                                 entry.name, dimensions, entry.dimensions.front(), entry.alternative));
 }
 

@@ -15,7 +15,7 @@ struct shape_entry {
   std::string description;               ///< one line
   std::vector<shape_key> keys;           ///< its keys, without those of all shapes
   std::vector<int> dimensions = {2, 3};  ///< numbers of dimensions that it serves
-  std::string alternative = {};          ///< the shape for other dimensions
+  std::string alternative = {};          ///< for other dimensions: "use 'circle'"
   /// Returns a new shape. Throws input_error for values that contradict each other, and io_error for a file
   /// that cannot be read.
   std::shared_ptr<const shape> (*make)(const shape_arguments& from) = nullptr;

@@ -5,8 +5,20 @@
 #include <cstddef>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace apsis {
+namespace {
+
+/// Throws an input error for a velocity along the normal of a wall at a point.
+[[noreturn]] void refuse_along_normal(double normal, double t, const position& at, std::size_t dimensions,
+                                      const char* why, const char* remedy) {
+  throw input_error(fmt::format(
+      "the velocity of a wall is {:g} along its normal at t = {:.10g} near ({:.6g}) ({}); {}", normal, t,
+      fmt::join(at.begin(), at.begin() + static_cast<std::ptrdiff_t>(dimensions), ", "), why, remedy));
+}
+
+}  // namespace
 
 double accommodation_at(const face_quantity& accommodation, double t, const position& at) {
   const double alpha = accommodation.at(t, at);
@@ -23,10 +35,7 @@ std::array<double, 3> velocity_along(const std::vector<face_quantity>& velocity,
   std::array<double, 3> u{};
   for (std::size_t k = 0; k < velocity.size(); ++k) u[k] = velocity[k].at(t, at);
   if (const double normal = u[static_cast<std::size_t>(where.direction)]; normal != 0.0)
-    throw input_error(
-        fmt::format("the velocity of a diffuse wall is {:g} along its normal at t = {:.10g} (the "
-                    "domain would have to move); give 0 there",
-                    normal, t));
+    refuse_along_normal(normal, t, at, velocity.size(), "the domain would have to move", "give 0 there");
   return u;
 }
 
@@ -41,10 +50,8 @@ std::array<double, 3> velocity_along(const std::vector<face_quantity>& velocity,
   // Pieces are chords of a curved wall, which deviate from it by less.
   constexpr double most_of_square = 0.25;
   if (normal * normal > most_of_square * square)
-    throw input_error(
-        fmt::format("the velocity of a diffuse wall is {:g} along its normal at t = {:.10g} (the body would "
-                    "have to move); give a velocity along the wall",
-                    normal, where.t));
+    refuse_along_normal(normal, where.t, where.at, velocity.size(), "the body would have to move",
+                        "give a velocity along the wall");
   for (std::size_t k = 0; k < velocity.size(); ++k) u[k] -= normal * where.normal[k];
   return u;
 }

@@ -9,6 +9,7 @@
 #include <apsis/config/solid_reader.hpp>
 #include <apsis/config/steady_of_case.hpp>
 #include <apsis/core/suggest.hpp>
+#include <apsis/mesh/cut_cells.hpp>
 #include <apsis/model/expression.hpp>
 
 #include <algorithm>
@@ -209,7 +210,7 @@ void case_checks::check_solids() const {
                     discretization_key));
 }
 
-/// A wall of a body has any normal.
+/// A wall of a body has any normal, and moves along itself.
 void case_checks::check_body(std::size_t k, const boundary& wall) const {
   const std::string path = fmt::format("space.body.{}", k + 1);
   const source_place place = place_of_emitter(config_, path);
@@ -217,8 +218,19 @@ void case_checks::check_body(std::size_t k, const boundary& wall) const {
   if (!made)
     throw input_error(place,
                       fmt::format("a body cannot have the wall '{}' (its normal may have any direction); "
-                                  "write kind = \"diffuse\"",
+                                  "write kind = \"diffuse\", \"adiabatic\", \"radiating\", \"symmetry\" or "
+                                  "\"vacuum\"",
                                   config_.bodies[k].kind));
+  const grid mesh = make_mesh(config_);
+  const int number = static_cast<int>(config_.solids.size() + k);
+  for (const wall_segment& piece : mesh.cut()->walls()) {
+    if (piece.solid != number) continue;
+    try {
+      static_cast<void>(made->velocity({piece.normal, piece.middle, 0.0}));
+    } catch (const input_error& failure) {
+      throw input_error(place, fmt::format("body '{}': {}", config_.bodies[k].name, failure.what()));
+    }
+  }
 }
 
 void case_checks::check_faces() const {

@@ -34,7 +34,7 @@ const shape_entry shape_circle = {
     .keys = {{.name = "centre", .doc = "position of the centre", .kind = shape_value_kind::vector},
              {.name = "radius", .doc = "distance of the surface from the centre", .positive = true}},
     .dimensions = {2},
-    .alternative = "cylinder",
+    .alternative = "use 'cylinder'",
     .make = circle_shape::make};
 
 }  // namespace apsis

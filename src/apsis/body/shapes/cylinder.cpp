@@ -50,7 +50,7 @@ const shape_entry shape_cylinder = {
               .value = std::numeric_limits<double>::infinity(),
               .positive = true}},
     .dimensions = {3},
-    .alternative = "circle",
+    .alternative = "use 'circle'",
     .make = cylinder_shape::make};
 
 }  // namespace apsis

@@ -38,7 +38,7 @@ const shape_entry shape_ellipse = {
               .positive = true},
              {.name = "angle", .doc = "angle in degrees about the centre", .value = 0.0, .is_length = false}},
     .dimensions = {2},
-    .alternative = "ellipsoid",
+    .alternative = "use 'ellipsoid'",
     .make = ellipse_shape::make};
 
 }  // namespace apsis

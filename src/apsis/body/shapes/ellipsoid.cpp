@@ -37,7 +37,7 @@ const shape_entry shape_ellipsoid = {
               .kind = shape_value_kind::vector,
               .positive = true}},
     .dimensions = {3},
-    .alternative = "ellipse",
+    .alternative = "use 'ellipse'",
     .make = ellipsoid_shape::make};
 
 }  // namespace apsis

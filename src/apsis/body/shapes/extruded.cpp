@@ -54,7 +54,7 @@ const shape_entry shape_extruded = {.name = "extruded",
                                               .doc = "z of the upper end, infinite by default",
                                               .value = extruded_shape::infinite}},
                                     .dimensions = {3},
-                                    .alternative = "polygon",
+                                    .alternative = "give the shape in its list 'of' alone",
                                     .make = extruded_shape::make};
 
 }  // namespace apsis

@@ -63,7 +63,7 @@ const shape_entry shape_polygon = {
               .kind = shape_value_kind::points,
               .fewest = 3}},
     .dimensions = {2},
-    .alternative = "extruded",
+    .alternative = "use 'extruded'",
     .make = polygon_shape::make};
 
 }  // namespace apsis

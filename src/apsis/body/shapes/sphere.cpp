@@ -34,7 +34,7 @@ const shape_entry shape_sphere = {
     .keys = {{.name = "centre", .doc = "position of the centre", .kind = shape_value_kind::vector},
              {.name = "radius", .doc = "distance of the surface from the centre", .positive = true}},
     .dimensions = {3},
-    .alternative = "circle",
+    .alternative = "use 'circle'",
     .make = sphere_shape::make};
 
 }  // namespace apsis

@@ -51,7 +51,7 @@ const shape_entry shape_stl = {
               .positive = true,
               .is_length = false}},
     .dimensions = {3},
-    .alternative = "polygon",
+    .alternative = "use 'polygon'",
     .make = stl_shape::make};
 
 }  // namespace apsis

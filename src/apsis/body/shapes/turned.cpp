@@ -38,7 +38,7 @@ const shape_entry shape_turned = {
               .most = 1,
               .planar = true}},
     .dimensions = {3},
-    .alternative = "polygon",
+    .alternative = "give the shape in its list 'of' alone, with space.geometry = \"axisymmetric\"",
     .make = turned_shape::make};
 
 }  // namespace apsis

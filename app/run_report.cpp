@@ -85,7 +85,7 @@ std::string summary_text(const simulation& run, run_end end, const run_records& 
       const dimension flux = dimension_of_integral(densities[k], run.mesh()) / dimensions::time;
       amounts.push_back(fmt::format("{} {:.6g}{}", names[k],
                                     run.last().flux[f * names.size() + k] * units.factor(flux),
-                                    units.suffix(flux)));
+                                    units.suffix_of_amount(flux, lacking_directions(run.mesh()))));
     }
     line(faces[f] == "force" || faces[f] == "source" ? fmt::format("given by the {}", faces[f])
                                                      : fmt::format("flux through {}", faces[f]),

@@ -133,6 +133,25 @@ TEST(gas_scales, units_are_written_in_the_usual_form) {
   EXPECT_EQ(unit_of(d::pressure * d::length), "J/m^2");
 }
 
+TEST(gas_scales, units_of_amounts_are_those_of_space_per_length_and_area) {
+  using apsis::unit_of_amount, apsis::unit_of_torque;
+  namespace d = apsis::dimensions;
+  const std::vector<std::vector<const char*>> expected = {
+      {"kg", "kg/s", "N s", "N", "J", "W", "N m"},
+      {"kg/m", "kg/(m s)", "N s/m", "N/m", "J/m", "W/m", "N m/m"},
+      {"kg/m^2", "kg/(m^2 s)", "N s/m^2", "Pa", "J/m^2", "W/m^2", "N m/m^2"}};
+  auto per = d::none;
+  for (int lacking = 0; lacking < 3; ++lacking, per = per * d::length) {
+    std::vector<std::string> units;
+    for (auto amount : {d::mass, d::mass * d::velocity, d::mass * d::velocity * d::velocity})
+      for (const auto& dims : {amount / per, amount / d::time / per})
+        units.push_back(unit_of_amount(dims, lacking));
+    units.push_back(unit_of_torque(lacking));
+    EXPECT_EQ(units, std::vector<std::string>(expected[static_cast<std::size_t>(lacking)].begin(),
+                                              expected[static_cast<std::size_t>(lacking)].end()));
+  }
+}
+
 }  // namespace
 
 }  // namespace gas_scales_test

@@ -155,7 +155,12 @@ TEST(files_of_surfaces, are_in_the_units_of_the_results_as_the_history_is) {
   const auto manifest = nlohmann::json::parse(text_of(folder / "si/manifest.json"));
   EXPECT_EQ(manifest["units"]["pressure"], "Pa");
   EXPECT_EQ(manifest["units"]["heat_flux"], "W/m^2");
-  EXPECT_EQ(manifest["units"]["flux_left_momentum_x"], "J/m^2");  // N/m
+  EXPECT_EQ(manifest["units"]["flux_left_momentum_x"], "N/m");
+  EXPECT_EQ(manifest["units"]["received_left_momentum_x"], "N s/m");
+  EXPECT_EQ(manifest["units"]["flux_left_energy"], "W/m");
+  EXPECT_EQ(manifest["units"]["total_energy"], "J/m");
+  EXPECT_EQ(manifest["units"]["flux_left_mass"], "kg/(m s)");
+  EXPECT_EQ(manifest["units"]["torque_block"], "N m/m");
 }
 
 TEST(files_of_surfaces, of_a_continued_run_are_those_of_an_uninterrupted_one) {

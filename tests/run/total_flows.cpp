@@ -175,6 +175,7 @@ TEST(total_flow, has_units_of_its_dimension) {
         << unit;
   }
   EXPECT_THAT(refusal(flow_of("[5, 5, 5]", "kg/(m s)")), HasSubstr("give it in kg/s"));
+  EXPECT_THAT(refusal(flow_of("[6, 5]", "kg/s")), HasSubstr("give it in kg/(m s)"));
 }
 
 TEST(total_flow, through_a_closed_side_is_refused) {

@@ -116,10 +116,13 @@ class unit_remover {
              "add a table [gas], or give a dimensionless number");
     if (dims != nullptr && *dims == dimensions::density && given.unit == dimensions::number_density)
       given = {given.value * scales_->gas().mass, dimensions::density};
+    // No viscosity is converted here: its dimension is that of a mass flow in the plane.
     if (dims != nullptr && given.unit != *dims)
       refuse(raw, path, fmt::format("its unit is that of {}", unit_of(given.unit)),
-             *dims == dimensions::none ? "give a number without a unit"
-                                       : fmt::format("give it in {}", unit_of(*dims)));
+             *dims == dimensions::none
+                 ? "give a number without a unit"
+                 : fmt::format("give it in {}",
+                               *dims == dimensions::viscosity ? unit_of_amount(*dims, 1) : unit_of(*dims)));
     raw.value = given.value / scales_->unit(given.unit);
   }
 

@@ -16,11 +16,15 @@ constexpr std::array<std::pair<dimension, const char*>, 5> usual_units = {
      {dimensions::heat_flux, "W/m^2"},
      {dimensions::pressure * dimensions::length, "J/m^2"}}};
 
-}  // namespace
+/// Amounts in space, and what they change by in a time, whose unit has a name.
+constexpr std::array<std::pair<dimension, const char*>, 4> named_amounts = {
+    {{dimensions::mass * dimensions::velocity, "N s"},
+     {dimensions::mass * dimensions::velocity / dimensions::time, "N"},
+     {dimensions::mass * dimensions::velocity * dimensions::velocity, "J"},
+     {dimensions::mass * dimensions::velocity * dimensions::velocity / dimensions::time, "W"}}};
 
-std::string unit_of(const dimension& d) {
-  for (const auto& [one, unit] : usual_units)
-    if (one == d) return unit;
+/// Returns a product of powers of the base units.
+std::string in_base_units(const dimension& d) {
   const std::array<std::pair<const char*, int>, 4> factors = {
       {{"kg", d.mass}, {"m", d.length}, {"s", d.time}, {"K", d.temperature}}};
   std::string above, below;
@@ -36,6 +40,33 @@ std::string unit_of(const dimension& d) {
   if (above.empty()) above = "1";
   if (count_below == 0) return above;
   return count_below == 1 ? fmt::format("{}/{}", above, below) : fmt::format("{}/({})", above, below);
+}
+
+/// "N" → "N/m".
+std::string per_lengths(const std::string& unit, int lengths) {
+  if (lengths == 0) return unit;
+  return lengths == 1 ? unit + "/m" : fmt::format("{}/m^{}", unit, lengths);
+}
+
+}  // namespace
+
+std::string unit_of(const dimension& d) {
+  for (const auto& [one, unit] : usual_units)
+    if (one == d) return unit;
+  return in_base_units(d);
+}
+
+std::string unit_of_amount(const dimension& d, int lacking) {
+  if (d == dimensions::pressure || d == dimensions::none) return unit_of(d);
+  dimension in_space = d;
+  for (int k = 0; k < lacking; ++k) in_space = in_space * dimensions::length;
+  for (const auto& [one, unit] : named_amounts)
+    if (one == in_space) return per_lengths(unit, lacking);
+  return in_base_units(d);
+}
+
+std::string unit_of_torque(int lacking) {
+  return per_lengths("N m", lacking);
 }
 
 }  // namespace apsis

@@ -42,5 +42,11 @@ inline constexpr dimension viscosity = pressure * time;      ///< Pa s
 
 /// Returns the SI unit of a dimension: "Pa", "W/m^2", "kg/(m^2 s)"; "dimensionless" of a number.
 std::string unit_of(const dimension& d);
+/// Returns the SI unit of mass, momentum or energy, or of what they change by in a time, in a domain that
+/// lacks this number of directions: in the plane, which lacks one, "N/m" of a force per length. The dimension
+/// alone is also that of an energy per area.
+std::string unit_of_amount(const dimension& d, int lacking);
+/// Returns the SI unit of a torque in such a domain: "N m", or in the plane "N m/m".
+std::string unit_of_torque(int lacking);
 
 }  // namespace apsis

@@ -2,6 +2,7 @@
 
 #include <apsis/core/index.hpp>
 #include <apsis/run/internal/surface_columns.hpp>
+#include <apsis/run/result_units.hpp>
 #include <apsis/run/simulation.hpp>
 
 #include <algorithm>
@@ -108,8 +109,8 @@ std::vector<load_value> loads_in_stream(const body_load& body, const reference_v
   for (int k = 1; k < dimensions + (stream.about_axis ? 1 : 0); ++k) force = force * dimensions::length;
   std::vector<load_value> loads, coefficients;
   const auto add = [&](const std::string& name, const std::string& coefficient, double value,
-                       const dimension& dims, double of_one) {
-    loads.push_back({name, value, dims});
+                       const dimension& dims, double of_one, bool is_torque = false) {
+    loads.push_back({name, value, dims, is_torque});
     coefficients.push_back({coefficient, value / of_one, dimensions::none});
   };
   add("drag", "C_D", product(body.force, stream.velocity) / speed, force, unit);
@@ -118,8 +119,8 @@ std::vector<load_value> loads_in_stream(const body_load& body, const reference_v
   const list of_centre = stream.about_axis ? list{0.0} : cross(stream.centre, body.force);
   const auto moments = names_of_torque("moment", dimensions), names = names_of_torque("C_M", dimensions);
   for (std::size_t k = 0; k < moments.size(); ++k)
-    add(moments[k], names[k], body.torque[k] - of_centre[k], force * dimensions::length,
-        unit * stream.length);
+    add(moments[k], names[k], body.torque[k] - of_centre[k], force * dimensions::length, unit * stream.length,
+        true);
   add("heat", "C_H", body.heat, force * dimensions::velocity, unit * speed);
   loads.insert(loads.end(), coefficients.begin(), coefficients.end());
   return loads;
@@ -144,18 +145,21 @@ std::string column_of(const std::string& load, const std::string& body) {
 
 }  // namespace
 
-std::vector<std::pair<std::string, dimension>> load_dimensions(const simulation& run) {
+std::vector<history_unit> load_units(const simulation& run) {
   const run_setup& setup = run.setup();
-  std::vector<std::pair<std::string, dimension>> all;
+  std::vector<history_unit> all;
   dimension torque = dimensions::pressure;
   if (!setup.has_space()) return all;
   for (int k = 0; k < setup.whole_mesh().dimensions_of_integrals(); ++k) torque = torque * dimensions::length;
-  for (auto& name : torque_columns(setup)) all.emplace_back(std::move(name), torque);
+  const int lacking = lacking_directions(setup.whole_mesh());
+  for (auto& name : torque_columns(setup)) all.push_back({std::move(name), torque, unit_of_torque(lacking)});
   const auto& reference = run.config().output.reference;
   if (!reference) return all;
   for (const body_load& body : body_loads(setup, run.last()))
     for (const load_value& one : loads_in_stream(body, *reference))
-      if (one.dims != dimensions::none) all.emplace_back(column_of(one.name, body.name), one.dims);
+      if (one.dims != dimensions::none)
+        all.push_back({column_of(one.name, body.name), one.dims,
+                       one.is_torque ? unit_of_torque(lacking) : unit_of_amount(one.dims, lacking)});
   return all;
 }
 

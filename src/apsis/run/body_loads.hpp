@@ -13,6 +13,7 @@
 namespace apsis {
 
 class simulation;
+struct history_unit;
 
 /// A solid box or body whose loads a run records: it has a momentum for each of two or three directions of
 /// space.
@@ -38,9 +39,10 @@ std::vector<body_load> body_loads(const run_setup& setup, const step_record& ste
 
 /// A number that belongs to a body.
 struct load_value {
-  std::string name;     ///< "C_D"
-  double value = 0.0;   ///< dimensionless
-  dimension dims = {};  ///< in units of a gas
+  std::string name;        ///< "C_D"
+  double value = 0.0;      ///< dimensionless
+  dimension dims = {};     ///< in units of a gas
+  bool is_torque = false;  ///< whose unit is not that of an energy
 };
 
 /// Returns the loads of a body in the directions of a stream with ρ, U, the length L and in space the area S
@@ -56,8 +58,8 @@ std::vector<load_value> loads_in_stream(const body_load& body, const reference_v
 /// torque_NAME_x and so on in space.
 std::vector<std::string> torque_columns(const run_setup& setup);
 
-/// Returns the dimensions of the columns that with_loads() adds, and of the torques.
-std::vector<std::pair<std::string, dimension>> load_dimensions(const simulation& run);
+/// Returns the units of the columns that with_loads() adds, and of the torques.
+std::vector<history_unit> load_units(const simulation& run);
 
 /// Returns a history with the columns drag_NAME, lift_NAME, moment_NAME, heat_NAME, C_D_NAME, C_L_NAME,
 /// C_M_NAME and C_H_NAME of every loaded body, of loads_in_stream(); the history itself without

@@ -112,7 +112,7 @@ void add_units(json& out, const simulation& run) {
   json names = json::object();
   for (int k = 0; k < run.mesh().dimensions(); ++k)
     names[std::string(1, "xyz"[k])] = unit_of(dimensions::length);
-  for (const auto& [column, dims] : history_dimensions(run)) names[column] = unit_of(dims);
+  for (const auto& one : history_units(run)) names[one.column] = one.unit;
   for (const surface_table& surface : run.surfaces())
     for (std::size_t k = 0; k < surface.dimensions.size(); ++k)
       names[surface.numbers.columns[k]] = unit_of(surface.dimensions[k]);

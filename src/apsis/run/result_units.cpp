@@ -31,6 +31,10 @@ std::string result_units::suffix(const dimension& dims) const {
   return are_si() && dims != dimensions::none ? " " + unit_of(dims) : "";
 }
 
+std::string result_units::suffix_of_amount(const dimension& dims, int lacking) const {
+  return are_si() && dims != dimensions::none ? " " + unit_of_amount(dims, lacking) : "";
+}
+
 field_series result_units::convert(field_series fields) const {
   if (!are_si()) return fields;
   for (auto& axis : fields.axes) multiply(axis.centres, factor(dimensions::length));
@@ -59,7 +63,7 @@ surface_table result_units::convert(surface_table surface) const {
 
 numeric_table result_units::convert(numeric_table history, const simulation& run) const {
   if (!are_si()) return history;
-  for (const auto& [name, dims] : history_dimensions(run)) {
+  for (const auto& [name, dims, unit] : history_units(run)) {
     const auto found = std::find(history.columns.begin(), history.columns.end(), name);
     if (found == history.columns.end()) continue;
     const auto column = static_cast<std::size_t>(found - history.columns.begin());
@@ -74,25 +78,37 @@ dimension dimension_of_integral(dimension density, const grid& mesh) {
   return density;
 }
 
-std::vector<std::pair<std::string, dimension>> history_dimensions(const simulation& run) {
+int lacking_directions(const grid& mesh) {
+  return 3 - mesh.dimensions_of_integrals();
+}
+
+std::vector<history_unit> history_units(const simulation& run) {
   using dimensions::time;
-  std::vector<std::pair<std::string, dimension>> all;
-  if (!run.config().steady_state.tolerance)
-    all = {{"t", time}, {"dt", time}, {"change", dimensions::none / time}};
+  std::vector<history_unit> all;
+  const auto add = [&](std::string column, const dimension& dims) {
+    all.push_back({std::move(column), dims, unit_of(dims)});
+  };
+  const auto add_amount = [&](std::string column, const dimension& dims) {
+    all.push_back({std::move(column), dims, unit_of_amount(dims, lacking_directions(run.mesh()))});
+  };
+  if (!run.config().steady_state.tolerance) {
+    add("t", time);
+    add("dt", time);
+    add("change", dimensions::none / time);
+  }
   const auto names = run.setup().equation->invariants();
   const auto densities = run.setup().equation->invariant_dimensions();
   for (std::size_t k = 0; k < names.size(); ++k) {
     const dimension amount = dimension_of_integral(densities[k], run.mesh());
-    all.emplace_back("total_" + names[k], amount);
-    if (run.config().force.acceleration && k > 0) all.emplace_back("lost_force_" + names[k], amount / time);
+    add_amount("total_" + names[k], amount);
+    if (run.config().force.acceleration && k > 0) add_amount("lost_force_" + names[k], amount / time);
     for (const auto& face : run.setup().open_faces()) {
-      all.emplace_back("received_" + face + "_" + names[k], amount);
-      all.emplace_back("flux_" + face + "_" + names[k], amount / time);
+      add_amount("received_" + face + "_" + names[k], amount);
+      add_amount("flux_" + face + "_" + names[k], amount / time);
     }
   }
-  for (auto& column : temperature_columns(run.setup()))
-    all.emplace_back(std::move(column), dimensions::temperature);
-  for (auto& one : load_dimensions(run)) all.push_back(std::move(one));
+  for (auto& column : temperature_columns(run.setup())) add(std::move(column), dimensions::temperature);
+  for (auto& one : load_units(run)) all.push_back(std::move(one));
   return all;
 }
 

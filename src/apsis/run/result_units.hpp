@@ -6,7 +6,6 @@
 #include <apsis/run/simulation.hpp>
 
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace apsis {
@@ -26,6 +25,8 @@ class result_units {
   dimension of_time() const { return of_time_; }
   /// Returns " Pa" with a leading space for reports; "" if there is no unit.
   std::string suffix(const dimension& dims) const;
+  /// Returns the same of unit_of_amount().
+  std::string suffix_of_amount(const dimension& dims, int lacking) const;
 
   /// Returns the fields in these units, with the units in their labels.
   field_series convert(field_series fields) const;
@@ -43,9 +44,20 @@ class result_units {
 /// length.
 dimension dimension_of_integral(dimension density, const grid& mesh);
 
-/// Returns the dimensions of the columns of the history that have one, in units of a gas: times, and what is
-/// in the domain and crosses its faces, on a line per area and in the plane per length.
-std::vector<std::pair<std::string, dimension>> history_dimensions(const simulation& run);
+/// Returns the number of directions in which the domain of a mesh is not extended: on a line its amounts are
+/// per area, in the plane per length.
+int lacking_directions(const grid& mesh);
+
+/// A column of a history in units of a gas.
+struct history_unit {
+  std::string column;  ///< its name
+  dimension dims;      ///< of its numbers
+  std::string unit;    ///< SI unit of its numbers
+};
+
+/// Returns the columns of the history that have a dimension: times, and what is in the domain and crosses its
+/// faces, on a line per area and in the plane per length.
+std::vector<history_unit> history_units(const simulation& run);
 
 /// Returns the history of a run as results have it: with_loads(), in the units of the case.
 numeric_table result_history(const numeric_table& history, const simulation& run);

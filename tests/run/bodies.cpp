@@ -1,6 +1,7 @@
 // Runs past bodies: drag in free molecules, tables of walls, totals of the history, restarts, promises.
 #include <apsis/config/case.hpp>
 #include <apsis/core/errors.hpp>
+#include <apsis/mesh/cut_cells.hpp>
 #include <apsis/run/compute_surfaces.hpp>
 #include <apsis/run/simulation.hpp>
 
@@ -8,8 +9,10 @@
 #include <cmath>
 #include <numbers>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -183,6 +186,28 @@ TEST(runs_past_bodies, keep_promises_with_every_gas_and_wall) {
       EXPECT_EQ(run.summary().negative_values, 0) << model << wall;
       EXPECT_LT(run.summary().conservation_defect, 1e-13) << model << wall;
     }
+}
+
+TEST(runs_past_bodies, are_warned_once_about_edges_that_are_cut_off) {
+  const auto warnings_of = [](const std::string& text) {
+    testing::internal::CaptureStderr();
+    apsis::simulation run(apsis::parse_case(text, "case.toml"));
+    for (int step = 0; step < 2; ++step) run.advance();
+    return std::pair(testing::internal::GetCapturedStderr(), run.mesh().cut()->thin_cells());
+  };
+  std::string wedge = cylinder("");
+  const std::string circle = "shape = \"circle\"\ncentre = [0, 0]\nradius = 1\n";
+  const auto [of_circle, none] = warnings_of(wedge);
+  EXPECT_EQ(none, 0);
+  EXPECT_THAT(of_circle, testing::Not(testing::HasSubstr("cut off")));
+  // The tip ends between the corners of a cell.
+  wedge.replace(wedge.find(circle), circle.size(),
+                "shape = \"polygon\"\npoints = [[-0.87, 0.585], [0.9, 0.275], [0.9, 0.895]]\n");
+  const auto [of_wedge, thin] = warnings_of(wedge);
+  EXPECT_GT(thin, 0);
+  const std::string expected = fmt::format("are cut off in {} cell", thin);
+  EXPECT_THAT(of_wedge, testing::HasSubstr(expected));
+  EXPECT_EQ(of_wedge.find(expected), of_wedge.rfind(expected));
 }
 
 }  // namespace runs_past_bodies_test

@@ -12,6 +12,7 @@
 #include <apsis/exec/agreement.hpp>
 #include <apsis/exec/global_sum.hpp>
 #include <apsis/exec/interruption.hpp>
+#include <apsis/mesh/cut_cells.hpp>
 #include <apsis/model/expression.hpp>
 #include <apsis/run/cfl_limit.hpp>
 #include <apsis/run/initial_file.hpp>
@@ -62,6 +63,14 @@ std::optional<std::array<int, 3>> given_blocks(const std::optional<std::vector<i
   std::array<int, 3> all = {1, 1, 1};
   std::copy(blocks->begin(), blocks->end(), all.begin());
   return all;
+}
+
+/// The warning that bodies lose their parts in these cells.
+std::string thin_cells_warning(int cells) {
+  return fmt::format(
+      "edges or thin parts of bodies are cut off in {} (they end between the corners of a cell); "
+      "increase space.cells to lose less",
+      cells == 1 ? "1 cell" : fmt::format("{} cells", cells));
 }
 
 /// Calls body() and adds the place of a key to its input errors.
@@ -302,6 +311,8 @@ const field& run_setup::densities(const field& u, field& room) const {
 field run_setup::checked(field u, bool computed) const {
   std::vector<std::string> warnings;
   run_collectively(processes(), [&] { warnings = check_emitted_gas(config_, *equation); });
+  if (const cut_cells* cut = has_space() ? whole_mesh().cut() : nullptr; cut && cut->thin_cells() > 0)
+    warnings.push_back(thin_cells_warning(cut->thin_cells()));
   for (const std::string& warning : warnings) log::warning(warning);
   check_cells(u, computed);
   std::vector<double> lowest, highest;

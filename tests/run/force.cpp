@@ -1,11 +1,13 @@
 // Runs with a force: exact solutions of the momentum, order in time, balances.
 #include <apsis/config/case.hpp>
 #include <apsis/core/errors.hpp>
+#include <apsis/run/body_loads.hpp>
 #include <apsis/run/setup.hpp>
 #include <apsis/run/simulation.hpp>
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -123,6 +125,52 @@ TEST(accelerated_gas, has_balances_to_rounding) {
   EXPECT_EQ(run.summary().negative_values, 0);
   // The momentum that the force has given is that of the gas.
   EXPECT_NEAR(run.last().received.at(1), run.last().total.at(1), 1e-13);
+}
+
+TEST(force_past_a_body, is_the_weight_of_the_gas_that_the_body_displaces) {
+  // At rest ρ = exp(−g y) with g = 0.5, past a disc of radius 1/2.
+  simulation run(apsis::parse_case(R"toml(
+[model]
+name = "bgk"
+degrees_of_freedom = 3
+epsilon = 0.1
+[initial]
+rho = "exp(-0.5*y)"
+T = 1
+[force]
+acceleration = [0, -0.5]
+[space]
+cells = [20, 20]
+domain = [[-1, 1], [-1, 1]]
+boundary = "diffuse"
+limiter = "positivity"
+[[space.body]]
+name = "disc"
+shape = "circle"
+centre = [0.13, -0.08]
+radius = 0.5
+[velocity]
+max = 7
+points = 16
+[time]
+method = "md-imex-5-2"
+safety = 1
+end = 0.3
+)toml",
+                                   "buoyancy.toml"));
+  const double mass = run.initial_record().total.front();
+  while (!run.finished()) run.advance();
+  EXPECT_NEAR(run.last().total.front(), mass, 1e-12 * mass);
+  EXPECT_LE(run.summary().conservation_defect, 1e-12);
+  EXPECT_TRUE(run.promises().positivity);
+  EXPECT_EQ(run.summary().negative_values, 0);
+  // ∫ g exp(−g y) over the disc is π r² g exp(−g y₀) (1 + (g r)²/8 + …).
+  const double weight = std::numbers::pi * 0.125 * std::exp(0.04) * (1.0 + 0.25 * 0.25 / 8.0);
+  const apsis::body_load disc = apsis::body_loads(run.setup(), run.last()).front();
+  // Ten cells per diameter leave 0.7 %.
+  EXPECT_NEAR(disc.force[1], weight, 0.01 * weight);
+  EXPECT_NEAR(disc.force[0], 0.0, 0.01 * weight);
+  EXPECT_NEAR(disc.heat, 0.0, 0.01 * weight);
 }
 
 }  // namespace force_test

@@ -135,6 +135,7 @@ struct choices {
   apsis::outside_function body = {};
   std::optional<apsis::cell_box> box = {};
   bool by_density = false;
+  double speed = 0.0;  ///< of walls and gases beyond the ends, along the axis
 };
 
 struct polar_flow {
@@ -151,17 +152,24 @@ struct polar_flow {
     problem->add_transport(0.0, u, {&to, 1});
     return acc;
   }
-  /// The Maxwellian of temperature 1 at rest, the one that walls emit, times r.
-  field at_rest() const {
+  /// The Maxwellian of temperature 1 with this velocity along the axis, times r.
+  field stream(double speed) const {
     const auto form = equation->data_forms().front();
-    return builder->sample(
-        [&](const position&, std::span<double> f) { form.row(std::array{1.0, 0.0, 0.0, 0.0, 1.0}, f); });
+    std::array values{1.0, 0.0, 0.0, 0.0, 1.0};
+    values[equation->radial() == 0 ? 3 : 1] = speed;
+    return builder->sample([&](const position&, std::span<double> f) { form.row(values, f); });
   }
+  /// The same at rest, which walls emit.
+  field at_rest() const { return stream(0.0); }
 };
 
-inline std::shared_ptr<const apsis::boundary> side(const std::string& kind, const polar_gas& gas) {
-  if (kind == "diffuse") return apsis::make_boundary(kind, gas, {{"T", {1.0}}});
-  if (kind == "inflow") return apsis::make_boundary(kind, gas, {{"rho", {1.0}}, {"T", {1.0}}});
+/// Walls and gases beyond the ends have this velocity along the axis.
+inline std::shared_ptr<const apsis::boundary> side(const std::string& kind, const polar_gas& gas,
+                                                   double speed = 0.0) {
+  std::vector<apsis::face_quantity> u(3, 0.0);
+  u[gas.radial() == 0 ? 2 : 0] = speed;
+  if (kind == "diffuse") return apsis::make_boundary(kind, gas, {{"T", {1.0}}, {"velocity", u}});
+  if (kind == "inflow") return apsis::make_boundary(kind, gas, {{"rho", {1.0}}, {"u", u}, {"T", {1.0}}});
   return apsis::make_boundary(kind, gas);
 }
 
@@ -181,13 +189,13 @@ inline polar_flow make(const choices& of, const std::shared_ptr<apsis::communica
   flow.builder->on(mesh)
       .with_discretization("finite-difference")
       .with_reconstruction(apsis::find_reconstruction(of.scheme).make())
-      .with_boundary({radial, false}, side(of.inner == 0.0 ? "axis" : "diffuse", *flow.equation))
-      .with_boundary({radial, true}, side(of.outer, *flow.equation))
+      .with_boundary({radial, false}, side(of.inner == 0.0 ? "axis" : "diffuse", *flow.equation, of.speed))
+      .with_boundary({radial, true}, side(of.outer, *flow.equation, of.speed))
       .with_axis(radial);
   if (processes) flow.builder->shared_by(processes, blocks);
   if (of.limited) flow.builder->with_positivity_limiter();
   for (const bool upper : {false, true})
-    if (radial == 1) flow.builder->with_boundary({0, upper}, side(of.ends, *flow.equation));
+    if (radial == 1) flow.builder->with_boundary({0, upper}, side(of.ends, *flow.equation, of.speed));
   if (of.body || of.box) flow.builder->with_solid(0, side("diffuse", *flow.equation));
   flow.problem = flow.builder->build();
   return flow;

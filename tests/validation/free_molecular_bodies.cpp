@@ -14,7 +14,9 @@
 #include <string>
 #include <vector>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <validation/free_stream.hpp>
 #include <validation/quantity.hpp>
 
 namespace free_molecular_bodies_test {
@@ -24,6 +26,7 @@ using apsis::position;
 using apsis::simulation;
 using apsis::validation::compute_quantity;
 using apsis::validation::find_quantity;
+using apsis::validation::load_in_stream;
 using apsis::validation::wall_values;
 
 /// Fluxes at a wall with the density and temperature 1 of the stream, and R = 1.
@@ -150,6 +153,25 @@ TEST(free_molecular_bodies, have_less_than_the_loads_of_plates_that_shade_nothin
 TEST(free_molecular_bodies, refuse_parameters_that_are_no_accommodation) {
   EXPECT_THROW(static_cast<void>(compute_quantity(find_quantity("cylinder"), {"accommodation=1.1"})),
                apsis::input_error);
+}
+
+TEST(SLOW_free_molecular_bodies, have_drag_and_heat_of_a_cylinder_on_8_and_16_cells_per_radius) {
+  for (const double mach : {1.0, 2.0, 5.0})
+    for (const int cells : {8, 16}) {
+      // Four cells between the wall and the stream, and 32 velocities along each direction.
+      const double end = 1.0 + 4.0 / cells;
+      simulation run(apsis::load_case(
+          "gas/cylinder", {fmt::format("parameters.M={}", mach), "parameters.Kn=1e9",
+                           fmt::format("space.cells=[{},{}]", 2 * cells + 8, cells + 4),
+                           fmt::format("space.domain=[[-{0},{0}],[0,{0}]]", end), "velocity.points=32",
+                           fmt::format("velocity.max={}", mach * std::sqrt(5.0 / 3.0) + 4.4),
+                           "time.method=md-imex-5-2", "time.end=0.8", "output.every=0"}));
+      while (!run.finished()) run.advance();
+      const auto exact = coefficients(mach, 1.0, false);
+      const double bound = cells == 8 ? 1.5e-3 : 6e-4;
+      EXPECT_NEAR(load_in_stream(run, "C_D"), exact[0], bound * exact[0]) << mach << " " << cells;
+      EXPECT_NEAR(load_in_stream(run, "C_H"), exact[1], bound * exact[1]) << mach << " " << cells;
+    }
 }
 
 TEST(SLOW_free_molecular_bodies, have_the_fluxes_of_free_molecules_at_every_piece_of_a_cylinder) {

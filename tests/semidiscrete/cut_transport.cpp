@@ -199,7 +199,8 @@ TEST(cut_transport, commutes_with_rotations_by_right_angles) {
     for (int cell = 0; cell < u.cells(); ++cell)
       for (int k = 0; k < u.components(); ++k)
         difference = std::max(difference, std::abs(a.row(cell)[k] - b.row(image_of(cell))[velocity_of(k)]));
-    EXPECT_LT(difference, 1e-12 * largest(a)) << wall;
+    // Sums in another order: 3e-15.
+    EXPECT_LT(difference, 1e-13 * largest(a)) << wall;
   }
 }
 

@@ -142,7 +142,9 @@ TEST(memory_need, of_a_run_that_does_not_fit_is_refused_with_the_sizes_that_woul
   const case_config c = parse_case(in_plane, "case.toml", {"space.cells=[70, 60]"});
   const memory_need need(run_setup(c), 2);
   EXPECT_EQ(need.bytes(), bytes({"space.cells=[70, 60]"}));
-  EXPECT_EQ(need.bytes(), 100.0 * bytes({}));
+  // A hundred times the cells, and ten times the rows at their ends: those are less than a tenth of all here.
+  EXPECT_LT(need.bytes(), 100.0 * bytes({}));
+  EXPECT_GT(need.bytes(), 90.0 * bytes({}));
   EXPECT_THAT(need.text(), HasSubstr("70 x 60 cells x 144 unknowns"));
   for (const double share : {0.9, 0.5, 0.2}) {
     const double limit = share * need.bytes();

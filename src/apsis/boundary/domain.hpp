@@ -128,6 +128,8 @@ class domain : public construction_count<domain> {
   /// Returns the ghost rows beyond an end at a surface, counted outwards, of the last fill_ghosts(). The
   /// boundary of the surface must fill them.
   std::span<const double* const> ghost_rows(int surface, int place) const;
+  /// Whether the ghost rows beyond a surface are rows inside, without memory of their own.
+  bool repeats(int surface) const;
   /// Whether the boundary prescribes the components that enter at such an end.
   bool prescribes_incoming(int surface, int place) const;
   /// Returns the row of the cell at such an end, as of the last fill_ghosts().
@@ -153,7 +155,6 @@ class domain : public construction_count<domain> {
   void set_sides(const std::vector<faces>& sides, const std::vector<std::shared_ptr<const boundary>>& solids);
   void add_cut_ends();
   double open_area(const budget_surface& one) const;
-  bool repeats(int surface) const;
   /// Number of rows inside that a boundary may read.
   int rows_inside() const { return std::max(width_, 3); }
   int pencil_of(int direction, const segment& one) const;

@@ -1,5 +1,6 @@
 #include <apsis/run/memory_need.hpp>
 
+#include <apsis/boundary/domain.hpp>
 #include <apsis/core/errors.hpp>
 #include <apsis/exec/memory.hpp>
 #include <apsis/integrate/schedule.hpp>
@@ -36,6 +37,24 @@ int buffers_of(const run_setup& setup) {
   const int compared = setup.config().time.steady ? 1 : 0;
   const int changes = setup.builder().collisions().reach > 0 ? 1 : 0;
   return compared + changes + of_step;
+}
+
+/// Returns the number of rows that a problem stores at the surfaces of its mesh: ghost rows, values of both
+/// sides at faces (face_fluxes), and slopes of cut cells.
+double rows_at_surfaces(const run_setup& setup) {
+  const domain& space = setup.builder().whole_space();
+  const int width = setup.builder().ghost_rows();
+  double rows = 0.0;
+  for (int k = 0; const surface& one : space.surfaces()) {
+    const bool may_prescribe =
+        !one.segments.empty() && !space.is_border_of_cut_cells(k) && space.side(k)->prescribes_incoming(0, 1);
+    rows += static_cast<double>(one.segments.size()) *
+            ((space.repeats(k) ? 0 : width) + 1 + (may_prescribe ? 1 : 0));
+    ++k;
+  }
+  if (const cut_cells* cut = space.mesh().cut())
+    rows += static_cast<double>(cut->groups().size()) * space.mesh().dimensions();
+  return rows;
 }
 
 std::string in_units(double bytes) {
@@ -87,9 +106,7 @@ memory_need::memory_need(const run_setup& setup, int copies)
                                                       : output.fields.size());
   if (setup.has_space()) shape_ = config.space.cells;
   cells_ = product(shape_);
-  if (const cut_cells* cut = setup.has_space() ? setup.mesh().cut() : nullptr)
-    rows_of_bodies_ =
-        static_cast<double>(cut->groups().size() * shape_.size() + cut->faces().size()) / cells_;
+  if (shape_.size() > 1) rows_at_surfaces_ = rows_at_surfaces(setup);
   const auto& points = config.velocity.points;
   if (points > 0 && velocity_dimensions_ > 0) points_ = points.each();
   if (const relaxation_model* relaxes = setup.equation->as_relaxation();
@@ -99,11 +116,14 @@ memory_need::memory_need(const run_setup& setup, int copies)
 }
 
 double memory_need::bytes(double cells, double components) const {
-  const double padded =
-      (buffers_ + rows_of_bodies_) * field::padded(static_cast<int>(std::min(components, 1e9)));
+  const double padded = field::padded(static_cast<int>(std::min(components, 1e9)));
   constexpr double of_monitor = 2.0;  // step_differences
-  return cells * (bytes_of_moments_ +
-                  sizeof(double) * (padded + copies_ * components + snapshots_ * fields_ + of_monitor));
+  // Surfaces of a mesh of the same shape.
+  const double dimensions = std::max(1.0, static_cast<double>(shape_.size())),
+               at_surfaces = rows_at_surfaces_ * std::pow(cells / cells_, 1.0 - 1.0 / dimensions);
+  return sizeof(double) * at_surfaces * padded +
+         cells * (bytes_of_moments_ + sizeof(double) * (buffers_ * padded + copies_ * components +
+                                                        snapshots_ * fields_ + of_monitor));
 }
 
 std::string memory_need::unknowns() const {
@@ -117,11 +137,13 @@ std::string memory_need::text() const {
 
 std::vector<int> memory_need::cells_that_fit(double limit) const {
   if (shape_.empty() || !(limit > 0.0)) return {};
-  const double share = limit / bytes(1.0, components_) / cells_;
-  const double factor = std::min(1.0, std::pow(share, 1.0 / static_cast<double>(shape_.size())));
-  std::vector<int> cells = scaled(shape_, factor, 1);
-  if (!(bytes(product(cells), components_) <= limit)) return {};
-  return cells;
+  const auto scaled_by = [&](double factor) { return scaled(shape_, factor, 1); };
+  const auto fits = [&](double factor) { return bytes(product(scaled_by(factor)), components_) <= limit; };
+  if (fits(1.0)) return shape_;
+  if (!fits(0.0)) return {};
+  double factor = 0.0, above = 1.0;
+  while (above - factor > 1e-9) (fits(0.5 * (factor + above)) ? factor : above) = 0.5 * (factor + above);
+  return scaled_by(factor);
 }
 
 std::vector<int> memory_need::points_that_fit(double limit) const {

@@ -8,8 +8,9 @@
 namespace apsis {
 
 /// The large allocations of a run: buffers of a step, copies of the state for results, snapshots of the
-/// fields, lines in cut cells, and the moment equations of a steady state. Smaller ones are not counted, so
-/// that a case that fits is never refused.
+/// fields, rows at surfaces in several dimensions, lines in cut cells, and the moment equations of a steady
+/// state. Smaller ones, and those that a run leaves out where memory is short (loss_watch), are not counted,
+/// so that a case that fits is never refused.
 class memory_need {
  public:
   /// Counts those of a run with `copies` copies of the state.
@@ -35,7 +36,7 @@ class memory_need {
   double cells_ = 1.0, components_;  ///< in all
   int velocity_dimensions_ = 0, buffers_, copies_;
   double snapshots_, fields_;
-  double rows_of_bodies_ = 0.0;    ///< of a cell: lines of cut cells, and values at their faces
+  double rows_at_surfaces_ = 0.0;  ///< ghost rows, values at faces, and lines of cut cells
   double bytes_of_moments_ = 0.0;  ///< of a cell, for the moment equations of a steady run
   std::string method_;
 };

@@ -114,6 +114,8 @@ class problem_builder {
   std::shared_ptr<domain> make_space() const;
   /// Whether the reconstruction is first-order upwind.
   bool first_order() const { return scheme_ && scheme_->order() == 1; }
+  /// Returns the number of ghost rows of transport beyond the end of a segment, of point values.
+  int ghost_rows() const;
   /// Whether steps within r Δt_FE keep nonnegative data nonnegative.
   bool keeps_sign() const { return limited_ || first_order() || !has_space(); }
   /// Returns κ of Δt_FE = κ / max Σ_k |v_k|/Δx_k: 1 without the positivity limiter and bodies.

@@ -13,6 +13,12 @@ double problem_builder::cfl_number() const {
   return mesh_.cut() != nullptr ? std::min(of_limiter, cut_cells::cfl_number) : of_limiter;
 }
 
+int problem_builder::ghost_rows() const {
+  using limits = limited_reconstruction::limits;
+  return limited_reconstruction{scheme_, limited_ && !first_order() ? limits::fluxes : limits::nothing}
+      .ghosts();
+}
+
 double problem_builder::cfl_rate() const {
   if (radial_) {
     space();

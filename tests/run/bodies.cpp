@@ -264,8 +264,7 @@ surfaces = ["ball"]
     EXPECT_NEAR(std::hypot(x[k], y[k], z[k]), 1.0, 1e-9);
     EXPECT_NEAR(T[k], 1.2 + 0.3 * x[k] - 0.2 * z[k], 1e-12);
     // The flux √(1/2π) that arrives has the energy 2 per mass; a convex wall returns it with 2 T_w. Fluxes
-    // are means over a step, in the middle of which T_w was smaller. Single pieces are 8e-3
-    // off, most of them 1e-3.
+    // are means over a step, and T_w was smaller in the middle of it. Single pieces are 8e-3 off, most 1e-3.
     const double in_step = T[k] - run.last().dt;
     EXPECT_NEAR(q[k], std::sqrt(2.0 / std::numbers::pi) * (1.0 - in_step), 0.01) << x[k] << " " << z[k];
   }

@@ -45,8 +45,8 @@ TEST(memory_need, is_what_a_run_has_after_a_step) {
     apsis::simulation run(apsis::parse_case(gas(space), "gas.toml"));
     run.advance();
     const double found = bytes_in_use() - before, said = apsis::memory_need(run.setup(), 0).bytes();
-    // What is not counted has up to 4 % on these small meshes. The number may refuse a run: it must not be
-    // larger.
+    // Allocations that are not counted have up to 4 % on these small meshes. The number may refuse a run: it
+    // must not be larger.
     EXPECT_GT(said, 0.96 * found) << space << said / found;
     EXPECT_LT(said, 1.001 * found) << space << said / found;
   }

@@ -52,37 +52,66 @@ double mesh_cutter::outflow(const std::vector<int>& cells) {
 }
 
 /// Returns the neighbours of a group behind its largest open faces, one cell of each.
-std::vector<int> mesh_cutter::best_neighbours(const std::vector<int>& cells) {
-  std::map<int, double> areas;  // by root
+std::vector<mesh_cutter::candidate> mesh_cutter::best_neighbours(const std::vector<int>& cells) {
+  struct open_part {
+    double all = 0.0, largest = 0.0;
+    int direction = 0;  ///< of the largest face, the first one of equal ones
+  };
+  std::map<int, open_part> areas;  // by root
   for (const int cell : cells)
-    for (const way_out& one : ways_out(cell))
-      if (one.neighbour >= 0 && root(one.neighbour) != root(cell)) areas[root(one.neighbour)] += one.area;
+    for (const way_out& one : ways_out(cell)) {
+      if (one.neighbour < 0 || root(one.neighbour) == root(cell)) continue;
+      open_part& here = areas[root(one.neighbour)];
+      here.all += one.area;
+      if (one.area * (1.0 - equal_areas) <= here.largest) continue;
+      here.largest = one.area;
+      here.direction = one.direction;
+    }
   double largest = 0.0;
-  for (const auto& [neighbour, area] : areas) largest = std::max(largest, area);
-  std::vector<int> best;
+  for (const auto& [neighbour, area] : areas) largest = std::max(largest, area.all);
+  std::vector<candidate> best;
   for (const auto& [neighbour, area] : areas)
-    if (area >= (1.0 - equal_areas) * largest) best.push_back(neighbour);
+    if (area.all >= (1.0 - equal_areas) * largest) best.push_back({neighbour, area.direction});
   return best;
+}
+
+/// Of equally good neighbours of small groups leaves those in the first direction, where another such group
+/// would join one of them too: along a wall at 45° to the grid all groups would become one. Mirrored meshes
+/// have mirrored groups.
+void mesh_cutter::break_chains(std::map<int, std::vector<candidate>>& wanted) {
+  std::map<int, int> claims;
+  for (const auto& [first, best] : wanted)
+    for (const candidate& one : best)
+      if (best.size() > 1) ++claims[one.cell];
+  for (auto& [first, best] : wanted) {
+    if (best.size() < 2 ||
+        std::none_of(best.begin(), best.end(), [&](const candidate& one) { return claims.at(one.cell) > 1; }))
+      continue;
+    const auto before = [](const candidate& a, const candidate& b) { return a.direction < b.direction; };
+    const int direction = std::min_element(best.begin(), best.end(), before)->direction;
+    std::erase_if(best, [direction](const candidate& one) { return one.direction != direction; });
+  }
 }
 
 /// Joins small cells to others, all of a round in the same state, so that no order of cells matters.
 void mesh_cutter::join() {
   for (bool changed = true; changed;) {
     changed = false;
-    std::vector<std::pair<int, int>> pairs;
+    std::map<int, std::vector<candidate>> wanted;  // by root
     std::vector<int> closed;
     for (const auto& [first, cells] : members()) {
       if (outflow(cells) <= 1.0) continue;
-      const std::vector<int> best = best_neighbours(cells);
-      for (const int other : best) pairs.emplace_back(first, other);
-      if (best.empty()) closed.insert(closed.end(), cells.begin(), cells.end());
+      wanted[first] = best_neighbours(cells);
+      if (wanted[first].empty()) closed.insert(closed.end(), cells.begin(), cells.end());
     }
-    for (const auto& [a, b] : pairs) {
-      for (const int cell : {a, b})
-        if (kinds_[at(cell)] == kind::whole) make_cut(cell);
-      unite(a, b);
-      changed = true;
-    }
+    break_chains(wanted);
+    for (const auto& [first, best] : wanted)
+      for (const candidate& other : best) {
+        for (const int cell : {first, other.cell})
+          if (kinds_[at(cell)] == kind::whole) make_cut(cell);
+        unite(first, other.cell);
+        changed = true;
+      }
     // A pocket of a few small cells has no way out, and no neighbour sees it.
     for (const int cell : closed) {
       kinds_[at(cell)] = kind::body;

@@ -42,6 +42,11 @@ class mesh_cutter {
     position middle;  ///< in the coordinates of the cell
   };
 
+  /// A neighbour of a group: a cell behind its largest face, normal to this direction.
+  struct candidate {
+    int cell, direction;
+  };
+
   double outside(const position& x) const;
   int body_at(const position& x) const;
   open_parts::corner lowest_corner(int cell) const;
@@ -73,7 +78,8 @@ class mesh_cutter {
   void unite(int a, int b);
   std::map<int, std::vector<int>> members();
   double outflow(const std::vector<int>& cells);
-  std::vector<int> best_neighbours(const std::vector<int>& cells);
+  std::vector<candidate> best_neighbours(const std::vector<int>& cells);
+  static void break_chains(std::map<int, std::vector<candidate>>& wanted);
 
   void number_groups();
   void find_centre(int group);

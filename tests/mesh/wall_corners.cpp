@@ -121,7 +121,7 @@ TEST(moments_of_walls, of_a_uniform_pressure_vanish) {
     return most;
   };
   const auto triangle = [](const position& p) {
-    return std::max({0.3 * p[0] - p[1] - 0.8, 0.9 * p[0] + 0.4 * p[1] - 0.9, p[1] - p[0] - 1.0});
+    return std::max({0.3 * p[0] - p[1] - 0.8, 0.9 * p[0] + 0.4 * p[1] - 0.9, p[1] - p[0] - 0.4});
   };
   const auto cube = [](const position& p) {
     const double a = 0.8 * p[0] + 0.6 * p[1], b = 0.8 * p[1] - 0.6 * p[0];

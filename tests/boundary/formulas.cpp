@@ -30,17 +30,25 @@ TEST(formulas, continuations_are_those_of_single_numbers) {
     const auto n = static_cast<std::size_t>(*rc::gen::inRange(1, 40));
     std::array<std::vector<double>, 3> inside;
     for (auto& row : inside) row = drawn(n, random, any_size);
+    const auto inward = drawn(n, random, any_sign);
     for_each_number([&](auto number, int) {
       using N = decltype(number);
       std::array<std::vector<double>, 2> ghosts{std::vector<double>(n), std::vector<double>(n)};
       const std::array<double*, 2> rows{ghosts[0].data(), ghosts[1].data()};
       apsis::continuation_rows::fill({inside[0].data(), inside[1].data(), inside[2].data()},
                                      static_cast<int>(n), rows);
-      for (std::size_t k = 0; k < n; ++k) {
-        const scalar::continuation<N> of{N(inside[0][k]), N(inside[1][k]), N(inside[2][k])};
-        for (std::size_t g = 0; g < 2; ++g)
-          RC_ASSERT(same_bits(ghosts[g][k], value_of(of.average(N(static_cast<double>(g + 1))))));
-      }
+      const auto check = [&](const auto& enters) {
+        for (std::size_t k = 0; k < n; ++k) {
+          scalar::continuation<N> of{N(inside[0][k]), N(inside[1][k]), N(inside[2][k])};
+          if (enters(k)) of.curvature = N(0.0);
+          for (std::size_t g = 0; g < 2; ++g)
+            RC_ASSERT(same_bits(ghosts[g][k], value_of(of.average(N(static_cast<double>(g + 1))))));
+        }
+      };
+      check([](std::size_t) { return false; });
+      apsis::continuation_rows::fill_at_border({inside[0].data(), inside[1].data(), inside[2].data()},
+                                               inward.data(), static_cast<int>(n), rows);
+      check([&](std::size_t k) { return inward[k] > 0.0; });
     });
   });
 }

@@ -52,10 +52,14 @@ std::vector<double> entering_components(const face& where, const velocity_set& v
   return enters;
 }
 
-void incoming_boundary::fill(const face&, double, const pencil_end& rows) const {
+std::array<const double*, 3> three_inside(const pencil_end& rows) {
   const std::size_t cells = rows.inside.size();
   const auto inside = [&](std::size_t cell) { return rows.inside[std::min(cell, cells - 1)]; };
-  continuation_rows::fill({inside(0), inside(1), inside(2)}, rows.components, rows.ghosts);
+  return {inside(0), inside(1), inside(2)};
+}
+
+void incoming_boundary::fill(const face&, double, const pencil_end& rows) const {
+  continuation_rows::fill(three_inside(rows), rows.components, rows.ghosts);
 }
 
 }  // namespace apsis

@@ -87,6 +87,10 @@ class repeating_boundary : public boundary {
   void fill(const face& where, double t, const pencil_end& rows) const final;
 };
 
+/// Returns the rows of the three cells next to an end, the nearest one first; the last one again where there
+/// are fewer.
+std::array<const double*, 3> three_inside(const pencil_end& rows);
+
 /// A boundary condition that prescribes the incoming components. Ghost rows continue all components by the
 /// quadratic through three cells inside. A smooth factor scales the continuation towards the cell at the face
 /// where differences are larger than the value there and unequal, as next to a shock or a vacuum. The value

@@ -13,5 +13,10 @@ namespace continuation_rows {
 /// they are not smooth.
 void fill(const std::array<const double*, 3>& inside, int width, std::span<double* const> ghosts);
 
+/// The same, with a straight line through the nearest two averages for components whose velocity `inward` is
+/// positive.
+void fill_at_border(const std::array<const double*, 3>& inside, const double* inward, int width,
+                    std::span<double* const> ghosts);
+
 }  // namespace continuation_rows
 }  // namespace apsis

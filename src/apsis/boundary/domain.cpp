@@ -1,5 +1,6 @@
 #include <apsis/boundary/domain.hpp>
 
+#include <apsis/boundary/border_of_cut_cells.hpp>
 #include <apsis/core/errors.hpp>
 #include <apsis/core/index.hpp>
 #include <apsis/exec/parallel.hpp>
@@ -36,10 +37,6 @@ bool is_at(const open_face& part, const face& where) {
   return part.direction == where.direction && (where.upper ? part.above : part.below) < 0;
 }
 
-/// The border of whole cells to cut ones: ghost rows continue the state inside. The values that enter are
-/// those of the cut cells, which the transport has.
-class border_of_cut_cells final : public incoming_boundary {};
-
 }  // namespace
 
 domain::domain(phase_space space, const std::vector<faces>& sides,
@@ -74,7 +71,7 @@ void domain::set_sides(const std::vector<faces>& sides,
     if (solid < 0 && periodic(where.direction)) continue;
     auto& here = sides_[number];
     if (is_border_of_cut_cells(static_cast<int>(number))) {
-      here = std::make_shared<border_of_cut_cells>();
+      here = std::make_shared<border_of_cut_cells>(where, space_.velocities);
       continue;
     }
     here = solid < 0 ? sides[at(where.direction)][where.upper ? 1 : 0] : solids[at(solid)];

@@ -10,7 +10,7 @@ namespace apsis {
 /// transport has. Ghost rows continue the state inside: by a parabola for components that leave, by a
 /// straight line for those that enter. A parabola through cells downstream would make the edge behind the
 /// first cell a downwind value. Along a border at 45° to the grid, modes that alternate from cell to cell
-/// then grow at a rate of 0.2 |v|/Δx.
+/// then grow at a rate of 0.13 |v|/Δx.
 class border_of_cut_cells final : public boundary {
  public:
   /// `where`: the side of the whole cells at which the border is.

@@ -16,7 +16,7 @@ using gradient = std::array<double*, 3>;
 /// The sizes of all rows.
 struct extent {
   int directions;  ///< of space
-  int components;
+  int components;  ///< of the model
 };
 
 /// A face or wall of a cell.
@@ -28,8 +28,8 @@ struct way_out {
 
 /// The line of a cell.
 struct line {
-  const double* value;  ///< at the centroid of its gas
-  gradient slopes;
+  const double* value;           ///< at the centroid of its gas
+  gradient slopes;               ///< its slopes along each direction
   std::array<double, 3> vector;  ///< from the centroid to a point
   bool limited;                  ///< no value that leaves is negative where that of the cell is not
 };

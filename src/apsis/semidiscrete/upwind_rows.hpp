@@ -24,9 +24,8 @@ struct cells {
       *per_cell,          ///< of every component: |v|/Δx
       *inverse_cfl;       ///< of every component: 1/κ of add_limited(); not read by add()
   const double* source;   ///< S(u) of cell 0 at the same pitch; null without source
-  /// in ← the upwind values in the fluxes into the first cell that a component comes to, out ← those in the
-  /// fluxes out of the last one; rows, or null.
-  double *in = nullptr, *out = nullptr;
+  double *in = nullptr,   ///< a row for the upwind values that flow into the first cell, or null
+      *out = nullptr;     ///< one for those that flow out of the last cell that a component comes to
 };
 
 /// acc ← (fresh ? 0 : acc) + α u + β T.

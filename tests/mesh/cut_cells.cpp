@@ -245,7 +245,7 @@ TEST(cut_cells, of_random_overlapping_bodies_are_sound) {
 
 TEST(cut_cells, of_random_bodies_in_space_are_sound) {
   std::mt19937 generator(5);
-  std::uniform_real_distribution<double> place(-0.9, 0.9), size(0.5, 0.9);
+  std::uniform_real_distribution<double> place(-0.9, 0.9), size(0.6, 0.9);
   for (int k = 0; k < 10; ++k) {
     const grid mesh = space(11);
     const cut_cells cut(mesh, {ball(place(generator), place(generator), place(generator), size(generator))},

@@ -73,4 +73,18 @@ TEST(joined_cells, of_a_body_with_diagonal_walls_are_mirrored) {
   }
 }
 
+/// A wall that halves a cell from corner to corner has the outflow 1 up to rounding: corners at (0.6, 0.8)
+/// and (0.8, 0.6) lie on the circle.
+TEST(joined_cells, do_not_depend_on_rounding_where_a_wall_halves_a_cell) {
+  for (const auto& [n, end] : {std::pair{20, 2.0}, {30, 3.0}, {70, 7.0}}) {
+    const cut_cells cut(plane(n, -end, end), {disc(0, 0, 1)}, closed);
+    const auto groups = placed_groups(cut, 1.0, 1.0);
+    for (const auto& mirrored : {placed_groups(cut, -1.0, 1.0), placed_groups(cut, 1.0, -1.0)}) {
+      ASSERT_EQ(groups.size(), mirrored.size()) << n;
+      for (std::size_t k = 0; k < groups.size(); ++k)
+        for (std::size_t d = 0; d < 3; ++d) EXPECT_NEAR(groups[k][d], mirrored[k][d], 2e-9) << n;
+    }
+  }
+}
+
 }  // namespace joined_cells_test

@@ -139,4 +139,27 @@ TEST(thin_bodies, accept_the_tip_of_a_wedge) {
   EXPECT_GT(cut.thin_cells(), 0);
 }
 
+/// A part that lies between a corner of cells inside and one outside is lost without a trace on any edge.
+TEST(thin_bodies, refuse_bodies_that_are_smaller_than_a_cell_or_two) {
+  const auto box = [](double a) {
+    return [a](const position& x) { return std::max({std::abs(x[0]), std::abs(x[1]), std::abs(x[2])}) - a; };
+  };
+  const auto refused = [](const grid& mesh, const outside_function& body) {
+    try {
+      const cut_cells cut(mesh, {body}, closed);
+    } catch (const apsis::input_error& error) {
+      EXPECT_THAT(error.what(), testing::HasSubstr("a body is thinner than a cell near"));
+      return true;
+    }
+    return false;
+  };
+  // The middle of each body is a corner of cells; cells have the size 0.2, in space 0.4.
+  EXPECT_TRUE(refused(plane(20), disc(0, 0, 0.05)));
+  EXPECT_TRUE(refused(plane(20), box(0.15)));
+  EXPECT_TRUE(refused(space(10), box(0.1)));
+  EXPECT_TRUE(refused(space(10), ball(0, 0, 0, 0.3)));
+  EXPECT_FALSE(refused(plane(20), disc(0, 0, 0.45)));
+  EXPECT_FALSE(refused(space(10), ball(0, 0, 0, 0.9)));
+}
+
 }  // namespace cut_cells_test

@@ -103,6 +103,25 @@ void expect_no_holes(const grid& mesh, const cut_cells& cut) {
 
 }  // namespace
 
+/// Edges of cells lie in the walls of the slot, so that φ is rounding on a part of them.
+TEST(walls_on_edges_of_cells, are_those_of_the_mirrored_body) {
+  const auto slotted = [](double from, double to) {
+    return [=](const position& p) {
+      const double slot = std::max({p[0] + 0.2, from - p[1], p[1] - to});
+      return std::max(std::hypot(p[0], p[1]) - 1.2, -slot);
+    };
+  };
+  std::array<double, 2> lengths{};
+  std::array<std::size_t, 2> pieces{};
+  for (std::size_t k = 0; k < 2; ++k) {
+    const cut_cells cut(plane(20), {k == 0 ? slotted(0.0, 0.8) : slotted(-0.8, 0.0)}, closed);
+    pieces[k] = cut.walls().size();
+    for (const wall_segment& one : cut.walls()) lengths[k] += one.area;
+  }
+  EXPECT_EQ(pieces[0], pieces[1]);
+  EXPECT_NEAR(lengths[0], lengths[1], 1e-12);
+}
+
 TEST(moments_of_walls, of_a_uniform_pressure_vanish) {
   const auto largest_moment = [](const cut_cells& cut) {
     double most = 0.0;

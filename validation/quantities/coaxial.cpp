@@ -1,3 +1,4 @@
+#include <apsis/core/errors.hpp>
 #include <apsis/run/body_loads.hpp>
 
 #include <algorithm>
@@ -37,7 +38,12 @@ double compute_on_line(const quantity_values& parameters, const quantity_run& ma
 double compute(const quantity_values& parameters, const quantity_run& make) {
   static_cast<void>(positive_number(parameters, "delta"));
   const bool torque = one_of(parameters, "quantity", {"torque", "heat"}) == "torque";
-  const int cells = 2 * static_cast<int>(std::lround(number_between(parameters, "cells", 16.0, 512.0) / 2.0));
+  const double given = number_between(parameters, "cells", 16.0, 512.0);
+  const int cells = static_cast<int>(given);
+  if (given != cells || cells % 2 != 0)
+    throw input_error(fmt::format(
+        "cells = {} is not an even number (the axis of the cylinders lies between cells); write cells={}",
+        parameters.at("cells").substr(0, 60), 2 * std::lround(given / 2.0)));
   if (one_of(parameters, "geometry", {"plane", "axisymmetric"}) == "axisymmetric")
     return compute_on_line(parameters, make, torque, cells);
   // A cell beyond the outer cylinder on each side. Heat has the symmetries of the axes: a quarter suffices.

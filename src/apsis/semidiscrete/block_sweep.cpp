@@ -169,7 +169,8 @@ void block_sweep::prepare(const context& of, const field& u, const place& at) {
   seen_ = {seen_beyond(false, at), seen_beyond(true, at)};
   // Nothing reads more rows behind a surface than edges before it need.
   const int first = at.begin - seen_[0] - reach_, last = at.end + seen_[1] + reach_;
-  rows_.assign(static_cast<std::size_t>(at.end - at.begin + 2 * beyond), vacuum_.data());
+  const int all = at.end - at.begin + 2 * beyond;
+  rows_.assign(static_cast<std::size_t>(all), vacuum_.data());
   const double** read = rows_.data() + (first - first_row_);
   of.space.segment_rows(u, at.direction, at.segment, first, last, read);
   joined_.assign(rows_.size(), 1);

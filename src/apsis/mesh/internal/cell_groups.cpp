@@ -10,6 +10,8 @@ namespace {
 
 /// Open faces whose areas differ by less are equal, so that mirrored meshes have mirrored groups.
 constexpr double equal_areas = 1e-9;
+/// A cell that a wall halves from corner to corner has the outflow 1 up to rounding. It joins others.
+constexpr double largest_outflow = 1.0 - 1e-9;
 
 }  // namespace
 
@@ -100,7 +102,7 @@ void mesh_cutter::join() {
     std::map<int, std::vector<candidate>> wanted;  // by root
     std::vector<int> closed;
     for (const auto& [first, cells] : members()) {
-      if (outflow(cells) <= 1.0) continue;
+      if (outflow(cells) <= largest_outflow) continue;
       wanted[first] = best_neighbours(cells);
       if (wanted[first].empty()) closed.insert(closed.end(), cells.begin(), cells.end());
     }

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -21,6 +22,8 @@ constexpr double all_gas = 1.0 - 1e-9;
 constexpr double most_thin_cells = 0.2;
 /// Bodies that lose a larger share of their volume between corners of cells are refused: they have holes.
 constexpr double largest_loss = 0.2;
+/// All cells of a body that has no more of them are looked at for what it loses.
+constexpr std::size_t cells_of_small_body = 64;
 
 std::array<double, 3> cross(const std::array<double, 3>& a, const std::array<double, 3>& b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
@@ -175,20 +178,29 @@ void mesh_cutter::check_thin_cells(const std::vector<int>& thin, std::size_t of_
   parts_.refuse_as_thin("a body", lowest_corner(by_thickness[by_thickness.size() / 2].second));
 }
 
-/// Throws input_error if a body has lost too much between the corners of some cells.
+/// Returns the volume of bodies in a cell.
+double mesh_cutter::volume_of_body(int cell) const {
+  if (kinds_[at(cell)] == kind::body) return mesh_.cell_volume();
+  const auto cut = gas_.find(cell);
+  return cut == gas_.end() ? 0.0 : mesh_.cell_volume() - cut->second.volume;
+}
+
+/// Throws input_error if a body has lost too much between the corners of some cells: of those where a part
+/// lies between two corners, and of all cells of a small body.
 void mesh_cutter::check_lost_volume(const std::vector<int>& losing) const {
-  if (losing.empty()) return;
-  const auto volume_of_body = [this](int cell) {
-    if (kinds_[at(cell)] == kind::body) return mesh_.cell_volume();
-    const auto cut = gas_.find(cell);
-    return cut == gas_.end() ? 0.0 : mesh_.cell_volume() - cut->second.volume;
-  };
   std::vector<double> kept(bodies_.size(), 0.0), lost(bodies_.size(), 0.0), most(bodies_.size(), 0.0);
   std::vector<int> worst(bodies_.size(), -1);
+  std::vector<std::vector<int>> cells(bodies_.size());
   for (int cell = 0; cell < mesh_.size(); ++cell)
-    if (const double volume = volume_of_body(cell); volume > 0.0)
-      kept[at(body_at(mesh_.centre(cell)))] += volume;
-  for (const int cell : losing) {
+    if (const double volume = volume_of_body(cell); volume > 0.0) {
+      const std::size_t body = at(body_at(mesh_.centre(cell)));
+      kept[body] += volume;
+      if (cells[body].size() <= cells_of_small_body) cells[body].push_back(cell);
+    }
+  std::set<int> suspects(losing.begin(), losing.end());
+  for (const auto& one : cells)
+    if (one.size() <= cells_of_small_body) suspects.insert(one.begin(), one.end());
+  for (const int cell : suspects) {
     const std::size_t body = at(body_at(mesh_.centre(cell)));
     const double here = parts_.closed_share(lowest_corner(cell)) * mesh_.cell_volume() - volume_of_body(cell);
     if (!(here > 0.0)) continue;

@@ -59,6 +59,7 @@ class mesh_cutter {
   void sort_cells();
   void check_thin_cells(const std::vector<int>& thin, std::size_t of_bodies) const;
   void check_bodies() const;
+  double volume_of_body(int cell) const;
   void check_lost_volume(const std::vector<int>& losing) const;
   gas_of_cell measured(int cell);
   void add_cut_cell(int cell);

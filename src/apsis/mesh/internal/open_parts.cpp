@@ -97,15 +97,19 @@ double open_parts::zero_on_edge(int direction, const corner& lower) {
   return found->second;
 }
 
-/// Bisection from the open end, so that mirrored edges have mirrored zeros.
+/// Bisection from the open end, so that mirrored edges have mirrored zeros. Where the closed end is on the
+/// surface, a part of the edge may lie in a wall, on which φ is rounding. That counts as closed.
 double open_parts::find_zero(int direction, const corner& lower) const {
   const bool from_lower = is_open(lower);
+  const corner upper = shifted(lower, direction);
+  const double least = on_surface * value(from_lower ? lower : upper),
+               rounding = std::abs(value(from_lower ? upper : lower)) < least ? least : 0.0;
   double open = 0.0, closed = 1.0;
   for (int k = 0; k < halvings; ++k) {
     const double middle = 0.5 * (open + closed);
     std::array<double, 3> shift{};
     shift[at(direction)] = from_lower ? middle : 1.0 - middle;
-    (phi_(point(lower, shift)) > 0.0 ? open : closed) = middle;
+    (phi_(point(lower, shift)) > rounding ? open : closed) = middle;
   }
   double share = closed;
   if (share < at_corner) share = 0.0;

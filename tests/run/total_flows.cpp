@@ -118,7 +118,7 @@ TEST(total_flow, of_a_solid_box_leaves_through_all_its_faces) {
 
 TEST(total_flow, in_space_crosses_an_area) {
   const std::string space =
-                        "cells = [6, 5, 5]\ndomain = [[0, 0.6], [0, 1], [0, 2]]\nboundary = \"symmetry\"\n",
+                        "cells = [6, 7, 14]\ndomain = [[0, 0.6], [0, 1], [0, 2]]\nboundary = \"symmetry\"\n",
                     ball = "[[space.body]]\nshape = \"sphere\"\ncentre = [0, 0.4, 1]\nradius = 0.35\nT = 1\n";
   for (const std::string& body : {std::string(), ball}) {
     const auto run = run_of(gas_in(space, "max = 5\npoints = 8\n") + with_flow("left", "\"0.3 + t\"") + body,

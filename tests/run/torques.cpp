@@ -59,8 +59,8 @@ TEST(torques, of_a_gas_at_rest_vanish) {
        {plane + "[[space.body]]\nshape = 'polygon'\npoints = [[-0.7, -0.5], [1.1, 0.1], [-0.1, 0.9]]\n",
         plane + "[[space.body]]\nshape = 'circle'\ncentre = [0.6, 0.3]\nradius = 0.9\n",
         space + "[[space.body]]\nshape = 'sphere'\ncentre = [0.3, -0.2, 0.1]\nradius = 1.1\n",
-        space +
-            "[[space.body]]\nshape = 'box'\nfrom = [-0.8, -0.7, -0.9]\nto = [0.9, 0.8, 1.1]\nrotate = [1, 2, -1, 25]\n"}) {
+        space + "[[space.body]]\nshape = 'box'\nfrom = [-0.8, -0.7, -0.9]\nto = [0.9, 0.8, 1.1]\nrotate = "
+                "[1, 2, -1, 25]\n"}) {
     simulation run(parse_case(text, "case.toml", {}));
     while (!run.finished()) run.advance();
     const body_load load = body_loads(run.setup(), run.last()).front();

@@ -139,6 +139,10 @@ TEST(bodies, refuse_bad_input_with_its_place) {
   EXPECT_THAT(error_of(circle + "radios = 3\n"), message("unknown key 'space.body.1.radios'"));
   EXPECT_THAT(error_of(circle + "kind = \"inflow\"\nrho = 1\nT = 1\n"),
               message("a body cannot have the wall 'inflow'"));
+  const std::string few_velocities = apsis::to_toml(apsis::load_case("benchmarks/broadwell-plane")) +
+                                     "[[space.body]]\nshape = \"circle\"\ncentre = [0, 0]\nradius = 0.3\n";
+  EXPECT_THAT([&] { apsis::parse_case(few_velocities + "kind = \"symmetry\"\n", "flow.toml"); },
+              testing::ThrowsMessage<apsis::input_error>(message("write kind = \"vacuum\"")));
   EXPECT_THAT(
       error_of(circle + "name = \"disc\"\nvelocity = [\"x\", 0]\n"),
       testing::ContainsRegex("body 'disc': the velocity of a wall is -?[0-9.]+ along its normal at t = 0 "

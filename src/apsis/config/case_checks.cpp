@@ -11,6 +11,7 @@
 #include <apsis/core/suggest.hpp>
 #include <apsis/mesh/cut_cells.hpp>
 #include <apsis/model/expression.hpp>
+#include <apsis/model/model.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -214,13 +215,17 @@ void case_checks::check_solids() const {
 void case_checks::check_body(std::size_t k, const boundary& wall) const {
   const std::string path = fmt::format("space.body.{}", k + 1);
   const source_place place = place_of_emitter(config_, path);
-  const auto made = at_place(place, [&] { return wall.oblique(checked_model(config_)->velocities()); });
+  const auto equation = checked_model(config_);
+  const auto made = at_place(place, [&] { return wall.oblique(equation->velocities()); });
+  const relaxation_model* relaxes = equation->as_relaxation();
+  const bool is_gas = relaxes != nullptr && relaxes->as_gas() != nullptr;
   if (!made)
-    throw input_error(place,
-                      fmt::format("a body cannot have the wall '{}' (its normal may have any direction); "
-                                  "write kind = \"diffuse\", \"adiabatic\", \"radiating\", \"symmetry\" or "
-                                  "\"vacuum\"",
-                                  config_.bodies[k].kind));
+    throw input_error(place, fmt::format("a body cannot have the wall '{}' (its normal may have any "
+                                         "direction); write kind = {}",
+                                         config_.bodies[k].kind,
+                                         is_gas ? "\"diffuse\", \"adiabatic\", \"radiating\", "
+                                                  "\"symmetry\" or \"vacuum\""
+                                                : "\"vacuum\""));
   const grid mesh = make_mesh(config_);
   const int number = static_cast<int>(config_.solids.size() + k);
   for (const wall_segment& piece : mesh.cut()->walls()) {

@@ -1,19 +1,12 @@
 // Kernels against their formulas on single numbers, point by point: the same bits in every instruction set.
-#include <apsis/core/random_source.hpp>
 #include <apsis/scheme/formulas/quartic.hpp>
 #include <apsis/semidiscrete/centre_rows.hpp>
 #include <apsis/semidiscrete/collision_rows.hpp>
-#include <apsis/semidiscrete/cut_rows.hpp>
 #include <apsis/semidiscrete/face_rows.hpp>
 #include <apsis/semidiscrete/formulas/centre.hpp>
 #include <apsis/semidiscrete/formulas/collision.hpp>
-#include <apsis/semidiscrete/formulas/cut_cell.hpp>
 #include <apsis/semidiscrete/formulas/face.hpp>
-#include <apsis/semidiscrete/formulas/lattice.hpp>
-#include <apsis/semidiscrete/formulas/rotation.hpp>
 #include <apsis/semidiscrete/formulas/upwind.hpp>
-#include <apsis/semidiscrete/lattice_rows.hpp>
-#include <apsis/semidiscrete/rotation_rows.hpp>
 #include <apsis/semidiscrete/upwind_rows.hpp>
 
 #include <algorithm>
@@ -22,6 +15,7 @@
 #include <vector>
 
 #include <gtest/gtest.h>
+#include <semidiscrete/number_rows.hpp>
 #include <support/property.hpp>
 #include <support/reference_numbers.hpp>
 
@@ -29,21 +23,7 @@ namespace semidiscrete_formulas_test {
 
 namespace {
 
-using apsis::random_source;
 namespace scalar = apsis::scalar;
-
-/// Rows one behind the other.
-struct rows {
-  std::size_t width;
-  std::vector<double> all;
-  std::vector<const double*> at;
-
-  template <class Draw>
-  rows(std::size_t count, std::size_t of_row, random_source& random, const Draw& draw)
-      : width(of_row), all(drawn(count * of_row, random, draw)) {
-    for (std::size_t i = 0; i < count; ++i) at.push_back(all.data() + i * width);
-  }
-};
 
 /// A pencil of cells with two more beyond either end, their edges and two targets.
 struct pencil {
@@ -161,181 +141,6 @@ TEST(formulas, fluxes_at_the_ends_of_a_run_are_those_of_single_numbers) {
           RC_ASSERT(same_bits(out[k], value_of(flux<N>(p, limited, p.cells - 1, k))));
         }
       });
-  });
-}
-
-namespace {
-
-/// A row on a lattice, seen along one direction of motion; outside of the lattice there is vacuum.
-template <class N>
-struct line_of_lattice {
-  const apsis::lattice_rows::layout& at;
-  const apsis::lattice_rows::flux_rule& rule;
-  const double* row;
-
-  int steps(int i) const { return rule.forward ? i : -i; }
-  /// The value i points downstream of one.
-  N value(int block, int point, int column, int i) const {
-    const int to = point + steps(i);
-    return to < 0 || to >= at.points ? N(0.0) : N(row[(block * at.points + to) * at.apart + column]);
-  }
-  N edge(int block, int point, int column) const {
-    if (point < 0 || point >= at.points) return N(0.0);
-    const auto v = [&](int i) { return value(block, point, column, i); };
-    return rule.fifth_order ? scalar::upwind5_edge(v(-2), v(-1), v(0), v(1), v(2))
-                            : scalar::upwind1_edge(v(0));
-  }
-  /// The flux out of a point by the formulas of add_limited(), none out of the last one.
-  N flux(int block, int point, int column) const {
-    const int last = rule.forward ? at.points - 1 : 0;
-    if (point < 0 || point >= at.points || point == last) return N(0.0);
-    if (!rule.limited) return edge(block, point, column);
-    const auto cell = [&](int to) {
-      const N inverse_cfl(rule.inverse_cfl);
-      const int before = to - steps(1);
-      const auto upstream =
-          scalar::unlimited(value(block, before, column, 0), edge(block, before, column), inverse_cfl);
-      return scalar::limited_after(upstream, value(block, to, column, 0), edge(block, to, column),
-                                   inverse_cfl);
-    };
-    return scalar::limited_flux(cell(point), cell(point + steps(1)));
-  }
-};
-
-}  // namespace
-
-TEST(formulas, changes_along_a_lattice_are_those_of_single_numbers) {
-  check_property("lattice", [] {
-    random_source random(*rc::gen::arbitrary<std::uint32_t>());
-    const apsis::lattice_rows::layout at{*rc::gen::inRange(1, 5), *rc::gen::inRange(1, 14),
-                                         *rc::gen::inRange(1, 14)};
-    const auto n = static_cast<std::size_t>(at.blocks * at.block());
-    rows row(3, n, random, any_size);
-    // Some rows vary little, as in the bulk of a gas: most of their points are not limited.
-    if (random.one_in(2))
-      for (std::size_t i = 0; i < n; ++i) row.all[i] = 1.0 + 0.1 * random.uniform(0.0, 1.0);
-    const bool fresh = random.one_in(2);
-    const apsis::lattice_rows::flux_rule rule{random.one_in(2), random.one_in(2), random.one_in(2),
-                                              random.one_in(4) ? 1.0 : random.uniform(1.0, 30.0)};
-    const double rate = random.uniform(0.0, 3.0), beta = random.magnitude(-12.0, 0.0);
-    for_each_number([&](auto number, int) {
-      using N = decltype(number);
-      std::array<std::vector<double>, 5> all;
-      for (auto& one : all) one.resize(at.size());
-      const apsis::lattice_rows::places places{all[0].data(), all[1].data(), all[2].data(), all[3].data(),
-                                               all[4].data()};
-      const double* out = places.fluxes(rule);
-      std::vector<double> sum(row.at[1], row.at[1] + n), acc(row.at[2], row.at[2] + n);
-      apsis::lattice_rows::find_fluxes(at, rule, row.at[0], places);
-      apsis::lattice_rows::add_differences(at, out, rule.forward, rate, fresh, sum.data());
-      apsis::lattice_rows::add(sum.data(), -beta, static_cast<int>(n), acc.data());
-      const line_of_lattice<N> line{at, rule, row.at[0]};
-      std::size_t j = 0;
-      for (int block = 0; block < at.blocks; ++block)
-        for (int point = 0; point < at.points; ++point)
-          for (int column = 0; column < at.apart; ++column, ++j) {
-            const N flux = line.flux(block, point, column);
-            const auto place =
-                static_cast<std::size_t>(at.first() + block * at.pitch() + point * at.apart + column);
-            RC_ASSERT(all[0][place] == row.at[0][j]);
-            RC_ASSERT(same_bits(out[place], value_of(flux)));
-            const N upstream = line.flux(block, point - line.steps(1), column);
-            const N change = fma(N(rate), upstream - flux, N(fresh ? 0.0 : row.at[1][j]));
-            RC_ASSERT(same_bits(sum[j], value_of(change)));
-            RC_ASSERT(same_bits(acc[j], value_of(scalar::with_change(N(row.at[2][j]), N(-beta), change))));
-          }
-      RC_ASSERT(j == n);
-      // Gaps are empty, and the place before the first point.
-      for (int block = 0; block < at.blocks; ++block)
-        for (int k = 0; k < at.first(); ++k) {
-          const auto behind = static_cast<std::size_t>(at.first() + block * at.pitch() + at.block() + k);
-          RC_ASSERT(all[0][behind] == 0.0);
-          RC_ASSERT(out[behind] == 0.0);
-          RC_ASSERT(out[static_cast<std::size_t>(k)] == 0.0);
-        }
-    });
-  });
-}
-
-namespace {
-
-/// A ring of random values.
-template <class N>
-struct ring_of_numbers {
-  const apsis::rotation_rows::ring& of;
-  const apsis::rotation_rows::flux_rule& rule;
-  const double* ring;
-  int column;
-
-  bool lower(int angle) const { return angle >= of.angles / 2; }
-  std::size_t place(int angle) const {
-    return static_cast<std::size_t>((angle + of.angles) % of.angles * of.apart + column);
-  }
-  N value(int angle) const { return N(ring[place(angle)]); }
-  /// The fluxes through an edge between the angles edge − 1 and edge, in the direction of a half.
-  scalar::rotation_fluxes<N> through(int edge, bool upwards) const {
-    const int from = upwards ? edge - 1 : edge, step = upwards ? 1 : -1;
-    const auto v = [&](int i) { return value(from + i * step); };
-    const auto k = static_cast<std::size_t>(edge * of.apart + column);
-    return scalar::fluxes_of_rotation(scalar::rotation_edge<N>{N(rule.speeds[k]), N(rule.slopes[k])},
-                                      {rule.first, rule.third, rule.second}, rule.fifth_order, v(-2), v(-1),
-                                      v(0), v(1), v(2));
-  }
-  int edge_behind(int angle) const { return lower(angle) ? angle + 1 : angle; }
-  int edge_before(int angle) const { return lower(angle) ? angle : angle + 1; }
-  N fraction(int angle) const {
-    return scalar::fraction_of_rotation(through(edge_before(angle), lower(angle)),
-                                        through(edge_behind(angle), lower(angle)), value(angle),
-                                        N(rule.scale) * N(rule.inverse[place(angle)]));
-  }
-  /// The flux through an edge in the direction of a half.
-  N flux(int edge, bool upwards) const {
-    const auto found = through(edge, upwards);
-    if (!rule.limited) return found.high_order;
-    const int below = (edge - 1 + of.angles) % of.angles, above = edge % of.angles;
-    return scalar::limited_edge(found.low_order, found.high_order, fraction(upwards ? below : above),
-                                fraction(upwards ? above : below));
-  }
-  N change(int angle, double rate) const {
-    const bool upwards = lower(angle);
-    return N(rate) * (flux(edge_before(angle), upwards) - flux(edge_behind(angle), upwards));
-  }
-};
-
-}  // namespace
-
-TEST(formulas, changes_along_a_ring_are_those_of_single_numbers) {
-  check_property("ring", [] {
-    namespace rows_of_ring = apsis::rotation_rows;
-    random_source random(*rc::gen::arbitrary<std::uint32_t>());
-    const rows_of_ring::ring of{4 * *rc::gen::inRange(1, 6), *rc::gen::inRange(1, 14)};
-    const auto n = static_cast<std::size_t>(of.size());
-    rows ring(1, n, random, any_size);
-    // Some rings vary little: most of their angles are not limited.
-    if (random.one_in(2))
-      for (double& one : ring.all) one = 1.0 + 0.1 * random.uniform(0.0, 1.0);
-    const auto edges = static_cast<std::size_t>(of.edges());
-    const auto speeds = drawn(edges, random, [](random_source& r) { return r.uniform(0.0, 1.0); });
-    const auto slopes = drawn(edges, random, [](random_source& r) { return r.uniform(-0.5, 0.5); });
-    const auto inverse = drawn(n, random, [](random_source& r) { return r.uniform(0.0, 5.0); });
-    const rows_of_ring::flux_rule rule{
-        random.one_in(2), random.one_in(2),         speeds.data(), slopes.data(), 0.1, -0.01, -0.001,
-        inverse.data(),   random.uniform(1.0, 20.0)};
-    const double rate = random.uniform(0.0, 3.0);
-    for_each_number([&](auto number, int) {
-      using N = decltype(number);
-      std::array<std::vector<double>, 4> all;
-      for (auto& one : all) one.resize(of.places());
-      std::vector<double> values(of.continued()), change(n);
-      rows_of_ring::continue_ring(of, ring.at[0], values.data());
-      rows_of_ring::turn(of, rule, values.data(), rate,
-                         {all[0].data(), all[1].data(), all[2].data(), all[3].data()}, change.data());
-      for (int column = 0; column < of.apart; ++column) {
-        const ring_of_numbers<N> numbers{of, rule, ring.at[0], column};
-        for (int angle = 0; angle < of.angles; ++angle)
-          RC_ASSERT(same_bits(change[numbers.place(angle)], value_of(numbers.change(angle, rate))));
-      }
-    });
   });
 }
 
@@ -460,67 +265,6 @@ TEST(formulas, values_at_centres_are_those_of_single_numbers) {
         }
       });
   });
-}
-
-TEST(cut_rows, are_the_formulas_of_single_numbers) {
-  namespace cut_rows = apsis::cut_rows;
-  random_source random(11);
-  for (int k = 0; k < 200; ++k) {
-    const auto n = static_cast<std::size_t>(1 + k % 19);
-    const rows u(2, n, random, any_size), v(2, n, random, any_sign);
-    rows slopes(2, n, random, any_sign), beyond(2, n, random, any_sign);
-    std::vector<double> size(n), outflow(n), increase(n), share(n), values(n, 7.0), alone(n), to_row(n, 0.5),
-        to_line(n, 0.5);
-    const std::vector<double> x = slopes.all;
-    const bool limited = k % 2 == 0;
-    const std::array<std::array<double, 3>, 2> to = {{{0.3, -0.2, 0.0}, {-0.4, 0.1, 0.0}}};
-    const auto way_at = [&](std::size_t face) {
-      return cut_rows::way_out{{0.6, face == 0 ? 0.8 : -0.8, 0.0}, 1.5, {v.at[0], v.at[1], nullptr}};
-    };
-    const auto line_to = [&](std::size_t face) {
-      return cut_rows::line{u.at[0], {slopes.all.data(), slopes.all.data() + n, nullptr}, to[face], limited};
-    };
-    const cut_rows::line other{
-        u.at[1], {beyond.all.data(), beyond.all.data() + n, nullptr}, {0.2, 0.7, 0.0}, limited};
-    const cut_rows::demand_rows demand{size.data(), outflow.data(), increase.data()};
-    const cut_rows::extent of{2, static_cast<int>(n)};
-    constexpr double step = 0.01;
-    const auto kept = drawn(n, random, [](random_source& r) { return r.uniform(0.8, 1.0); });
-    for (std::size_t face = 0; face < 2; ++face)
-      cut_rows::add_demand(way_at(face), step, line_to(face), of, demand);
-    cut_rows::limit(u.at[0], demand, kept.data(), of, line_to(0).slopes);
-    cut_rows::project(way_at(0), of, share.data());
-    cut_rows::leave(share.data(), line_to(0), of, values.data());
-    cut_rows::leave_alone(way_at(0), line_to(0), of, alone.data());
-    cut_rows::pass(way_at(0), line_to(0), u.at[1], of, to_row.data());
-    cut_rows::pass(way_at(0), line_to(0), other, of, to_line.data());
-    for (std::size_t j = 0; j < n; ++j) {
-      const auto outward = [&](std::size_t face) {
-        return 1.5 * scalar::fma(v.at[1][j], way_at(face).normal[1], v.at[0][j] * 0.6);
-      };
-      const auto value = [&](double here, double slope_x, double slope_y, const std::array<double, 3>& by) {
-        const double correction = scalar::fma(slope_y, by[1], slope_x * by[0]);
-        return limited ? scalar::nonnegative_leaving_value(here, correction)
-                       : scalar::leaving_value(here, correction);
-      };
-      scalar::cut_demand<double> sums{0.0, 0.0, 0.0};
-      for (std::size_t face = 0; face < 2; ++face) {
-        const double first = x[j] * to[face][0], second = x[n + j] * to[face][1];
-        sums.add(step * outward(face), first + second, std::abs(first) + std::abs(second));
-      }
-      const double factor = sums.factor(u.at[0][j], kept[j]);
-      ASSERT_EQ(slopes.all[j], factor * x[j]);
-      ASSERT_EQ(slopes.all[n + j], factor * x[n + j]);
-      ASSERT_EQ(share[j], outward(0));
-      const double leaving = value(u.at[0][j], slopes.all[j], slopes.all[n + j], to[0]),
-                   entering = value(u.at[1][j], beyond.all[j], beyond.all[n + j], other.vector);
-      const bool leaves = outward(0) > 0.0;
-      ASSERT_EQ(values[j], leaves ? leaving : 7.0);
-      ASSERT_EQ(alone[j], leaves ? leaving : 0.0);
-      ASSERT_EQ(to_row[j], scalar::negative_fma(outward(0), leaves ? leaving : u.at[1][j], 0.5));
-      ASSERT_EQ(to_line[j], scalar::negative_fma(outward(0), leaves ? leaving : entering, 0.5));
-    }
-  }
 }
 
 }  // namespace semidiscrete_formulas_test

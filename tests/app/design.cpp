@@ -71,7 +71,7 @@ TEST(design, writes_a_two_step_method_that_can_be_checked_improved_and_run) {
   EXPECT_THAT(run.out, HasSubstr("after 128 steps of found.toml"));
   const outcome drawn = run_apsis(folder, {"plot", "found.toml"});
   EXPECT_EQ(drawn.code, 2);
-  EXPECT_THAT(drawn.err, HasSubstr("'found' takes two steps (steps = 2), which needs equal steps"));
+  EXPECT_THAT(drawn.err, HasSubstr("'found' takes two steps (steps = 2: equal ones"));
   // From the method itself the search ends with one that is no worse.
   const outcome again = run_apsis(
       folder, {"design", "--out", "again.toml", "--steps", "2", "--order", "2", "--stages", "3",

@@ -2,22 +2,16 @@
 #include <support/bad_input.hpp>
 
 #include <apsis/config/case.hpp>
-#include <apsis/core/errors.hpp>
 
 #include <gtest/gtest.h>
 
 namespace bad_input_test {
 
 TEST(bad_input, is_refused_at_its_place_with_its_reason) {
-  bad_input::expect_answers(bad_input::rows_in(APSIS_BAD_INPUT, apsis::read_case),
-                            [](const bad_input::row& r) {
-                              try {
-                                apsis::parse_case(r.text, "c.toml", r.set);
-                              } catch (const apsis::error& e) {
-                                return bad_input::answer{static_cast<int>(e.code()), e.what()};
-                              }
-                              return bad_input::answer{};
-                            });
+  bad_input::expect_answers(
+      bad_input::rows_in(APSIS_BAD_INPUT, apsis::read_case), [](const bad_input::row& r) {
+        return bad_input::answer_of([&] { apsis::parse_case(r.text, "c.toml", r.set); });
+      });
 }
 
 }  // namespace bad_input_test

@@ -1,4 +1,4 @@
-"""The messages of every table of bad input (tests/*/bad_input) read "problem (reason); suggestion."
+"""The messages of every table of bad input (tests/*/bad_input, and those in C++) read "problem (reason); suggestion."
 
 A test program runs its tables and records the messages, which are checked here. Usage: test_bad_input.py PROGRAM
 """
@@ -20,12 +20,12 @@ def messages_of(program):
     """(row, message) of every row of a bad input that a program refuses."""
     with tempfile.TemporaryDirectory() as folder:
         record = Path(folder, "record.json")
-        subprocess.run([program, "--gtest_filter=bad_input.is_refused*", f"--gtest_output=json:{record}"], check=True,
+        subprocess.run([program, "--gtest_filter=bad_input.*refused*", f"--gtest_output=json:{record}"], check=True,
                        stdout=subprocess.DEVNULL)
         suites = json.loads(record.read_text(encoding="utf-8"))["testsuites"]
     # GoogleTest writes every byte of UTF-8 as a character.
     return [(label, message.encode("latin-1").decode("utf-8")) for suite in suites for test in suite["testsuite"]
-            for label, message in test.items() if ".toml:" in label]
+            for label, message in test.items() if re.search(r"\.(toml|cpp):", label)]
 
 
 def without_quotes(text):

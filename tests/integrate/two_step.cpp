@@ -221,21 +221,13 @@ TEST(two_step, step_evaluates_the_transport_as_often_as_certified) {
   }
 }
 
-auto complains(const std::string& part) {
-  return testing::ThrowsMessage<apsis::input_error>(HasSubstr(part));
-}
-
-TEST(two_step, is_refused_where_methods_of_one_step_are_wanted) {
+TEST(two_step, is_refused_with_a_tolerance) {
   const auto m = rows_of(apsis::integrator_names("two-step").front());
-  EXPECT_THAT([&] { apsis::parse_method(apsis::to_toml(m), "m.toml"); },
-              complains("takes two steps (steps = 2)"));
-  EXPECT_THAT([] { static_cast<void>(apsis::find_method("two-step-8-3-narrow")); },
-              complains("'two-step-8-3-narrow' is a multistep method (a method of one step is needed here)"));
   auto problem = ode_model::as_relaxation<state>(1e-2L);
   apsis::two_step march(m, starter(), problem);
   state u{2, 0};
   EXPECT_THAT([&] { apsis::integrate(march, u, real(0), real(1), apsis::step_rule<real>::ssp()); },
-              complains("needs equal steps"));
+              testing::ThrowsMessage<apsis::input_error>(HasSubstr("needs equal steps")));
 }
 
 TEST(two_step, certificate_names_a_claim_that_does_not_hold) {
@@ -248,10 +240,6 @@ TEST(two_step, certificate_names_a_claim_that_does_not_hold) {
   wrong = m;
   wrong.exact.D(1, 1) = "-0.1";
   EXPECT_THAT(apsis::certify_two_step(wrong).failures.front(), HasSubstr("d_2 = -0.1 is negative"));
-  wrong = m;
-  wrong.exact.ddot[0] = "-0.1";
-  EXPECT_THAT([&] { apsis::parse_any_method(apsis::to_toml(wrong), "m.toml"); },
-              complains("the first row of a two-step method stands for u^{n-1}"));
 }
 
 }  // namespace

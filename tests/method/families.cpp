@@ -144,29 +144,12 @@ TEST(families, survive_export_and_parsing) {
 }
 
 TEST(families, have_one_name_per_member_and_no_members_out_of_range) {
-  const auto refusal = [](const std::string& name) -> std::string {
-    try {
-      find_method(name);
-    } catch (const input_error& refused) {
-      return refused.what();
-    }
-    return "accepted";
-  };
   for (const std::string s :
-       {"2", "65", "x", "S", "07", "+7", "-7", "7.0", "1e1", "3 ", "99999999999999999999"}) {
-    EXPECT_THAT(refusal("md-imex-chain-" + s + "-2"),
-                ::testing::HasSubstr("md-imex-chain-S-2 has S from 3 to 64"))
-        << s;
+       {"2", "65", "x", "S", "07", "+7", "-7", "7.0", "1e1", "3 ", "99999999999999999999"})
     EXPECT_TRUE(is_method_name("md-imex-chain-" + s + "-2"));
-  }
-  EXPECT_THAT(refusal(plateau_free(4)), ::testing::HasSubstr("md-imex-plateau-free-S-2 has S from 5 to 64"));
   // Names that almost match the pattern are unknown.
-  for (const std::string name :
-       {"md-imex-chain-7-3", "md-imex-chain-7", "md-imex-chain-2", "md-imex-chain"}) {
+  for (const std::string name : {"md-imex-chain-7-3", "md-imex-chain-7", "md-imex-chain-2", "md-imex-chain"})
     EXPECT_FALSE(is_method_name(name)) << name;
-    EXPECT_THAT(refusal(name), ::testing::HasSubstr("unknown method")) << name;
-  }
-  EXPECT_THAT(refusal("md-imex-chian-S-2"), ::testing::HasSubstr("did you mean 'md-imex-chain-S-2'"));
 }
 
 TEST(families, have_descriptions_with_existing_members) {

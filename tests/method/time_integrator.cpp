@@ -110,11 +110,4 @@ TEST(time_integrator, is_of_the_kind_that_its_file_states) {
             (std::vector<std::string>{"two-step-10-3-mixed", "two-step-8-3-narrow"}));
 }
 
-TEST(time_integrator, unknown_names_are_refused_with_the_closest_one) {
-  EXPECT_THAT([] { static_cast<void>(apsis::find_integrator("md-imex-6-33")); },
-              testing::ThrowsMessage<apsis::input_error>(HasSubstr("did you mean 'md-imex-6-3'?")));
-  EXPECT_THAT([] { static_cast<void>(apsis::find_integrator("no-such-file.toml")); },
-              testing::ThrowsMessage<apsis::input_error>(HasSubstr("no-such-file.toml")));
-}
-
 }  // namespace time_integrator_test

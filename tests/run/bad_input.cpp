@@ -1,7 +1,6 @@
 // Cases that are refused before their first step: the tables of the folder bad_input.
 #include <support/bad_input.hpp>
 
-#include <apsis/core/errors.hpp>
 #include <apsis/run/simulation.hpp>
 
 #include <gtest/gtest.h>
@@ -9,15 +8,11 @@
 namespace bad_input_test {
 
 TEST(bad_input, is_refused_at_its_place_with_its_reason) {
-  bad_input::expect_answers(bad_input::rows_in(APSIS_BAD_INPUT, apsis::read_case),
-                            [](const bad_input::row& r) {
-                              try {
-                                const apsis::simulation run(apsis::parse_case(r.text, "c.toml", r.set));
-                              } catch (const apsis::error& e) {
-                                return bad_input::answer{static_cast<int>(e.code()), e.what()};
-                              }
-                              return bad_input::answer{};
-                            });
+  bad_input::expect_answers(
+      bad_input::rows_in(APSIS_BAD_INPUT, apsis::read_case), [](const bad_input::row& r) {
+        return bad_input::answer_of(
+            [&] { const apsis::simulation run(apsis::parse_case(r.text, "c.toml", r.set)); });
+      });
 }
 
 }  // namespace bad_input_test

@@ -1,7 +1,10 @@
 #include "bad_input.hpp"
 
+#include <apsis/core/errors.hpp>
+
 #include <algorithm>
 #include <filesystem>
+#include <optional>
 #include <set>
 #include <stdexcept>
 
@@ -31,30 +34,32 @@ std::string changed(std::string text, const toml::table& given) {
   return text + given["append"].value_or(std::string());
 }
 
-std::string place_of(const row& r, const std::string& at) {
-  if (at.empty()) {
+std::string place_of(const row& r, const std::optional<std::string>& given) {
+  if (!given) {
     if (r.set.size() == 1) return "override '" + r.set.front() + "': ";
     if (!r.text.empty() && r.code != 0) throw std::runtime_error("the row has no place");
     return "";
   }
+  const std::string& at = *given;
+  if (at.empty()) return "";
   if (at == "override") return "override '";
   if (std::find(r.set.begin(), r.set.end(), at) != r.set.end()) return "override '" + at + "': ";
   return "c.toml:" + at + (at.back() == ':' ? "" : ": ");
 }
 
 row row_of(const toml::table& given, const std::string& text) {
-  static const std::set<std::string, std::less<>> known = {"from", "to", "append", "set",
+  static const std::set<std::string, std::less<>> known = {"from", "to", "append", "set", "text",
                                                            "run",  "at", "says",   "code"};
   for (const auto& [key, value] : given)
     if (!known.contains(std::string(key))) throw std::runtime_error("unknown key " + std::string(key));
   row r;
-  r.text = changed(text, given);
+  r.text = given["text"].value<std::string>().value_or(changed(text, given));
   r.set = texts_of(given, "set");
   r.run = texts_of(given, "run");
   r.says = texts_of(given, "says");
   r.code = given["code"].value_or(2);
   if (r.says.empty() != (r.code == 0)) throw std::runtime_error("either 'says' or code = 0 is needed");
-  r.place = place_of(r, given["at"].value_or(std::string()));
+  r.place = place_of(r, given["at"].value<std::string>());
   return r;
 }
 
@@ -84,10 +89,22 @@ void add_rows_of(const toml::table& table, const std::string& file,
 
 }  // namespace
 
-std::vector<row> rows_in(const std::string& folder,
+answer answer_of(const std::function<void()>& input) {
+  try {
+    input();
+  } catch (const apsis::error& e) {
+    return {static_cast<int>(e.code()), e.what()};
+  }
+  return {};
+}
+
+std::vector<row> rows_in(const std::string& path,
                          const std::function<std::string(const std::string&)>& text_of_case) {
   std::vector<std::filesystem::path> files;
-  for (const auto& entry : std::filesystem::directory_iterator(folder)) files.push_back(entry.path());
+  if (std::filesystem::is_directory(path))
+    for (const auto& entry : std::filesystem::directory_iterator(path)) files.push_back(entry.path());
+  else
+    files.emplace_back(path);
   std::sort(files.begin(), files.end());
   std::vector<row> rows;
   for (const auto& file : files) {
@@ -107,6 +124,21 @@ void expect_answers(const std::vector<row>& rows, const std::function<answer(con
     EXPECT_THAT(found.message, testing::StartsWith(r.place));
     for (const std::string& part : r.says) EXPECT_THAT(found.message, testing::HasSubstr(part));
     testing::Test::RecordProperty(r.label, found.message);
+  }
+}
+
+call::call(std::function<void()> of_input, std::vector<std::string> of_message, int of_error,
+           std::source_location of_row)
+    : input(std::move(of_input)), says(std::move(of_message)), code(of_error), line(of_row) {}
+
+void expect_refused(const std::vector<call>& calls) {
+  for (const call& one : calls) {
+    row r;
+    r.label = std::filesystem::path(one.line.file_name()).filename().string() + ":" +
+              std::to_string(one.line.line());
+    r.says = one.says;
+    r.code = one.code;
+    expect_answers({r}, [&](const row&) { return answer_of(one.input); });
   }
 }
 

@@ -25,7 +25,8 @@ method_kind read_kind(const toml_section& top) {
     names.push_back(to_string(kind));
     if (names.back() == text) return kind;
   }
-  top.fail("kind", fmt::format("unknown kind '{}'; {}", text.substr(0, 40), suggest(text, names)));
+  top.fail("kind", fmt::format("unknown kind '{}' (there is no such kind); {}", text.substr(0, 40),
+                               suggest(text, names)));
 }
 
 method_claims read_claims(const toml::table& root, const std::string& file) {
@@ -86,7 +87,8 @@ void read_shu_osher(const toml::table& table, const std::string& file, method& m
   if (m.kind != method_kind::implicit_only) {
     form.triangle("W", 0, e.W);
     e.r = form.coefficient("r");
-    if (!(coefficient_value(e.r) > 0)) form.fail("r", "'shu_osher.r' is not positive; give r > 0");
+    if (!(coefficient_value(e.r) > 0))
+      form.fail("r", "'shu_osher.r' is not positive (Euler steps have the length 1/r); give r > 0");
   }
   if (is_explicit) return;
   const auto per_stage = [&](const std::string& key) {
@@ -215,8 +217,9 @@ void read_butcher(const toml::table& table, const std::string& file, method& m) 
   std::string reason;
   const auto exact = exact_shu_osher(b, m.kind, reason);
   if (!exact)
-    form.fail(first, fmt::format("[butcher] has no convex Shu-Osher form ({}) and Qdot of a stage enters "
-                                 "another one; give [shu_osher]",
+    form.fail(first, fmt::format("[butcher] cannot be read (no convex Shu-Osher form: {}, and Qdot of a "
+                                 "stage enters another one); "
+                                 "give [shu_osher]",
                                  reason));
   m.exact = *exact;
 }
@@ -226,13 +229,14 @@ void require_given_row(const toml::table& root, const std::string& file, const m
   const toml_section top(root, file, "", all_keys);
   if (m.kind != method_kind::imex || !top.has("shu_osher") || top.has("embedded"))
     top.fail("steps",
-             "a two-step method is given by [shu_osher] with kind = \"imex\" and has no [embedded]; "
-             "change it");
+             "a two-step method cannot be read (it is given by [shu_osher] with kind = \"imex\" and has no "
+             "[embedded]); change it");
   const auto& e = m.exact;
   if (coefficient_value(e.D(0, 0)) != 0 || coefficient_value(e.ddot[0]) != 0)
     top.fail(
         "steps",
-        "the first row of a two-step method stands for u^{n-1}, which is given; set its d and ddot to 0");
+        "the first row of a two-step method is not 0 (it stands for u^{n-1}, which is given); set its d and "
+        "ddot to 0");
 }
 
 void check_exact_collisions(const toml_section& top, method_kind kind) {
@@ -296,8 +300,8 @@ method parse_method(std::string_view text, const std::string& file) {
   if (m.steps == 2)
     throw input_error(
         source_place{file, 1, 1},
-        fmt::format("'{}' takes two steps (steps = 2), which needs equal steps and the integrator "
-                    "apsis::two_step; choose a method of one step",
+        fmt::format("'{}' takes two steps (steps = 2: equal ones, with the integrator apsis::two_step); "
+                    "choose a method of one step",
                     m.name));
   return m;
 }

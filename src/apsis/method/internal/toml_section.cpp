@@ -28,7 +28,8 @@ toml_section::toml_section(const toml::table& table, std::string file, std::stri
     const auto& at = key.source().begin;
     throw input_error(
         {file_, static_cast<int>(at.line), static_cast<int>(at.column)},
-        fmt::format("unknown key '{}'{}; {}", text.substr(0, 60), inside(), suggest(text, keys)));
+        fmt::format("unknown key '{}'{} ({} has no such key); {}", text.substr(0, 60), inside(),
+                    name_.empty() ? "a method file" : "the table of this method", suggest(text, keys)));
   }
 }
 
@@ -43,7 +44,7 @@ const toml::node& toml_section::need(const std::string& key) const {
 std::string toml_section::text(const std::string& key) const {
   const toml::node& node = need(key);
   const auto value = node.value<std::string>();
-  if (!node.is_string() || !value) wrong(node, key, "a string in quotes");
+  if (!node.is_string() || !value) wrong(node, key, "a string in quotes", "\"text\"");
   if (value->size() > longest_text)
     throw input_error(place_of(node, file_),
                       fmt::format("{} is too long ({} characters, at most {}); shorten it", quoted(key),
@@ -54,7 +55,7 @@ std::string toml_section::text(const std::string& key) const {
 int toml_section::integer(const std::string& key, int lowest, int highest) const {
   const toml::node& node = need(key);
   const auto value = node.value<std::int64_t>();
-  if (!node.is_integer() || !value) wrong(node, key, "an integer");
+  if (!node.is_integer() || !value) wrong(node, key, "an integer", "2");
   if (*value < lowest || *value > highest)
     throw input_error(place_of(node, file_),
                       fmt::format("{} = {} is out of range (from {} to {}); give a number in this range",
@@ -65,13 +66,13 @@ int toml_section::integer(const std::string& key, int lowest, int highest) const
 bool toml_section::boolean(const std::string& key) const {
   const toml::node& node = need(key);
   const auto value = node.value_exact<bool>();
-  if (!value) wrong(node, key, "true or false");
+  if (!value) wrong(node, key, "true or false", "true");
   return *value;
 }
 
 std::vector<std::string> toml_section::row(const toml::node& node, const std::string& what) const {
   const toml::array* array = node.as_array();
-  if (array == nullptr) wrong(node, what, "a list of coefficients such as [\"1/2\", \"0\"]");
+  if (array == nullptr) wrong(node, what, "a list of coefficients", "[\"1/2\", \"0\"]");
   if (array->size() > most_stages)
     throw input_error(place_of(node, file_),
                       fmt::format("{} has {} entries (a method has at most {} stages); leave some out",
@@ -84,7 +85,7 @@ std::vector<std::string> toml_section::row(const toml::node& node, const std::st
 void toml_section::triangle(const std::string& key, std::size_t diagonal, matrix<std::string>& m) const {
   const toml::node& node = need(key);
   const toml::array* rows = node.as_array();
-  if (rows == nullptr) wrong(node, key, "a list of rows");
+  if (rows == nullptr) wrong(node, key, "a list of rows", "[[], [\"1\"]]");
   if (rows->size() != m.rows())
     throw input_error(place_of(node, file_),
                       fmt::format("{} has {} rows (the method has {} stages); give one row per stage",
@@ -116,7 +117,8 @@ std::size_t toml_section::row_count(const std::string& key) const {
   if (rows == nullptr || rows->empty() || rows->size() > most_stages)
     throw input_error(
         place_of(node, file_),
-        fmt::format("{} is not a list of 1 to {} stages; give one row per stage", quoted(key), most_stages));
+        fmt::format("{} is not a list of 1 to {} stages (each stage is a row); give one row per stage",
+                    quoted(key), most_stages));
   return rows->size();
 }
 
@@ -124,15 +126,17 @@ void toml_section::fail(const std::string& key, const std::string& problem) cons
   throw input_error(place_of(need(key), file_), problem);
 }
 
-void toml_section::wrong(const toml::node& node, const std::string& key, const std::string& expected) const {
+void toml_section::wrong(const toml::node& node, const std::string& key, const std::string& expected,
+                         const std::string& example) const {
   throw input_error(place_of(node, file_),
-                    fmt::format("{} has the wrong type; give {}", quoted(key), expected));
+                    fmt::format("{} has the wrong type ({} is needed); write for example {}", quoted(key),
+                                expected, example));
 }
 
 std::string toml_section::coefficient_of(const toml::node& node, const std::string& key) const {
   const auto value = node.value<std::string>();
   if (!node.is_string() || !value)
-    wrong(node, key, "a coefficient in quotes (\"1/2\" or \"0.25\", so that no digit is lost)");
+    wrong(node, key, "a coefficient in quotes", "\"1/2\" or \"0.25\", so that no digit is lost");
   if (!is_coefficient(*value))
     throw input_error(place_of(node, file_),
                       fmt::format("'{}' is not a coefficient (for {}); write an exact rational \"p/q\" or a "
@@ -147,7 +151,8 @@ const toml::table& need_table(const toml::table& root, const std::string& key, c
     throw input_error(source_place{file, 1, 1},
                       fmt::format("missing table [{}] (it is required); add it", key));
   if (node->as_table() == nullptr)
-    throw input_error(place_of(*node, file), fmt::format("'{}' is not a table; give one", key));
+    throw input_error(place_of(*node, file),
+                      fmt::format("'{0}' is not a table (its keys are those of a table); write [{0}]", key));
   return *node->as_table();
 }
 

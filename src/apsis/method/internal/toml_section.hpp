@@ -52,7 +52,8 @@ class toml_section {
   std::string quoted(const std::string& key) const {
     return "'" + (name_.empty() ? key : name_ + "." + key) + "'";
   }
-  [[noreturn]] void wrong(const toml::node& node, const std::string& key, const std::string& expected) const;
+  [[noreturn]] void wrong(const toml::node& node, const std::string& key, const std::string& expected,
+                          const std::string& example) const;
   std::string coefficient_of(const toml::node& node, const std::string& key) const;
   std::vector<std::string> row(const toml::node& node, const std::string& what) const;
 

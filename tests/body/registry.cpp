@@ -9,22 +9,16 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <support/bad_input.hpp>
 
 namespace shape_registry_test {
 
 namespace {
 
 using namespace body_examples;
-using testing::AllOf;
-using testing::HasSubstr;
 
-std::string refusal_of(const std::string& name, const apsis::shape_values& values, int dimensions) {
-  try {
-    made(name, values, dimensions);
-  } catch (const apsis::input_error& failure) {
-    return failure.what();
-  }
-  return "accepted";
+void make(const std::string& name, const apsis::shape_values& values, int dimensions) {
+  made(name, values, dimensions);
 }
 
 constexpr double infinite = std::numeric_limits<double>::infinity(),
@@ -65,65 +59,75 @@ TEST(shape_registry, describes_every_kind_and_its_keys) {
 }
 
 TEST(shape_registry, suggests_the_nearest_name_of_an_unknown_kind) {
-  EXPECT_THAT(refusal_of("spere", {}, 3),
-              AllOf(HasSubstr("unknown shape 'spere'"), HasSubstr("did you mean 'sphere'")));
+  bad_input::expect_refused({
+      {[&] { make("spere", {}, 3); }, {"unknown shape 'spere'", "did you mean 'sphere'"}},
+  });
 }
 
 TEST(shape_registry, refuses_dimensions_that_a_shape_does_not_serve) {
-  EXPECT_THAT(refusal_of("circle", {}, 3),
-              AllOf(HasSubstr("no form in 3 dimensions"), HasSubstr("use 'cylinder'")));
-  EXPECT_THAT(refusal_of("sphere", {}, 2), HasSubstr("use 'circle'"));
-  EXPECT_THAT(refusal_of("box", {}, 1), HasSubstr("has 1 dimensions"));
+  bad_input::expect_refused({
+      {[&] { make("circle", {}, 3); }, {"no form in 3 dimensions", "use 'cylinder'"}},
+      {[&] { make("sphere", {}, 2); }, {"use 'circle'"}},
+      {[&] { make("box", {}, 1); }, {"has 1 dimensions"}},
+  });
 }
 
 TEST(shape_registry, refuses_unknown_and_missing_keys) {
-  EXPECT_THAT(refusal_of("circle", {{"centre", numbers{0, 0}}, {"radus", 1.0}}, 2),
-              AllOf(HasSubstr("no key 'radus'"), HasSubstr("did you mean 'radius'")));
-  EXPECT_THAT(refusal_of("circle", {{"centre", numbers{0, 0}}}, 2),
-              HasSubstr("has no 'radius' (it is the distance"));
+  bad_input::expect_refused({
+      {[&] { make("circle", {{"centre", numbers{0, 0}}, {"radus", 1.0}}, 2); },
+       {"no key 'radus'", "did you mean 'radius'"}},
+      {[&] { make("circle", {{"centre", numbers{0, 0}}}, 2); }, {"has no 'radius' (it is the distance"}},
+  });
 }
 
 TEST(shape_registry, refuses_values_of_another_kind_or_size) {
-  EXPECT_THAT(refusal_of("circle", {{"centre", 0.0}, {"radius", 1.0}}, 2),
-              HasSubstr("'centre' of shape 'circle' is a number (a list of numbers is needed)"));
-  EXPECT_THAT(refusal_of("circle", {{"centre", numbers{0, 0, 0}}, {"radius", 1.0}}, 2),
-              HasSubstr("'centre' of shape 'circle' has 3 components (it needs 2)"));
-  EXPECT_THAT(refusal_of("union", {{"shapes", apsis::shape_list{}}}, 2),
-              HasSubstr("has 0 shapes (it needs at least 1)"));
-  EXPECT_THAT(refusal_of("difference", {{"shapes", apsis::shape_list{circles().front()}}}, 2),
-              HasSubstr("has 1 shapes (it needs at least 2)"));
-  EXPECT_THAT(refusal_of("hollow", {{"of", circles()}}, 2), HasSubstr("has 2 shapes (it takes at most 1)"));
-  EXPECT_THAT(refusal_of("union", {{"shapes", apsis::shape_list{nullptr}}}, 2), HasSubstr("an empty shape"));
-  EXPECT_THAT(refusal_of("formula", {{"phi", apsis::level_set_function{}}}, 2), HasSubstr("is empty"));
+  bad_input::expect_refused({
+      {[&] { make("circle", {{"centre", 0.0}, {"radius", 1.0}}, 2); },
+       {"'centre' of shape 'circle' is a number (a list of numbers is needed)"}},
+      {[&] { make("circle", {{"centre", numbers{0, 0, 0}}, {"radius", 1.0}}, 2); },
+       {"'centre' of shape 'circle' has 3 components (it needs 2)"}},
+      {[&] { make("union", {{"shapes", apsis::shape_list{}}}, 2); }, {"has 0 shapes (it needs at least 1)"}},
+      {[&] { make("difference", {{"shapes", apsis::shape_list{circles().front()}}}, 2); },
+       {"has 1 shapes (it needs at least 2)"}},
+      {[&] { make("hollow", {{"of", circles()}}, 2); }, {"has 2 shapes (it takes at most 1)"}},
+      {[&] { make("union", {{"shapes", apsis::shape_list{nullptr}}}, 2); }, {"an empty shape"}},
+      {[&] { make("formula", {{"phi", apsis::level_set_function{}}}, 2); }, {"is empty"}},
+  });
 }
 
 TEST(shape_registry, refuses_numbers_that_are_not_finite_positive_or_of_a_usable_size) {
   const auto circle = [](double x, double radius) {
-    return refusal_of("circle", {{"centre", numbers{x, 0}}, {"radius", radius}}, 2);
+    return make("circle", {{"centre", numbers{x, 0}}, {"radius", radius}}, 2);
   };
-  EXPECT_THAT(circle(nan, 1.0), HasSubstr("'centre' of shape 'circle' is nan (it is not finite)"));
-  EXPECT_THAT(circle(0.0, infinite), HasSubstr("is inf (it is not finite)"));
-  EXPECT_THAT(circle(0.0, 0.0), HasSubstr("is 0 (it must be positive)"));
-  EXPECT_THAT(circle(0.0, -1.0), HasSubstr("is -1 (it must be positive)"));
-  EXPECT_THAT(circle(1e200, 1.0), HasSubstr("magnitudes are at most 1e+100"));
-  EXPECT_THAT(circle(0.0, 1e-200), HasSubstr("sizes are at least 1e-100"));
-  EXPECT_THAT(refusal_of("ellipse", {{"centre", numbers{0, 0}}, {"semi_axes", numbers{1, 0}}}, 2),
-              HasSubstr("'semi_axes' of shape 'ellipse' is 0 (it must be positive)"));
+  bad_input::expect_refused({
+      {[&] { circle(nan, 1.0); }, {"'centre' of shape 'circle' is nan (it is not finite)"}},
+      {[&] { circle(0.0, infinite); }, {"is inf (it is not finite)"}},
+      {[&] { circle(0.0, 0.0); }, {"is 0 (it must be positive)"}},
+      {[&] { circle(0.0, -1.0); }, {"is -1 (it must be positive)"}},
+      {[&] { circle(1e200, 1.0); }, {"magnitudes are at most 1e+100"}},
+      {[&] { circle(0.0, 1e-200); }, {"sizes are at least 1e-100"}},
+      {[&] { make("ellipse", {{"centre", numbers{0, 0}}, {"semi_axes", numbers{1, 0}}}, 2); },
+       {"'semi_axes' of shape 'ellipse' is 0 (it must be positive)"}},
+  });
 }
 
 TEST(shape_registry, refuses_values_that_contradict_each_other) {
-  EXPECT_THAT(refusal_of("box", {{"from", numbers{0, 0}}, {"to", numbers{1, 0}}}, 2),
-              HasSubstr("'to' of shape 'box' is 0 in direction y ('from' is 0)"));
-  EXPECT_THAT(refusal_of("half_space", {{"point", numbers{0, 0}}, {"normal", numbers{0, 0}}}, 2),
-              HasSubstr("'normal' of shape 'half_space' is 0 (it has no direction)"));
+  bad_input::expect_refused({
+      {[&] { make("box", {{"from", numbers{0, 0}}, {"to", numbers{1, 0}}}, 2); },
+       {"'to' of shape 'box' is 0 in direction y ('from' is 0)"}},
+      {[&] { make("half_space", {{"point", numbers{0, 0}}, {"normal", numbers{0, 0}}}, 2); },
+       {"'normal' of shape 'half_space' is 0 (it has no direction)"}},
+  });
   const apsis::shape_list circle = {circles().front()};
-  EXPECT_THAT(refusal_of("extruded", {{"of", circle}, {"from", 1.0}, {"to", 1.0}}, 3),
-              HasSubstr("'to' of shape 'extruded' is 1 ('from' is 1)"));
-  EXPECT_THAT(refusal_of("turned", {{"of", circle}, {"rotate", numbers{0, 0, 0, 90}}}, 3),
-              HasSubstr("'rotate' of shape 'turned' is 0 (it has no direction)"));
-  EXPECT_THAT(refusal_of("turned", {{"of", circle}, {"rotate", numbers{0, 0, 1}}}, 3),
-              HasSubstr("has 3 components (it needs 4)"));
-  EXPECT_THAT(refusal_of("turned", {{"of", circle}, {"rotate", 90.0}}, 3), HasSubstr("is a number"));
+  bad_input::expect_refused({
+      {[&] { make("extruded", {{"of", circle}, {"from", 1.0}, {"to", 1.0}}, 3); },
+       {"'to' of shape 'extruded' is 1 ('from' is 1)"}},
+      {[&] { make("turned", {{"of", circle}, {"rotate", numbers{0, 0, 0, 90}}}, 3); },
+       {"'rotate' of shape 'turned' is 0 (it has no direction)"}},
+      {[&] { make("turned", {{"of", circle}, {"rotate", numbers{0, 0, 1}}}, 3); },
+       {"has 3 components (it needs 4)"}},
+      {[&] { make("turned", {{"of", circle}, {"rotate", 90.0}}, 3); }, {"is a number"}},
+  });
 }
 
 }  // namespace shape_registry_test

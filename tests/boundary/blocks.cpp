@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <support/bad_input.hpp>
 #include <support/processes.hpp>
 
 namespace blocks_test {
@@ -25,7 +26,6 @@ using apsis::distribution;
 using apsis::domain;
 using apsis::field;
 using apsis::grid;
-using testing::HasSubstr;
 
 /// Ghost rows that depend on as many rows inside as there are ghost rows, on the time and on the place.
 class deep final : public apsis::boundary {
@@ -208,20 +208,14 @@ TEST(block_partition, covers_every_cell_once_with_blocks_that_differ_by_one_cell
 }
 
 TEST(block_partition, that_is_impossible_is_refused_with_the_next_number_of_processes) {
-  const auto message = [](const auto& make) -> std::string {
-    try {
-      make();
-    } catch (const apsis::input_error& refused) {
-      return refused.what();
-    }
-    return "accepted";
-  };
   const grid mesh(2, {4, 3, 1}, {0, 0, 0}, {1, 1, 1});
-  EXPECT_THAT(message([&] { block_partition(mesh, 7); }), HasSubstr("7 processes cannot share the mesh"));
-  EXPECT_THAT(message([&] { block_partition(mesh, 7); }), HasSubstr("start 6"));
-  EXPECT_THAT(message([&] { block_partition(mesh, 13); }), HasSubstr("start 12"));
-  EXPECT_THAT(message([&] { block_partition(mesh, {5, 1, 1}); }),
-              HasSubstr("5 blocks along direction 1 (it has 4 cells); give 1 to 4"));
+  bad_input::expect_refused({
+      {[&] { block_partition(mesh, 7); }, {"7 processes cannot share the mesh"}},
+      {[&] { block_partition(mesh, 7); }, {"start 6"}},
+      {[&] { block_partition(mesh, 13); }, {"start 12"}},
+      {[&] { block_partition(mesh, {5, 1, 1}); },
+       {"5 blocks along direction 1 (it has 4 cells); give 1 to 4"}},
+  });
 }
 
 }  // namespace blocks_test

@@ -14,6 +14,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <mesh/cut_meshes.hpp>
+#include <support/bad_input.hpp>
 
 namespace cut_cells_test {
 
@@ -203,9 +204,10 @@ TEST(cut_cells, see_the_same_body_across_periodic_faces) {
 }
 
 TEST(cut_cells, refuse_bodies_that_end_at_a_periodic_face) {
-  EXPECT_THAT(
-      [] { const cut_cells cut(plane(24), {disc(-2.0, 0.1, 0.7)}, {true, false, false}); },
-      testing::ThrowsMessage<apsis::input_error>(testing::HasSubstr("crosses the periodic face at x = -2")));
+  bad_input::expect_refused({
+      {[] { const cut_cells cut(plane(24), {disc(-2.0, 0.1, 0.7)}, {true, false, false}); },
+       {"crosses the periodic face at x = -2"}},
+  });
 }
 
 TEST(cut_cells, are_mirrored_with_the_body) {
@@ -275,15 +277,14 @@ TEST(cut_cells, refuse_functions_that_are_no_bodies) {
   const auto with = [](const outside_function& phi) {
     return [phi] { const cut_cells cut(plane(8), {phi}, closed); };
   };
-  EXPECT_THAT(with([](const position& x) { return std::log(x[0]); }),
-              testing::ThrowsMessage<apsis::input_error>(testing::HasSubstr("not a number")));
-  EXPECT_THAT(with([](const position&) { return -1.0; }),
-              testing::ThrowsMessage<apsis::input_error>(testing::HasSubstr("no cell is left")));
-  EXPECT_THAT(
-      with([](const position& x) { return std::abs(x[0]); }),
-      testing::ThrowsMessage<apsis::input_error>(testing::HasSubstr("a body is thinner than a cell")));
-  EXPECT_THAT([] { const cut_cells cut(grid::line(8, 0.0, 1.0), {disc(0, 0, 1)}, closed); },
-              testing::ThrowsMessage<apsis::input_error>(testing::HasSubstr("a body on a line")));
+  bad_input::expect_refused({
+      {with([](const position& x) { return std::log(x[0]); }), {"not a number"}},
+      {with([](const position&) { return -1.0; }), {"no cell is left"}},
+      {with([](const position& x) { return std::abs(x[0]); }), {"a body is thinner than a cell"}},
+  });
+  bad_input::expect_refused({
+      {[] { const cut_cells cut(grid::line(8, 0.0, 1.0), {disc(0, 0, 1)}, closed); }, {"a body on a line"}},
+  });
 }
 
 TEST(cut_cells, have_walls_of_solid_boxes_next_to_them) {

@@ -14,6 +14,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <mesh/cut_meshes.hpp>
+#include <support/bad_input.hpp>
 
 namespace cut_cells_test {
 
@@ -72,29 +73,28 @@ TEST(thin_bodies, refuse_thin_plates_and_gaps_with_the_cells_that_they_need) {
                       std::abs(0.8 * x[0] - 0.6 * x[1]) - 1.0);
     });
   };
-  const auto error_of = [](int n, const std::vector<outside_function>& bodies) -> std::string {
-    try {
-      const cut_cells cut(plane(n), bodies, closed);
-    } catch (const apsis::input_error& error) {
-      return error.what();
-    }
-    return "";
+  const auto cut = [](int n, const std::vector<outside_function>& bodies) {
+    const cut_cells made(plane(n), bodies, closed);
   };
-  const std::string of_plate = error_of(16, {plate(0.1)});
-  EXPECT_THAT(of_plate, testing::HasSubstr("a body is thinner than a cell near ("));
+  const std::string of_plate = bad_input::answer_of([&] { cut(16, {plate(0.1)}); }).message;
+  bad_input::expect_refused({{[&] { cut(16, {plate(0.1)}); }, {"a body is thinner than a cell near ("}}});
   const auto advice = of_plate.find("space.cells = [");
   ASSERT_NE(advice, std::string::npos);
   const int needed = std::stoi(of_plate.substr(advice + 15));
   EXPECT_GE(needed, 40);
   EXPECT_LE(needed, 400);
-  EXPECT_EQ(error_of(needed, {plate(0.1)}), "");
+  EXPECT_NO_THROW(cut(needed, {plate(0.1)}));
   // Two discs that nearly touch, and gas enclosed between the corners of a cell.
-  EXPECT_THAT(error_of(20, {disc(-0.77, 0.03, 0.7), disc(0.67, 0.03, 0.7)}),
-              testing::HasSubstr("a gap between bodies is thinner than a cell"));
-  EXPECT_EQ(error_of(400, {disc(-0.77, 0.03, 0.7), disc(0.67, 0.03, 0.7)}), "");
+  bad_input::expect_refused({
+      {[&] { cut(20, {disc(-0.77, 0.03, 0.7), disc(0.67, 0.03, 0.7)}); },
+       {"a gap between bodies is thinner than a cell"}},
+  });
+  EXPECT_NO_THROW(cut(400, {disc(-0.77, 0.03, 0.7), disc(0.67, 0.03, 0.7)}));
   // A disc within a cell.
-  EXPECT_THAT(error_of(4, {disc(0.5, 0.5, 0.2)}), testing::HasSubstr("a body is thinner than a cell"));
-  EXPECT_THAT(error_of(4, {disc(0.7, 0.5, 0.01)}), testing::HasSubstr("body 1 has no wall in the domain"));
+  bad_input::expect_refused({
+      {[&] { cut(4, {disc(0.5, 0.5, 0.2)}); }, {"a body is thinner than a cell"}},
+      {[&] { cut(4, {disc(0.7, 0.5, 0.01)}); }, {"body 1 has no wall in the domain"}},
+  });
 }
 
 TEST(thin_bodies, of_plates_at_any_angle_keep_most_of_the_plate_or_are_refused) {

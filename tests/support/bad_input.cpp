@@ -127,18 +127,14 @@ void expect_answers(const std::vector<row>& rows, const std::function<answer(con
   }
 }
 
-call::call(std::function<void()> of_input, std::vector<std::string> of_message, int of_error,
-           std::source_location of_row)
-    : input(std::move(of_input)), says(std::move(of_message)), code(of_error), line(of_row) {}
-
-void expect_refused(const std::vector<call>& calls) {
-  for (const call& one : calls) {
+void expect_refused(const std::vector<call>& calls, const std::source_location& place) {
+  const std::string file = std::filesystem::path(place.file_name()).filename().string();
+  for (std::size_t k = 0; k < calls.size(); ++k) {
     row r;
-    r.label = std::filesystem::path(one.line.file_name()).filename().string() + ":" +
-              std::to_string(one.line.line());
-    r.says = one.says;
-    r.code = one.code;
-    expect_answers({r}, [&](const row&) { return answer_of(one.input); });
+    r.label = file + ":" + std::to_string(place.line()) + "." + std::to_string(k + 1);
+    r.says = calls[k].says;
+    r.code = calls[k].code;
+    expect_answers({r}, [&](const row&) { return answer_of(calls[k].input); });
   }
 }
 

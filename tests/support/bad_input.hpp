@@ -46,17 +46,13 @@ void expect_answers(const std::vector<row>& rows, const std::function<answer(con
 
 /// A row whose input only C++ can express: a call that must be refused.
 struct call {
-  call(std::function<void()> of_input, std::vector<std::string> of_message, int of_error = 2,
-       std::source_location of_row = std::source_location::current());
-
   std::function<void()> input;
   std::vector<std::string> says;  ///< parts of the message
   int code = 2;                   ///< exit code
-  std::source_location line;      ///< of the row
 };
 
-/// Checks code and key words of every row, and records its message as `expect_answers` does. The name of the
-/// test contains "refused".
-void expect_refused(const std::vector<call>& calls);
+/// Checks code and key words of every row, and records its message as `expect_answers` does.
+void expect_refused(const std::vector<call>& calls,
+                    const std::source_location& place = std::source_location::current());
 
 }  // namespace bad_input

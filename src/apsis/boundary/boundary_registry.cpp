@@ -72,7 +72,8 @@ std::shared_ptr<const boundary> make_boundary(const std::string& name, const mod
   for (const auto& variable : variables) names.push_back(variable.name);
   for (const auto& [given, components] : values)
     if (std::find(names.begin(), names.end(), given) == names.end())
-      throw input_error(fmt::format("boundary '{}' has no variable '{}'; {}", name, given.substr(0, 60),
+      throw input_error(fmt::format("boundary '{}' has no variable '{}' (its variables have other names); {}",
+                                    name, given.substr(0, 60),
                                     names.empty() ? "give none" : suggest(given, names)));
   boundary_source from{&equation};
   for (const auto& variable : variables) {

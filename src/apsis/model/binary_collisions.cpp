@@ -52,7 +52,7 @@ binary_collisions::binary_collisions(std::vector<std::vector<double>> velocities
     for (std::size_t before = 0; before < c; ++before)
       if (key_of(collisions_[before]) == key_of(collisions_[c]))
         throw input_error(fmt::format(
-            "model.collisions has {} and {}, which are the same; give one of them, with the sum of "
+            "model.collisions has {} and {} (they are the same); give one of them, with the sum of "
             "the rates",
             text_of(collisions_[before]), text_of(collisions_[c])));
   }
@@ -81,7 +81,7 @@ void binary_collisions::check_velocities() const {
     const auto first = std::find(velocities_.begin(), velocities_.end(), v) - velocities_.begin();
     if (first < static_cast<std::ptrdiff_t>(j))
       throw input_error(
-          fmt::format("model.velocities has {2} twice, as velocities {0} and {1}; give one of them",
+          fmt::format("model.velocities has {2} twice (as velocities {0} and {1}); give one of them",
                       first + 1, j + 1, text_of(v)));
   }
 }
@@ -110,8 +110,7 @@ void binary_collisions::check_collision(const binary_collision& c) const {
         fmt::format("model.collisions has {} with the rate {:g} (not a finite number above 0); change it",
                     text_of(c), c.rate));
   if (std::minmax(c.i, c.j) == std::minmax(c.k, c.l))
-    throw input_error(
-        fmt::format("model.collisions has {}, which changes no velocity; remove it", text_of(c)));
+    throw input_error(fmt::format("model.collisions has {} (it changes no velocity); remove it", text_of(c)));
   if (elastic(c)) return;
   const auto at = [&](int j) -> const std::vector<double>& {
     return velocities_[static_cast<std::size_t>(j)];

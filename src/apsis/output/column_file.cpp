@@ -69,7 +69,10 @@ column_file read_columns(const std::string& path) {
       names.assign(entries.begin(), entries.end());
       for (const auto& name : names)
         if (!table.columns.emplace(name, std::vector<double>()).second)
-          throw input_error(place, fmt::format("column '{}' appears twice; rename one of them", name));
+          throw input_error(
+              place,
+              fmt::format("column '{}' appears twice (a column is found by its name); rename one of them",
+                          name));
       continue;
     }
     if (entries.size() != names.size())

@@ -33,10 +33,12 @@ void check(const std::vector<aligned_vector<double>>& coordinates, const std::ve
       throw input_error(
           fmt::format("{} coordinates for {} weights (a velocity has one of each); give as many", row.size(),
                       weights.size()));
-    if (!all_finite(row)) throw input_error("a velocity is not finite; give finite coordinates");
+    if (!all_finite(row))
+      throw input_error("a velocity is not finite (gas moves along it); give finite coordinates");
   }
   if (!all_finite(weights) || std::any_of(weights.begin(), weights.end(), [](double w) { return w < 0.0; }))
-    throw input_error("a weight of a velocity is not a finite number >= 0; change it");
+    throw input_error(
+        "a weight of a velocity is not a finite number >= 0 (densities are sums with it); change it");
   if (sets < 1)
     throw input_error(fmt::format("{} sets of components (at least one is needed); give more", sets));
 }

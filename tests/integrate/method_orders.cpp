@@ -31,7 +31,7 @@ state solve(const std::string& method, real epsilon, long steps, state u) {
   auto problem = ode_model::as_relaxation<state>(epsilon);
   const auto rule = step_rule<real>::fixed(real(1) / static_cast<real>(steps));
   const apsis::method& m = apsis::find_method(method);
-  if (m.kind == method_kind::exponential) {
+  if (m.kind == method_kind::exact_collision) {
     apsis::exact_collisions exact(problem);
     apsis::stepper march(m, exact);
     apsis::integrate(march, u, real(0), real(1), rule);
@@ -117,7 +117,7 @@ TEST_P(every_method_with_limit, has_its_certified_order_in_the_limit) {
 
 std::vector<std::string> methods_with_limit() {
   return methods_where([](const apsis::method& m) {
-    return m.kind == method_kind::imex || m.kind == method_kind::exponential;
+    return m.kind == method_kind::imex || m.kind == method_kind::exact_collision;
   });
 }
 

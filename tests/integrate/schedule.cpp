@@ -158,7 +158,7 @@ class joint : public counted {
 TEST(stepper, evaluates_transport_and_collision_of_explicit_methods_together) {
   for (const auto& name : apsis::method_names()) {
     const apsis::method& m = apsis::find_method(name);
-    if (m.kind == apsis::method_kind::exponential) continue;
+    if (m.kind == apsis::method_kind::exact_collision) continue;
     const auto form = m.coefficients<double>();
     joint p;
     p.transport = -0.3;

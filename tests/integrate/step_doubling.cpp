@@ -47,7 +47,7 @@ auto with_problem(const apsis::method& m, const Use& use) {
   const auto exact = reference::radau(1, 1);
   const state end{static_cast<double>(exact[0]), static_cast<double>(exact[1])};
   auto problem = ode_model::as_relaxation<state>(1.0);
-  if (m.kind == method_kind::exponential) {
+  if (m.kind == method_kind::exact_collision) {
     apsis::exact_collisions wrapped(problem);
     return use(wrapped, state{2, 0}, end);
   }

@@ -39,7 +39,7 @@ long double forced_error(const std::string& name, int steps) {
                      apsis::step_rule<real>::fixed(real(1) / static_cast<real>(steps)));
     return std::abs(u[0] - (2 + std::sin(real(1))));
   };
-  if (apsis::find_method(name).kind != apsis::method_kind::exponential) return error(p);
+  if (apsis::find_method(name).kind != apsis::method_kind::exact_collision) return error(p);
   with_known_square<decltype(p)> known{p};
   apsis::exact_collisions exact(known);
   return error(exact);

@@ -105,7 +105,7 @@ TEST(exponential_method, is_the_same_after_export) {
   const auto& m = apsis::find_method("exponential-2");
   const auto again = parse_method(apsis::to_toml(m), "exported.toml");
   EXPECT_EQ(apsis::to_toml(again), apsis::to_toml(m));
-  EXPECT_EQ(again.kind, apsis::method_kind::exponential);
+  EXPECT_EQ(again.kind, apsis::method_kind::exact_collision);
   EXPECT_THAT(apsis::to_latex(m), testing::Not(HasSubstr("\\dot d")));
 }
 

@@ -112,7 +112,7 @@ void expect_violated_condition(const method& m, const std::string& refusal) {
   EXPECT_LE(tree.nodes(), m.claims.order) << refusal;
   const auto form = m.coefficients<mp_real>();
   const auto weights =
-      tree.weights(to_butcher(m.kind == method_kind::exponential ? with_resolved_flows(form) : form));
+      tree.weights(to_butcher(m.kind == method_kind::exact_collision ? with_resolved_flows(form) : form));
   const mp_real residual = weights.back() - 1 / tree.density();
   const mp_real printed(part[3].str());
   EXPECT_NE(printed, 0) << refusal;

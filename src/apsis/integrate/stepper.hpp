@@ -152,7 +152,7 @@ class stepper {
   void require_suitable_collisions() const {
     const bool exact = collides_exactly(problem_);
     if (exact == solves_exactly(kind_)) return;
-    const std::string suitable = to_string(exact_collision_kind);
+    const std::string suitable = to_string(method_kind::exact_collision);
     throw input_error(
         exact ? "method '" + name_ +
                     "' cannot integrate this problem (its collisions are solved exactly, and the method is "

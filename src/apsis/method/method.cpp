@@ -15,14 +15,14 @@ std::string to_string(method_kind kind) {
       return "imex";
     case method_kind::explicit_only:
       return "explicit";
-    case method_kind::exponential:
+    case method_kind::exact_collision:
       return "exponential";
   }
   return "";
 }
 
 bool solves_exactly(method_kind kind) {
-  return kind == exact_collision_kind;
+  return kind == method_kind::exact_collision;
 }
 
 bool has_derivatives(method_kind kind) {
@@ -36,7 +36,7 @@ tree_colours colours_of(method_kind kind) {
     case method_kind::explicit_only:
       return tree_colours::F_only;
     case method_kind::imex:
-    case method_kind::exponential:
+    case method_kind::exact_collision:
       break;
   }
   return tree_colours::both;

@@ -13,20 +13,17 @@ namespace apsis {
 
 /// Class of equations that a method integrates; determines its order conditions.
 enum class method_kind {
-  implicit_only,  ///< u' = Q(u): no transport (trees of one colour)
-  imex,           ///< u' = T(u) + Q(u): T explicit, Q implicit (trees of two colours)
-  explicit_only,  ///< u' = T(u) + Q(u), both explicit with the same coefficients, A = Â
-  exponential     ///< u' = T(u) + Q(u): T explicit, Q by exact solutions (resolved_flows.hpp)
+  implicit_only,   ///< u' = Q(u): no transport (trees of one colour)
+  imex,            ///< u' = T(u) + Q(u): T explicit, Q implicit (trees of two colours)
+  explicit_only,   ///< u' = T(u) + Q(u), both explicit with the same coefficients, A = Â
+  exact_collision  ///< u' = T(u) + Q(u): T explicit, Q by exact solutions (resolved_flows.hpp)
 };
 
 /// All kinds, in the order of tables.
 inline constexpr std::array all_method_kinds = {method_kind::imex, method_kind::implicit_only,
-                                                method_kind::explicit_only, method_kind::exponential};
+                                                method_kind::explicit_only, method_kind::exact_collision};
 
-/// The kind whose stages are exact solutions of the collision.
-inline constexpr method_kind exact_collision_kind = method_kind::exponential;
-
-/// Returns "implicit", "imex", "explicit" or "exponential".
+/// Returns the name of a kind in files.
 std::string to_string(method_kind kind);
 
 /// Whether a method of this kind solves collisions exactly, instead of stages.

@@ -129,7 +129,7 @@ problem_builder& problem_builder::with_implicit_collision() {
 problem_builder& problem_builder::with_exact_collision() {
   if (!equation_->has_exact_collision())
     throw input_error(
-        "exponential methods cannot integrate this model (its collisions have no solution in closed form); "
+        "methods with exact collisions cannot integrate this model (it has no collisions in closed form); "
         "choose an IMEX method");
   stages_ = stage_solution::exact;
   return *this;

@@ -44,15 +44,6 @@ safety = 1
 )";
 }
 
-std::string error_of(const std::string& bodies) {
-  try {
-    apsis::parse_case(with(bodies), "flow.toml");
-  } catch (const apsis::input_error& error) {
-    return error.what();
-  }
-  return "";
-}
-
 double gas_volume(const apsis::grid& mesh) {
   double volume = 0.0;
   for (int cell = 0; cell < mesh.size(); ++cell)
@@ -125,54 +116,6 @@ TEST(bodies, are_written_so_that_they_read_back) {
     EXPECT_EQ(config.bodies, again.bodies);
     EXPECT_EQ(apsis::to_json(config)["space"]["body"], apsis::to_json(again)["space"]["body"]);
   }
-}
-
-TEST(bodies, refuse_bad_input_with_its_place) {
-  const auto message = [](const std::string& text) { return testing::HasSubstr(text); };
-  const std::string head = "[[space.body]]\n";
-  EXPECT_THAT(error_of(head + "radius = 1\n"), message("key 'space.body.1.shape' is missing"));
-  EXPECT_THAT(error_of(head + "shape = \"cirle\"\n"), message("did you mean 'circle'?"));
-  EXPECT_THAT(error_of(head + "shape = \"circle\"\ncentre = [0, 0]\n"), message("'radius'"));
-  EXPECT_THAT(error_of(head + "shape = \"circle\"\ncentre = [0, 0]\nradius = -1\n"), message("'radius'"));
-  EXPECT_THAT(error_of(head + "shape = \"circle\"\ncentre = [0]\nradius = 1\n"), message("'centre'"));
-  EXPECT_THAT(error_of(head + "shape = \"sphere\"\ncentre = [0, 0]\nradius = 1\n"), message("sphere"));
-  EXPECT_THAT(error_of(circle + "radios = 3\n"), message("unknown key 'space.body.1.radios'"));
-  EXPECT_THAT(error_of(circle + "kind = \"inflow\"\nrho = 1\nT = 1\n"),
-              message("a body cannot have the wall 'inflow'"));
-  const std::string few_velocities = apsis::to_toml(apsis::load_case("benchmarks/broadwell-plane")) +
-                                     "[[space.body]]\nshape = \"circle\"\ncentre = [0, 0]\nradius = 0.3\n";
-  EXPECT_THAT([&] { apsis::parse_case(few_velocities + "kind = \"symmetry\"\n", "flow.toml"); },
-              testing::ThrowsMessage<apsis::input_error>(message("write kind = \"vacuum\"")));
-  EXPECT_THAT(
-      error_of(circle + "name = \"disc\"\nvelocity = [\"x\", 0]\n"),
-      testing::ContainsRegex("body 'disc': the velocity of a wall is -?[0-9.]+ along its normal at t = 0 "
-                             "near \\(-?[0-9.]+, -?[0-9.]+\\) \\(the body"));
-  EXPECT_EQ(error_of(circle + "kind = \"vacuum\"\n"), "");
-  EXPECT_THAT(
-      error_of(head + "shape = \"extruded\"\nof = [{ shape = \"circle\", centre = [0, 0], radius = 1 }]\n"),
-      message("it is a shape of 3); give the shape in its list 'of' alone"));
-  EXPECT_THAT(error_of(circle + "name = \"left\"\n"), message("it is taken"));
-  EXPECT_THAT(error_of(circle + circle), message("in another body"));
-  EXPECT_THAT(error_of(head + "shape = \"box\"\nfrom = [-1, 0.01]\nto = [1, 0.05]\n"),
-              message("is thinner than a cell"));
-  EXPECT_THAT(error_of(head + "shape = \"formula\"\nphi = \"x + q\"\n"), message("q"));
-  EXPECT_THAT(error_of(head + "shape = \"union\"\nshapes = [{ shape = \"circle\", centre = [0, 0] }]\n"),
-              message("'radius'"));
-  // Each message begins with its place.
-  for (const std::string& bad : {head + "radius = 1\n", circle + "radios = 3\n", circle + circle})
-    EXPECT_THAT(error_of(bad), testing::StartsWith("flow.toml:"));
-}
-
-TEST(bodies, are_refused_where_they_cannot_be) {
-  const auto of = [](const std::string& text) { return [text] { apsis::parse_case(text, "flow.toml"); }; };
-  EXPECT_THAT(of("[model]\nname = \"bgk\"\nepsilon = 1\n[initial]\nrho = 1\nT = 1\n[space]\ncells = "
-                 "20\n[[space.body]]\nshape = \"box\"\nfrom = [0]\nto = [1]\n[velocity]\nmax = 5\npoints = "
-                 "6\n[time]\nend = 1\nsafety = 1\n"),
-              testing::ThrowsMessage<apsis::input_error>(testing::HasSubstr("a body on a line")));
-  std::string steady = with(circle + "T = \"1 + 0.1*t\"\n");
-  steady.replace(steady.find("[time]"), std::string::npos, "[steady]\ntolerance = 1e-6\n");
-  EXPECT_THAT(of(steady), testing::ThrowsMessage<apsis::input_error>(
-                              testing::HasSubstr("'space.body.1.T' depends on t")));
 }
 
 }  // namespace bodies_test

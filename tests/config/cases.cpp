@@ -10,6 +10,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
+#include <support/bad_input.hpp>
 
 namespace cases_test {
 
@@ -69,8 +70,9 @@ TEST(cases, numbers_of_overrides_may_be_fractions) {
 }
 
 TEST(cases, a_missing_case_is_an_input_error_with_the_nearest_name) {
-  EXPECT_THAT([] { load_case("paper/bgk-mixd"); },
-              testing::ThrowsMessage<input_error>(HasSubstr("did you mean 'paper/bgk-mixed'?")));
+  bad_input::expect_refused({
+      {[] { load_case("paper/bgk-mixd"); }, {"did you mean 'paper/bgk-mixed'?"}},
+  });
   EXPECT_THROW(load_case("/"), io_error);
 }
 

@@ -79,7 +79,8 @@ class reader_of_table {
   [[noreturn]] void missing(const std::string& name) const {
     std::vector<std::string> known;
     for (const auto& [one, head] : heads_) known.push_back(one);
-    fail(fmt::format("it has no column '{}'; {}", shown(name), suggest(name, known)));
+    fail(fmt::format("it has no column '{}' (the first line names others); {}", shown(name),
+                     suggest(name, known)));
   }
 
   raw_value text(std::string formula) const {

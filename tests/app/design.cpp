@@ -13,7 +13,6 @@ namespace design_test {
 using namespace app_test;
 using nlohmann::json;
 using testing::HasSubstr;
-using testing::IsEmpty;
 
 namespace {
 
@@ -82,16 +81,6 @@ TEST(design, writes_a_two_step_method_that_can_be_checked_improved_and_run) {
             found["method"]["error_constant"].get<double>() * (1.0 + 1e-6));
 }
 
-TEST(design, reports_the_nearest_residual_if_nothing_is_found) {
-  const work_folder folder;
-  const outcome result =
-      run_apsis(folder, design({"--implicit", "--order", "4", "--stages", "2", "--starts", "20"}));
-  EXPECT_EQ(result.code, 3);
-  EXPECT_THAT(result.err, HasSubstr("no method found (20 starts, 0 feasible, nearest residual"));
-  EXPECT_THAT(result.out, IsEmpty());
-  EXPECT_THAT(folder.listing(), IsEmpty());
-}
-
 TEST(design, leaves_the_best_so_far_when_interrupted) {
   const work_folder folder;
   process running(folder, design({"--order", "3", "--stages", "6", "--evaluations", "3", "--starts",
@@ -138,21 +127,6 @@ TEST(design, writes_a_method_again_with_its_embedded_solution) {
   EXPECT_THAT(damaged.out, HasSubstr("[embedded] order 1: the condition of tree G is"));
 }
 
-TEST(design, explains_why_there_is_no_embedded_solution) {
-  const work_folder folder;
-  const auto refused = [&folder](const std::vector<std::string>& more, const std::string& message) {
-    std::vector<std::string> arguments = {"design", "--embedded"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    arguments.insert(arguments.end(), {"--out", "found.toml"});
-    const outcome result = run_apsis(folder, arguments);
-    EXPECT_EQ(result.code, 3) << message;
-    EXPECT_THAT(result.err, HasSubstr(message));
-    EXPECT_THAT(folder.listing(), IsEmpty());
-  };
-  refused({"md-imex-3-2", "--cost", "nothing"}, "(order 1: nearest residual 4.0e-01); try --cost one-solve");
-  refused({"imdrk-7-4", "--order", "3"}, "order 3: coverage 0 of the error, at least 0.15 needed");
-}
-
 TEST(design, removes_stages_and_retains_the_best_method_when_time_is_over) {
   const work_folder folder;
   const outcome smaller = run_apsis(folder, design({"--order", "3", "--stages", "7", "--from",
@@ -160,11 +134,6 @@ TEST(design, removes_stages_and_retains_the_best_method_when_time_is_over) {
   ASSERT_EQ(smaller.code, 0) << smaller.err;
   EXPECT_EQ(json::parse(smaller.out)["method"]["stages"], 7);
   EXPECT_EQ(run_apsis(folder, {"check", "found.toml"}).code, 0);
-  const outcome none = run_apsis(folder, {"design", "--implicit", "--order", "3", "--stages", "1", "--from",
-                                          "imdrk-2-3", "--out", "n.toml"});
-  EXPECT_EQ(none.code, 3);
-  EXPECT_THAT(none.err, HasSubstr("no stage of 2 can be removed (least sum of weights 0.08"));
-  EXPECT_FALSE(fs::exists(folder.path() / "n.toml"));
   // Removing one of 16 stages takes seconds, so there is no time for the second.
   const outcome late = run_apsis(folder, {"design", "--order", "4", "--stages", "14", "--time", "0.5",
                                           "--from", "md-imex-16-4-large-r", "--out", "late.toml"});

@@ -1,8 +1,11 @@
 #include <apsis/model/expression.hpp>
 
+#include <apsis/model/formula_table.hpp>
+
 #include <array>
 #include <atomic>
 #include <cmath>
+#include <span>
 #include <string>
 #include <thread>
 #include <vector>
@@ -95,6 +98,67 @@ TEST(expression, has_constants_of_the_user) {
   EXPECT_EQ(apsis::why_not_a_constant("Kn_0"), "");
   for (const char* name : {"", "1st", "a-b", "_a", "a b", "x", "t", "v_x", "pi", "e", "sin", "max"})
     EXPECT_NE(apsis::why_not_a_constant(name), "") << name;
+}
+
+TEST(expression, rounds_every_operation_as_it_is_written) {
+  // Not (10/3) x or 4 x/2 · …: sums and products are taken in the order of the text.
+  const std::vector<double> x = {0.1, 0.7, 1.3, 2.9, 1e-3, 7e5};
+  const auto expect = [&](const std::string& text, const auto& value) {
+    const expression of(text, {}, {{"u"}, false, {{"g", 0.3}}});
+    for (const double u : x) EXPECT_EQ(of.value(u), value(u)) << text << " at " << u;
+  };
+  expect("10*u/3", [](double u) { return 10.0 * u / 3.0; });
+  expect("g*u*7 - u + g", [](double u) { return 0.3 * u * 7.0 - u + 0.3; });
+  expect("-u^2 + u^3/u - u^4", [](double u) { return -(u * u) + u * u * u / u - u * u * u * u; });
+  expect("(u + g)^2", [](double u) { return (u + 0.3) * (u + 0.3); });
+  expect("2^u^2", [](double u) { return std::pow(2.0, u * u); });
+  expect("u^1.5 - 2 - -u", [](double u) { return std::pow(u, 1.5) - 2.0 - -u; });
+  expect("(u <= 0.7) + (u > 1)*(u != g)",
+         [](double u) { return (u <= 0.7 ? 1.0 : 0.0) + (u > 1.0 ? 1.0 : 0.0); });
+  expect("max(u, g)*sin(2*u)", [](double u) { return std::fmax(u, 0.3) * std::sin(2.0 * u); });
+  const apsis::formula_table table({{0.0, 1.0}, {1.0, 3.0}});
+  expect("2*table(u, 0, 1, 1, 3) - u", [&](double u) { return 2.0 * table.at(u) - u; });
+  expect("+g", [](double) { return 0.3; });
+}
+
+TEST(expression, has_the_same_values_at_many_points_as_at_each) {
+  const apsis::formula_kind kind{{"a", "b", "c"}, false, {{"g", 1.4}}};
+  // With and without a condition; more points than are evaluated together.
+  for (const char* text :
+       {"c", "7", "a/b*(c + (g - 1)*(c - a^2/(2*b)))", "a > b ? c : -a", "exp(a)*b^0.3 - c",
+        "(a < b) || (c < 1)", "((a + b)*(a - c) - (b + c)*(b - a))/((a + 1)*(b + 2) + c^4)"}) {
+    const expression of(text, {}, kind);
+    for (const std::size_t points : {1, 3, 8, 64, 65, 150}) {
+      std::vector<double> rows, columns(3 * points), of_rows(points), of_columns(points);
+      for (std::size_t k = 0; k < 3 * points; ++k)
+        rows.push_back(0.1 + 0.37 * static_cast<double>((k * k) % 23));
+      for (std::size_t k = 0; k < 3 * points; ++k) columns[k % 3 * points + k / 3] = rows[k];
+      of.values(rows, of_rows);
+      of.values_of_columns(columns, of_columns);
+      EXPECT_EQ(of_rows, of_columns) << text;
+      for (std::size_t p = 0; p < points; ++p)
+        EXPECT_EQ(of_rows[p], of.value(std::span<const double>(rows).subspan(3 * p, 3)))
+            << text << " of " << points;
+    }
+  }
+}
+
+TEST(expression, evaluates_formulas_with_many_intermediate_results) {
+  // A pyramid of parentheses has as many open sums as levels: more than there are columns.
+  std::string text = "x", end;
+  double exact = 1.0;
+  for (int level = 0; level < 60; ++level) {
+    text = "x + 1/(" + text;
+    end += ")";
+  }
+  for (int level = 0; level < 60; ++level) exact = 1.0 + 1.0 / exact;
+  EXPECT_EQ(expression(text + end).value(1.0), exact);
+  std::string left, right;
+  for (int level = 0; level < 40; ++level) {
+    left += "(x + 1)*(";
+    right += ")";
+  }
+  EXPECT_EQ(expression(left + "x" + right).value(1.0), std::pow(2.0, 40.0));
 }
 
 TEST(expression, is_evaluated_by_many_threads_concurrently) {

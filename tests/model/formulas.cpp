@@ -2,6 +2,8 @@
 // Sums have one chain of additions per lane; the reference adds in the same chains.
 #include <apsis/core/random_source.hpp>
 #include <apsis/exec/aligned.hpp>
+#include <apsis/model/formula_rows.hpp>
+#include <apsis/model/formulas/arithmetic.hpp>
 #include <apsis/model/formulas/grid_sums.hpp>
 #include <apsis/model/formulas/line.hpp>
 #include <apsis/model/formulas/relaxation.hpp>
@@ -459,6 +461,61 @@ TEST(formulas, gaussians_are_those_of_single_numbers) {
       apsis::velocity_rows::exponentials(of[0].u, line.n, powers.data());
       for (std::size_t j = 0; j < n; ++j)
         RC_ASSERT(same_bits(powers[j], value_of(scalar::exp_of(N(places[j]) - N(of[0].u)))));
+    });
+  });
+}
+
+TEST(formulas, operations_on_columns_are_those_on_single_numbers) {
+  check_property("columns", [] {
+    using apsis::formula_rows::operation;
+    constexpr int most = apsis::formula_rows::most_points;
+    random_source random(*rc::gen::arbitrary<std::uint32_t>());
+    const int points = *rc::gen::inRange(1, most + 1);
+    const double constant = random.uniform(-3.0, 3.0);
+    std::vector<double> given(3 * most);
+    for (double& one : given) one = random.one_in(9) ? 0.0 : random.uniform(-5.0, 5.0);
+    const auto table = [](double a, double b) { return a - 2.0 * b; };
+    const auto value = [&](operation what, double a, double b) {
+      switch (what) {
+        case operation::add:
+          return a + b;
+        case operation::subtract:
+          return a - b;
+        case operation::multiply:
+          return a * b;
+        case operation::divide:
+          return a / b;
+        case operation::negate:
+          return -a;
+        case operation::square:
+          return scalar::square_of(a);
+        case operation::cube:
+          return scalar::cube_of(a);
+        case operation::fourth_power:
+          return scalar::fourth_power_of(a);
+        default:
+          return table(a, b);
+      }
+    };
+    for_each_number([&](auto, int) {
+      for (int kind = 0; kind <= static_cast<int>(operation::call); ++kind)
+        for (int constants = 0; constants < 3; ++constants) {
+          apsis::formula_rows::step one{static_cast<operation>(kind), {0, 0.0}, {1, 0.0}, 2};
+          const bool single = one.what >= operation::negate && one.what <= operation::fourth_power;
+          if (single && constants > 0) continue;
+          if (constants == 1) one.first = {-1, constant};
+          if (constants == 2) one.second = {-1, constant};
+          if (one.what == operation::call) one.of_two = table;
+          auto columns = given;
+          apsis::formula_rows::evaluate({&one, 1}, points, columns.data());
+          for (int p = 0; p < points; ++p) {
+            const auto k = static_cast<std::size_t>(p);
+            const double a = constants == 1 ? constant : given[k],
+                         b = constants == 2 ? constant : given[most + k];
+            RC_ASSERT(same_bits(columns[2 * most + k], value(one.what, a, b)));
+            RC_ASSERT(columns[k] == given[k]);
+          }
+        }
     });
   });
 }

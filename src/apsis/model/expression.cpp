@@ -3,6 +3,8 @@
 #include <apsis/core/construction_count.hpp>
 #include <apsis/core/suggest.hpp>
 #include <apsis/model/formula_table.hpp>
+#include <apsis/model/internal/formula_language.hpp>
+#include <apsis/model/internal/formula_tape.hpp>
 
 #include <algorithm>
 #include <array>
@@ -12,7 +14,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
-#include <numbers>
+#include <optional>
 #include <set>
 #include <tuple>
 #include <utility>
@@ -26,49 +28,25 @@ namespace apsis {
 
 namespace {
 
-const std::vector<std::string>& names_of_the_language() {
-  static const std::vector<std::string> names = {"pi",   "e",    "sin",  "cos",  "tan",   "asin",  "acos",
-                                                 "atan", "sinh", "cosh", "tanh", "exp",   "log",   "log10",
-                                                 "sqrt", "abs",  "min",  "max",  "table", "table2"};
-  return names;
-}
-
 std::vector<std::string> known_names(const formula_kind& kind) {
   std::vector<std::string> names = kind.variables;
   for (const auto& [name, value] : kind.constants) names.push_back(name);
-  names.insert(names.end(), names_of_the_language().begin(), names_of_the_language().end());
+  names.insert(names.end(), formula_language::names().begin(), formula_language::names().end());
   return names;
 }
 
-// Own definitions, since the built-in functions of muParser changed between versions (log).
 void define_language(mu::Parser& parser) {
   parser.ClearFun();
   parser.ClearConst();
   parser.ClearInfixOprt();
   using unary = double (*)(double);
-  using binary = double (*)(double, double);
   const auto negate = [](double v) { return -v; };
   const auto keep = [](double v) { return v; };
   parser.DefineInfixOprt("-", unary(negate));
   parser.DefineInfixOprt("+", unary(keep));
-  parser.DefineFun("sin", unary(std::sin));
-  parser.DefineFun("cos", unary(std::cos));
-  parser.DefineFun("tan", unary(std::tan));
-  parser.DefineFun("asin", unary(std::asin));
-  parser.DefineFun("acos", unary(std::acos));
-  parser.DefineFun("atan", unary(std::atan));
-  parser.DefineFun("sinh", unary(std::sinh));
-  parser.DefineFun("cosh", unary(std::cosh));
-  parser.DefineFun("tanh", unary(std::tanh));
-  parser.DefineFun("exp", unary(std::exp));
-  parser.DefineFun("log", unary(std::log));
-  parser.DefineFun("log10", unary(std::log10));
-  parser.DefineFun("sqrt", unary(std::sqrt));
-  parser.DefineFun("abs", unary(std::fabs));
-  parser.DefineFun("min", binary(std::fmin));
-  parser.DefineFun("max", binary(std::fmax));
-  parser.DefineConst("pi", std::numbers::pi);
-  parser.DefineConst("e", std::numbers::e);
+  for (const auto& one : formula_language::functions_of_one) parser.DefineFun(one.name, one.call);
+  for (const auto& one : formula_language::functions_of_two) parser.DefineFun(one.name, one.call);
+  for (const auto& one : formula_language::constants) parser.DefineConst(one.name, one.value);
 }
 
 source_place shifted(source_place place, std::size_t by) {
@@ -176,8 +154,9 @@ class variable_parser {
     parser_.SetExpr(text.text);
   }
 
-  double evaluate(std::span<const double> variables) {
-    std::copy_n(variables.begin(), values_.size(), values_.begin());
+  double evaluate(const formula_points& at, std::size_t point) {
+    for (std::size_t k = 0; k < values_.size(); ++k)
+      values_[k] = at.variables[k * at.to_next_variable + point * at.to_next_point];
     return parser_.Eval();
   }
   const mu::Parser& parser() const { return parser_; }
@@ -211,14 +190,12 @@ class parser_pool {
   /// The first parser, for the constructor of an expression.
   variable_parser& first() { return *slots_.front().parser; }
 
-  /// Evaluates the formula at results.size() points, whose variables follow each other.
-  void evaluate(std::span<const double> variables, std::span<double> results) {
+  /// Evaluates the formula at results.size() points.
+  void evaluate(const formula_points& at, std::span<double> results) {
     slot& mine = acquire();
     const release_at_exit release{mine};
     if (!mine.parser) mine.parser = std::make_unique<variable_parser>(text_, kind_);
-    const std::size_t count = kind_.variables.size();
-    for (std::size_t p = 0; p < results.size(); ++p)
-      results[p] = mine.parser->evaluate(variables.subspan(p * count));
+    for (std::size_t p = 0; p < results.size(); ++p) results[p] = mine.parser->evaluate(at, p);
   }
 
  private:
@@ -267,7 +244,7 @@ std::string why_not_a_name(const std::string& name) {
   if (name.empty() || std::isalpha(static_cast<unsigned char>(name.front())) == 0 ||
       !std::all_of(name.begin(), name.end(), in_name))
     return "a name is a letter followed by letters, digits and underscores";
-  const auto& language = names_of_the_language();
+  const auto& language = formula_language::names();
   if (std::find(language.begin(), language.end(), name) != language.end())
     return "formulas have a function or constant of this name";
   return "";
@@ -301,7 +278,7 @@ struct expression::compiled : construction_count<expression> {
   compiled(const std::string& words, const source_place& place, const formula_kind& kind)
       : text(words), parsers(without_points(words, place), kind) {
     try {
-      parsers.first().evaluate(std::vector<double>(kind.variables.size()));
+      parsers.first().evaluate({std::vector<double>(kind.variables.size()).data(), 1, 0}, 0);
     } catch (const mu::ParserError& e) {
       const bool unknown = e.GetCode() == mu::ecUNASSIGNABLE_TOKEN;
       // muParser reports the end of some tokens and the start of others, so that an unknown name is searched
@@ -316,6 +293,7 @@ struct expression::compiled : construction_count<expression> {
     if (parsers.first().parser().GetNumResults() != 1)
       fail(text, place, text.find(','), "a comma outside a function", "write one formula");
     for (const auto& [name, address] : parsers.first().parser().GetUsedVar()) used.insert(name);
+    tape = formula_tape::of(parsers.text(), kind);
   }
 
   /// Returns the compiled text for the variables and constants of a kind. The last ones are kept, since the
@@ -343,8 +321,9 @@ struct expression::compiled : construction_count<expression> {
   }
 
   std::string text;
-  std::set<std::string> used;   ///< names of its variables
-  mutable parser_pool parsers;  ///< thread-safe
+  std::set<std::string> used;        ///< names of its variables
+  mutable parser_pool parsers;       ///< thread-safe
+  std::optional<formula_tape> tape;  ///< in place of the parsers where there is one
 };
 
 expression::expression(const std::string& text, const source_place& place, const formula_kind& kind)
@@ -364,8 +343,19 @@ double expression::value(std::span<const double> variables) const {
 }
 
 void expression::values(std::span<const double> variables, std::span<double> results) const {
+  evaluate_at({variables.data(), 1, variables_.size()}, results);
+}
+
+void expression::values_of_columns(std::span<const double> variables, std::span<double> results) const {
+  evaluate_at({variables.data(), results.size(), 1}, results);
+}
+
+void expression::evaluate_at(const formula_points& at, std::span<double> results) const {
   try {
-    compiled_->parsers.evaluate(variables, results);
+    if (compiled_->tape)
+      compiled_->tape->evaluate(at, results);
+    else
+      compiled_->parsers.evaluate(at, results);
     if (conversion_ != value_conversion{})
       for (double& result : results) result = conversion_(result);
   } catch (const mu::ParserError& e) {

@@ -45,6 +45,14 @@ struct value_conversion {
   bool operator==(const value_conversion&) const = default;  ///< the same factor and kind
 };
 
+/// Points at which a formula is evaluated: the value of variable k at point p is
+/// variables[k to_next_variable + p to_next_point].
+struct formula_points {
+  const double* variables;       ///< of the first point
+  std::size_t to_next_variable,  ///< distance of variables
+      to_next_point;             ///< distance of points
+};
+
 /// A formula for coefficients that a case file gives as text (ε(x), a flux F(u)); dimensionless. Operators
 /// + - * / ^, comparisons and `a ? b : c`; functions sin cos tan asin acos atan sinh cosh tanh exp log
 /// (natural) log10 sqrt abs min max, table and table2 (formula_table); constants pi and e. No assignment.
@@ -66,6 +74,9 @@ class expression {
   /// results ← the values at results.size() points, whose variables follow each other. Thread-safe; faster
   /// than calls of value(), whose results they equal.
   void values(std::span<const double> variables, std::span<double> results) const;
+  /// The same where all values of a variable follow each other: that of variable k at point p is
+  /// variables[k results.size() + p].
+  void values_of_columns(std::span<const double> variables, std::span<double> results) const;
   /// Returns the value of a formula in one variable. Thread-safe.
   double value(double x) const { return value({&x, 1}); }
 
@@ -85,6 +96,8 @@ class expression {
 
  private:
   struct compiled;
+  void evaluate_at(const formula_points& at, std::span<double> results) const;
+
   std::shared_ptr<const compiled> compiled_;
   source_place place_;
   std::vector<std::string> variables_;

@@ -151,6 +151,34 @@ TEST(system_flux, of_several_states_equals_that_of_each) {
   }
 }
 
+TEST(system_flux, has_the_same_speeds_for_many_states_as_for_each) {
+  // Some of them are at rest, nearly dry, not finite or outside of the law.
+  std::vector<std::vector<double>> states;
+  for (int k = 0; k < 40; ++k)
+    states.push_back(
+        {k % 7 == 0 ? 1e-9 : 0.1 + 0.3 * k, k % 5 == 0 ? 0.0 : 0.2 * (k % 11 - 5), 1.0 + k % 13});
+  states[3][0] = 0.0;
+  states[17][2] = std::nan("");
+  states[29][2] = -8.0;
+  const auto points = states.size();
+  std::vector<double> columns(3 * points);
+  for (std::size_t p = 0; p < points; ++p)
+    for (std::size_t k = 0; k < 3; ++k) columns[k * points + p] = states[p][k];
+  std::vector<system_flux::waves> together(points);
+  euler().characteristic_speeds(columns.data(), static_cast<int>(points), 2.0, together.data());
+  int undefined = 0;
+  for (std::size_t p = 0; p < points; ++p) {
+    const auto alone = euler().characteristic_speeds(states[p].data(), 2.0);
+    undefined += std::isnan(alone.speed) ? 1 : 0;
+    EXPECT_TRUE(together[p].speed == alone.speed ||
+                (std::isnan(alone.speed) && std::isnan(together[p].speed)))
+        << p;
+    EXPECT_EQ(together[p].imaginary, alone.imaginary) << p;
+  }
+  EXPECT_GE(undefined, 1);
+  EXPECT_GT(together[29].imaginary, 0.0);
+}
+
 TEST(system_flux, refuses_names_and_numbers_of_formulas_that_do_not_fit) {
   EXPECT_NO_THROW(make({"h", "q"}, {"q", "h*q"}));
   bad_input::expect_refused({

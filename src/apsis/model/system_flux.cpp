@@ -111,12 +111,66 @@ void system_flux::evaluate(const double* u, int points, double* F) const {
   for (std::size_t k = 0; k < n; ++k) formulas_[k].values({u, n * count}, {F + k * count, count});
 }
 
-/// Richardson extrapolation of central differences with steps h and 2h, whose difference estimates the error
-/// of the less accurate one. h starts at a small part of the size and shrinks until the estimate is at most
-/// 1e-6 of the slope, so that the error, of order h⁴, is near its square, or until it is rounding or, where
-/// the slope vanishes, much smaller than at the start.
+void system_flux::evaluate_columns(const double* u, int points, double* F) const {
+  const auto n = variables_.size(), count = static_cast<std::size_t>(points);
+  for (std::size_t k = 0; k < n; ++k) formulas_[k].values_of_columns({u, n * count}, {F + k * count, count});
+}
+
+namespace {
+
+/// First step of a difference in units of the size of a variable, and the factor from each step to the next.
+constexpr double first_step = 2.5e-4, shrinking_factor = 0.125;
+
+/// A slope by F at u + h, u − h, u + 2h and u − 2h: Richardson extrapolation of central differences.
+struct slope_of_four {
+  slope_of_four(const double* f, std::size_t apart, double h) {
+    const double once = (f[0] - f[apart]) / (2.0 * h), twice = (f[2 * apart] - f[3 * apart]) / (4.0 * h);
+    slope = (4.0 * once - twice) / 3.0;
+    noise = 1e-14 * (std::abs(f[2 * apart]) + std::abs(f[3 * apart])) / h;
+    error = std::abs(once - twice);
+  }
+  /// Whether the error is at most 1e-6 of the slope, so that the error of the extrapolation, of order h⁴, is
+  /// near its square, or rounding or, where the slope vanishes, much smaller than at the start. False for
+  /// NaN.
+  bool is_accurate(double at_start) const {
+    const double vanishing = std::abs(slope) <= error ? at_start : 0.0;
+    return error <= 1e-6 * (std::abs(slope) + vanishing) + noise;
+  }
+
+  double slope, error,  ///< of the less accurate difference
+      noise;            ///< of rounding
+};
+
+}  // namespace
+
+/// The slopes of some states by their first step, F being evaluated for all of them together. The numbers of
+/// a kind are contiguous for all states.
+struct system_flux::differences {
+  std::vector<double> u, sizes,  ///< of variable k
+      at, F,                     ///< of variable j and of F_j: state p with step s of variable k is number
+                                 ///< (4 k + s) states + p
+      slopes,                    ///< of F_j by variable k
+      accurate,                  ///< 1 where all slopes by variable k are, else 0
+      derivative;                ///< of one state
+
+  /// Number of states whose values fit into the first-level cache.
+  static std::size_t together(std::size_t n) { return std::clamp<std::size_t>(512 / (n * n), 1, 32); }
+  void resize(std::size_t n) {
+    const std::size_t states = together(n);
+    for (auto* of_variables : {&u, &sizes, &accurate}) of_variables->resize(states * n);
+    for (auto* of_steps : {&at, &F}) of_steps->resize(states * 4 * n * n);
+    slopes.resize(states * n * n);
+    derivative.resize(n * n);
+  }
+  /// derivative ← that of a state.
+  void take_derivative(std::size_t n, std::size_t count, std::size_t state) {
+    for (std::size_t k = 0; k < n * n; ++k) derivative[k] = slopes[k * count + state];
+  }
+};
+
+/// h starts at a small part of the size and shrinks until all slopes are accurate.
 bool system_flux::differentiate(const double* u, int variable, double size, double* slopes) const {
-  constexpr double accurate = 1e-6, rounding = 1e-14;
+  constexpr double rounding = 1e-14;
   constexpr int most_shrinkings = 14;
   const auto n = variables_.size(), k = static_cast<std::size_t>(variable);
   std::array<double, 4 * most> at{}, F{};
@@ -128,19 +182,15 @@ bool system_flux::differentiate(const double* u, int variable, double size, doub
     }
     evaluate(at.data(), 4, F.data());
   };
-  double h = 2.5e-4 * size;
-  for (int shrinking = 0; shrinking < most_shrinkings; ++shrinking, h *= 0.125) {
+  double h = first_step * size;
+  for (int shrinking = 0; shrinking < most_shrinkings; ++shrinking, h *= shrinking_factor) {
     evaluate_at({h, -h, 2.0 * h, -2.0 * h});
     bool enough = true;
     for (std::size_t j = 0; j < n; ++j) {
-      const double* f = F.data() + 4 * j;
-      const double once = (f[0] - f[1]) / (2.0 * h), twice = (f[2] - f[3]) / (4.0 * h);
-      slopes[j] = (4.0 * once - twice) / 3.0;
-      const double noise = rounding * (std::abs(f[2]) + std::abs(f[3])) / h;
-      const double error = std::abs(once - twice);
-      if (shrinking == 0) at_start[j] = std::isfinite(error) ? error : 0.0;
-      const double slope = std::abs(slopes[j]), vanishing = slope <= error ? at_start[j] : 0.0;
-      enough = enough && error <= accurate * (slope + vanishing) + noise;  // false for NaN
+      const slope_of_four found(F.data() + 4 * j, 1, h);
+      slopes[j] = found.slope;
+      if (shrinking == 0) at_start[j] = std::isfinite(found.error) ? found.error : 0.0;
+      enough = enough && found.is_accurate(at_start[j]);
     }
     if (enough) return true;
   }
@@ -168,26 +218,56 @@ bool system_flux::differentiate(const double* u, int variable, double size, doub
 
 /// A variable that is 0 (a momentum at rest) has no size but that of its flux and of the others, from which
 /// the right step may be far. Values whose squares underflow, as WENO leaves beside clean data, count as 0.
-void system_flux::compute_sizes(const double* u, double typical, double* sizes) const {
+void system_flux::compute_sizes(const double* u, int points, double typical, double* sizes) const {
   constexpr double nothing = 1e-150;
-  const std::size_t n = variables_.size();
-  std::array<double, most> F{};
-  evaluate(u, 1, F.data());
-  double largest = 0.0;
-  for (std::size_t k = 0; k < n; ++k) {
-    const double flux = std::abs(F[k]) / typical;
-    sizes[k] = std::abs(u[k]) + (std::isfinite(flux) ? flux : 0.0);
-    largest = std::max(largest, sizes[k]);
+  const std::size_t n = variables_.size(), count = static_cast<std::size_t>(points);
+  std::array<double, 32 * most> F;  // NOLINT(cppcoreguidelines-pro-type-member-init): of all states
+  evaluate_columns(u, points, F.data());
+  for (std::size_t p = 0; p < count; ++p) {
+    double largest = 0.0;
+    for (std::size_t k = 0; k < n; ++k) {
+      const double flux = std::abs(F[k * count + p]) / typical;
+      sizes[k * count + p] = std::abs(u[k * count + p]) + (std::isfinite(flux) ? flux : 0.0);
+      largest = std::max(largest, sizes[k * count + p]);
+    }
+    const double least = largest > nothing ? 0.1 * largest : 1.0;
+    for (std::size_t k = 0; k < n; ++k) sizes[k * count + p] = std::max(sizes[k * count + p], least);
   }
-  const double least = largest > nothing ? 0.1 * largest : 1.0;
-  for (std::size_t k = 0; k < n; ++k) sizes[k] = std::max(sizes[k], least);
 }
 
-/// derivative[n k + j] ← ∂F_j/∂u_k.
-bool system_flux::differentiate_all(const double* u, double typical, std::span<double> derivative) const {
+/// The first step of differentiate() for all variables of some states.
+void system_flux::take_first_step(int points, double typical, differences& of) const {
+  const std::size_t n = variables_.size(), count = static_cast<std::size_t>(points), all = 4 * n * count;
+  compute_sizes(of.u.data(), points, typical, of.sizes.data());
+  double* at = of.at.data();
+  for (std::size_t j = 0; j < n; ++j)
+    for (std::size_t k = 0; k < n; ++k)
+      for (const double steps : {1.0, -1.0, 2.0, -2.0}) {
+        const double *u = of.u.data() + j * count, *sizes = of.sizes.data() + k * count;
+        const double by = j == k ? steps : 0.0;
+        for (std::size_t p = 0; p < count; ++p) *at++ = u[p] + by * (first_step * sizes[p]);
+      }
+  evaluate_columns(of.at.data(), static_cast<int>(all), of.F.data());
+  std::fill_n(of.accurate.begin(), n * count, 1.0);
+  for (std::size_t k = 0; k < n; ++k)
+    for (std::size_t j = 0; j < n; ++j) {
+      const double *F = of.F.data() + j * all + 4 * k * count, *sizes = of.sizes.data() + k * count;
+      double *slopes = of.slopes.data() + (k * n + j) * count, *accurate = of.accurate.data() + k * count;
+#pragma omp simd
+      for (std::size_t p = 0; p < count; ++p) {
+        const slope_of_four found(F + p, count, first_step * sizes[p]);
+        slopes[p] = found.slope;
+        const double at_start = found.error <= std::numeric_limits<double>::max() ? found.error : 0.0;
+        accurate[p] = found.is_accurate(at_start) ? accurate[p] : 0.0;
+      }
+    }
+}
+
+/// derivative[n k + j] ← ∂F_j/∂u_k by steps of the size of u_k alone.
+bool system_flux::differentiate_all(const double* u, std::span<double> derivative) const {
   const std::size_t n = variables_.size();
   std::array<double, most> sizes{};
-  compute_sizes(u, typical, sizes.data());
+  compute_sizes(u, 1, std::numeric_limits<double>::infinity(), sizes.data());
   for (std::size_t k = 0; k < n; ++k)
     if (!differentiate(u, static_cast<int>(k), sizes[k], &derivative[n * k])) return false;
   return true;
@@ -198,7 +278,7 @@ void system_flux::derivative_along(const double* u, const double* d, double typi
   const std::size_t n = variables_.size();
   std::array<double, most> sizes{};
   std::array<double, 2 * most> sides{}, F{};
-  compute_sizes(u, typical, sizes.data());
+  compute_sizes(u, 1, typical, sizes.data());
   double longest = 0.0;
   for (std::size_t k = 0; k < n; ++k) longest = std::max(longest, std::abs(d[k]) / sizes[k]);
   std::fill_n(along, n, 0.0);
@@ -214,12 +294,37 @@ void system_flux::derivative_along(const double* u, const double* d, double typi
 }
 
 system_flux::waves system_flux::characteristic_speeds(const double* u, double typical) const {
-  constexpr double infinite = std::numeric_limits<double>::infinity();
-  std::array<double, most * most> slopes{};
-  // A speed far below that of the waves makes first steps that leave the domain of F.
-  if (!differentiate_all(u, typical, slopes) && !differentiate_all(u, infinite, slopes))
-    return {std::numeric_limits<double>::quiet_NaN(), 0.0};
-  return waves_of(Eigen::Map<const square_matrix>(slopes.data(), size(), size()));
+  waves found;
+  characteristic_speeds(u, 1, typical, &found);
+  return found;
+}
+
+void system_flux::characteristic_speeds(const double* u, int points, double typical, waves* found) const {
+  const std::size_t n = variables_.size(), all = static_cast<std::size_t>(points);
+  thread_local differences of;
+  of.resize(n);
+  std::array<double, most> state{};
+  for (std::size_t done = 0; done < all; done += differences::together(n)) {
+    const std::size_t count = std::min(all - done, differences::together(n));
+    for (std::size_t k = 0; k < n; ++k) std::copy_n(u + k * all + done, count, &of.u[k * count]);
+    take_first_step(static_cast<int>(count), typical, of);
+    for (std::size_t p = 0; p < count; ++p) {
+      of.take_derivative(n, count, p);
+      bool known = true;
+      for (std::size_t k = 0; k < n; ++k) {
+        if (of.accurate[k * count + p] != 0.0) continue;
+        for (std::size_t j = 0; j < n; ++j) state[j] = of.u[j * count + p];
+        known = known && differentiate(state.data(), static_cast<int>(k), of.sizes[k * count + p],
+                                       &of.derivative[n * k]);
+      }
+      // A speed far below that of the waves makes first steps that leave the domain of F.
+      if (!known && !differentiate_all(state.data(), of.derivative)) {
+        *found++ = {std::numeric_limits<double>::quiet_NaN(), 0.0};
+        continue;
+      }
+      *found++ = waves_of(Eigen::Map<const square_matrix>(of.derivative.data(), size(), size()));
+    }
+  }
 }
 
 std::string system_flux::text_of(const double* u) const {

@@ -30,6 +30,8 @@ class system_flux {
   /// F(u) at `points` states of n numbers each, one after the other: flux k at point p is F[k points + p],
   /// NaN where the formula has no value.
   void evaluate(const double* u, int points, double* F) const;
+  /// The same where variable k at point p is u[k points + p].
+  void evaluate_columns(const double* u, int points, double* F) const;
 
   /// Characteristic speeds of a state.
   struct waves {
@@ -40,6 +42,8 @@ class system_flux {
   /// part of |u_k| + |F_k(u)|/a with a speed `typical` = a > 0 of the data: u_k alone may be rounding.
   waves characteristic_speeds(const double* u,
                               double typical = std::numeric_limits<double>::infinity()) const;
+  /// The same of `points` states, variable k at point p being u[k points + p]; faster than one by one.
+  void characteristic_speeds(const double* u, int points, double typical, waves* found) const;
   /// along ← F'(u) d by a central difference, 0 where it is not finite; `typical` as above.
   void derivative_along(const double* u, const double* d, double typical, double* along) const;
   /// slopes ← ∂F/∂u_k at u; the first step is a small part of `size` > 0. Returns whether they are finite.
@@ -49,9 +53,11 @@ class system_flux {
   std::string text_of(const double* u) const;
 
  private:
+  struct differences;
   /// |u_k| + |F_k(u)|/typical, at least a tenth of the largest; positive.
-  void compute_sizes(const double* u, double typical, double* sizes) const;
-  bool differentiate_all(const double* u, double typical, std::span<double> derivative) const;
+  void compute_sizes(const double* u, int points, double typical, double* sizes) const;
+  void take_first_step(int points, double typical, differences& of) const;
+  bool differentiate_all(const double* u, std::span<double> derivative) const;
 
   std::vector<std::string> variables_;
   std::vector<expression> formulas_;

@@ -17,7 +17,7 @@ namespace apsis {
 
 struct monitor::partial {
   std::vector<exact_sum> sums;  ///< invariants, their scales, change and turn of the last, the entropy
-  std::vector<double> densities, scales;
+  std::vector<double> densities, scales;                    ///< of the cells of a block
   double lowest = std::numeric_limits<double>::infinity();  ///< of solid cells
   long negative = 0;
   int not_finite = none, violating = none;  ///< first cells
@@ -30,6 +30,7 @@ struct monitor::partial {
 monitor::monitor(const run_setup& setup)
     : setup_(setup),
       equation_(*setup.equation),
+      of_rows_(dynamic_cast<const checks_of_rows*>(setup.equation.get())),
       entropy_(equation_.entropy()),
       volume_(setup.cell_volume()),
       ends_(setup.open_ends()),
@@ -42,38 +43,76 @@ monitor::monitor(const run_setup& setup)
 
 monitor::~monitor() = default;
 
+namespace {
+
+constexpr int cells_of_block = 16;
+
+}  // namespace
+
+/// Rows are read once, cell by cell; formulas of the densities are evaluated for all cells together.
 void monitor::check_cells(const field& u, int begin, int end, partial& own) const {
-  const std::size_t count = own.densities.size();
-  const bool conditional = !equation_.condition().empty(), watched = velocities_.active();
-  const profile::section timed(kernel::monitor, static_cast<double>(end - begin) * u.stride(),
+  const auto cells = static_cast<std::size_t>(end - begin), count = equation_.invariants().size();
+  const profile::section timed(kernel::monitor, static_cast<double>(cells) * u.stride(),
                                {0.0, sizeof(double)});
-  for (int cell = begin; cell < end; ++cell) {
-    const double* row = u.row(cell);
-    const auto [low, below] = compute_extremes(row, u.components());
-    if (std::isnan(low)) {
-      if (cell < own.not_finite) own.value = low;
-      own.not_finite = std::min(own.not_finite, cell);
-      continue;
-    }
-    own.lowest = std::min(own.lowest, low);
-    own.negative += below;
-    equation_.invariant_densities(row, own.densities.data());
-    equation_.invariant_scales(own.densities, own.scales.data());
-    if (watched) velocities_.look(own.densities.data(), cell, own.velocities);
-    const double share = setup_.mesh().gas_share(cell);
-    for (std::size_t k = 0; k < count; ++k) {
-      own.sums[k].add(share * own.densities[k]);
-      own.sums[count + k].add(share * own.scales[k]);
-    }
-    if (count > 0) {
-      const auto [change, turn] = differences_.record(cell, own.densities.back());
-      own.sums[2 * count].add(share * change);
-      own.sums[2 * count + 1].add(share * turn);
-    }
-    if (conditional && !equation_.check_supported(row).problem.empty())
-      own.violating = std::min(own.violating, cell);
-    if (entropy_ && below == 0) own.sums.back().add(share * entropy_of(row, cell, own.densities.front()));
+  std::array<bool, cells_of_block> finite{};
+  for (std::size_t k = 0; k < cells; ++k)
+    finite[k] = check_row(u, begin + static_cast<int>(k), own.densities.data() + k * count, own);
+  find_scales(end - begin, own);
+  for (std::size_t k = 0; k < cells; ++k)
+    if (finite[k])
+      add_densities(begin + static_cast<int>(k), {own.densities.data() + k * count, count},
+                    own.scales.data() + k * count, own);
+  if (const int fit = cells_with_condition(u, begin, end); fit < end - begin)
+    own.violating = std::min(own.violating, begin + fit);
+}
+
+void monitor::find_scales(int cells, partial& own) const {
+  const std::size_t count = equation_.invariants().size(), all = static_cast<std::size_t>(cells) * count;
+  if (of_rows_ != nullptr)
+    return of_rows_->invariant_scales_of_rows({own.densities.data(), all}, cells, own.scales.data());
+  for (std::size_t first = 0; first < all; first += count)
+    equation_.invariant_scales({own.densities.data() + first, count}, own.scales.data() + first);
+}
+
+/// The number of cells before the first that violates the condition of the model.
+int monitor::cells_with_condition(const field& u, int begin, int end) const {
+  if (equation_.condition().empty()) return end - begin;
+  if (of_rows_ != nullptr) return of_rows_->first_unsupported(u.row(begin), u.stride(), end - begin);
+  int fit = begin;
+  while (fit < end && equation_.check_supported(u.row(fit)).problem.empty()) ++fit;
+  return fit - begin;
+}
+
+/// Takes the extremes, densities and entropy of a row. Returns whether it is finite.
+bool monitor::check_row(const field& u, int cell, double* densities, partial& own) const {
+  const double* row = u.row(cell);
+  const auto [low, below] = compute_extremes(row, u.components());
+  equation_.invariant_densities(row, densities);
+  if (std::isnan(low)) {
+    if (cell < own.not_finite) own.value = low;
+    own.not_finite = std::min(own.not_finite, cell);
+    return false;
   }
+  own.lowest = std::min(own.lowest, low);
+  own.negative += below;
+  if (velocities_.active()) velocities_.look(densities, cell, own.velocities);
+  if (entropy_ && below == 0)
+    own.sums.back().add(setup_.mesh().gas_share(cell) * entropy_of(row, cell, densities[0]));
+  return true;
+}
+
+void monitor::add_densities(int cell, std::span<const double> densities, const double* scales,
+                            partial& own) const {
+  const double share = setup_.mesh().gas_share(cell);
+  const std::size_t count = densities.size();
+  for (std::size_t k = 0; k < count; ++k) {
+    own.sums[k].add(share * densities[k]);
+    own.sums[count + k].add(share * scales[k]);
+  }
+  if (count == 0) return;
+  const auto [change, turn] = differences_.record(cell, densities.back());
+  own.sums[2 * count].add(share * change);
+  own.sums[2 * count + 1].add(share * turn);
 }
 
 /// The entropy of a cell, with the density ρ of its row. About an axis the row is r f, and r η(f) = η(r f) −
@@ -89,16 +128,15 @@ monitor::partial monitor::check_block(const field& u) const {
   const std::size_t count = equation_.invariants().size();
   partial empty;
   empty.sums.resize(2 * count + 3);
-  empty.densities.resize(count);
-  empty.scales.resize(count);
+  empty.densities.resize(cells_of_block * count);
+  empty.scales.resize(cells_of_block * count);
   std::vector<partial*> parts;
   const loops_over numbers(u.size());
   parts_->prepare([&](partial& own) {
     own = empty;
     parts.push_back(&own);
   });
-  constexpr int block = 16;
-  parallel_blocks(u.cells(), block, [&](int begin, int end) {
+  parallel_blocks(u.cells(), cells_of_block, [&](int begin, int end) {
     for_cells_in(setup_.mesh().fluid(), begin, end,
                  [&](int from, int to) { check_cells(u, from, to, parts_->here()); });
   });

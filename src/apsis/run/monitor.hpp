@@ -2,6 +2,7 @@
 
 #include <apsis/exec/parallel.hpp>
 #include <apsis/mesh/field.hpp>
+#include <apsis/model/checks_of_rows.hpp>
 #include <apsis/run/internal/torque_sum.hpp>
 #include <apsis/run/setup.hpp>
 #include <apsis/run/simulation.hpp>
@@ -55,6 +56,10 @@ class monitor {
   struct partial;
   double entropy_of(const double* row, int cell, double density) const;
   void check_cells(const field& u, int begin, int end, partial& own) const;
+  void find_scales(int cells, partial& own) const;
+  int cells_with_condition(const field& u, int begin, int end) const;
+  bool check_row(const field& u, int cell, double* densities, partial& own) const;
+  void add_densities(int cell, std::span<const double> densities, const double* scales, partial& own) const;
   partial check_block(const field& u) const;
   totals sum(const field& u) const;
   std::optional<condition_violation> violation_in(const field& u, const totals& t) const;
@@ -66,6 +71,7 @@ class monitor {
 
   const run_setup& setup_;
   const model& equation_;
+  const checks_of_rows* of_rows_;  ///< null where the model has none
   std::optional<convex_entropy> entropy_;
   double volume_;                       ///< of a cell; 1 for an ordinary differential equation
   std::vector<std::size_t> ends_;       ///< number at each face

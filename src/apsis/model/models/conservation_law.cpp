@@ -1,5 +1,6 @@
 #include <apsis/core/errors.hpp>
 #include <apsis/core/suggest.hpp>
+#include <apsis/model/checks_of_rows.hpp>
 #include <apsis/model/model_registry.hpp>
 #include <apsis/model/system_flux.hpp>
 
@@ -75,7 +76,7 @@ velocity_set speeds_along(int D, double a, int sets) {
 /// if the derivatives of all E_k± have eigenvalues ≥ 0 (Bouchut, J. Stat. Phys. 95, 1999): those of F_k' are
 /// real and |λ| ≤ a/D, the subcharacteristic condition. A row has f₁₊, f₁₋, f₂₊, … of each variable in turn.
 /// Dimensionless.
-class law_model final : public relaxation_model {
+class law_model final : public relaxation_model, public checks_of_rows {
  public:
   explicit law_model(const model_config& config)
       : fluxes_(fluxes_of(config)),
@@ -132,11 +133,10 @@ class law_model final : public relaxation_model {
   }
   /// Formulas are evaluated for several rows together.
   int equilibria(const double* omega, int rows, double* e, std::ptrdiff_t pitch) const override {
-    constexpr int together = 32;
-    std::array<double, together * system_flux::most_variables> F;
+    std::array<double, most_together * system_flux::most_variables> F;
     const double D = static_cast<double>(D_);
-    for (int done = 0; done < rows; done += together) {
-      const int count = std::min(together, rows - done);
+    for (int done = 0; done < rows; done += most_together) {
+      const int count = std::min(most_together, rows - done);
       for (int direction = 0; direction < D_; ++direction) {
         fluxes_[static_cast<std::size_t>(direction)].evaluate(omega + done * n_, count, F.data());
         for (int p = 0; p < count; ++p) {
@@ -166,12 +166,22 @@ class law_model final : public relaxation_model {
   void invariant_densities(const double* f, double* densities) const override { moments(f, densities); }
   /// f± have the size of u/D ± F/a, also where u vanishes, as the momentum of water at rest.
   void invariant_scales(std::span<const double> densities, double* scales) const override {
-    std::array<double, system_flux::most_variables> F;
+    invariant_scales_of_rows(densities, 1, scales);
+  }
+  void invariant_scales_of_rows(std::span<const double> densities, int rows, double* scales) const override {
+    const auto n = static_cast<std::size_t>(n_);
+    std::array<double, most_together * system_flux::most_variables> F;
     for (std::size_t k = 0; k < densities.size(); ++k) scales[k] = std::abs(densities[k]);
-    for (const auto& flux : fluxes_) {
-      flux.evaluate(densities.data(), 1, F.data());
-      for (std::size_t k = 0; k < static_cast<std::size_t>(n_); ++k)
-        if (const double size = std::abs(F[k]) / a_; std::isfinite(size)) scales[k] += size;
+    for (int done = 0; done < rows; done += most_together) {
+      const int together = std::min(most_together, rows - done);
+      const auto first = static_cast<std::size_t>(done) * n, count = static_cast<std::size_t>(together);
+      for (const auto& flux : fluxes_) {
+        flux.evaluate(densities.data() + first, together, F.data());
+        for (std::size_t k = 0; k < n; ++k)
+          for (std::size_t p = 0; p < count; ++p)
+            if (const double size = std::abs(F[k * count + p]) / a_; std::isfinite(size))
+              scales[first + p * n + k] += size;
+      }
     }
   }
 
@@ -208,6 +218,14 @@ class law_model final : public relaxation_model {
       if (const auto found = check_waves(f, k); !found.problem.empty()) return found;
     return {};
   }
+  int first_unsupported(const double* f, std::ptrdiff_t pitch, int rows) const override {
+    for (int done = 0; done < rows; done += most_together) {
+      const int together = std::min(most_together, rows - done),
+                fit = first_unsupported_together(f + done * pitch, pitch, together);
+      if (fit < together) return done + fit;
+    }
+    return rows;
+  }
 
   double automatic_value(const std::string&, const std::vector<std::vector<double>>& rows) const override {
     double fastest = n_ == 1 ? fastest_between(rows) : 0.0;
@@ -227,6 +245,7 @@ class law_model final : public relaxation_model {
 
  private:
   static constexpr const char* wave_speed = "wave_speed";
+  static constexpr int most_together = 32;  ///< rows whose formulas are evaluated together
   /// Allowed excess of an eigenvalue over the speed, for the error of the numerical derivative.
   static constexpr double rounding = 1e-6;
   /// Imaginary parts up to this part of the speed count as 0: an error δ of F' splits a double eigenvalue by
@@ -299,6 +318,38 @@ class law_model final : public relaxation_model {
     return fastest;
   }
 
+  /// first_unsupported() of at most most_together rows.
+  int first_unsupported_together(const double* f, std::ptrdiff_t pitch, int rows) const {
+    const auto count = static_cast<std::size_t>(rows), n = static_cast<std::size_t>(n_);
+    std::array<double, most_together * system_flux::most_variables> u;
+    std::array<double, most_together> values;
+    std::array<system_flux::waves, most_together> waves;
+    for (std::size_t p = 0; p < count; ++p) {
+      std::array<double, system_flux::most_variables> omega;
+      moments(f + static_cast<std::ptrdiff_t>(p) * pitch, omega.data());
+      for (std::size_t k = 0; k < n; ++k) u[k * count + p] = omega[k];
+    }
+    std::size_t first = count;
+    const auto find = [&](const auto& fits) {
+      for (std::size_t p = 0; p < first; ++p)
+        if (!fits(p)) first = p;
+    };
+    for (const expression& quantity : positive_) {
+      quantity.values_of_columns({u.data(), n * count}, {values.data(), count});
+      find([&](std::size_t p) { return values[p] > 0.0; });
+    }
+    for (const system_flux& flux : fluxes_) {
+      flux.characteristic_speeds(u.data(), rows, a_, waves.data());
+      find([&](std::size_t p) { return is_inside_law(waves[p]); });
+    }
+    return static_cast<int>(first);
+  }
+
+  /// Whether a state has the subcharacteristic condition and real speeds; false for NaN.
+  bool is_inside_law(const system_flux::waves& found) const {
+    return found.speed * D_ <= a_ * (1.0 + rounding) && found.imaginary <= not_real * a_;
+  }
+
   unsupported_initial_data check_positive(const double* f) const {
     if (positive_.empty()) return {};
     std::array<double, system_flux::most_variables> u{};
@@ -315,8 +366,8 @@ class law_model final : public relaxation_model {
 
   unsupported_initial_data check_waves(const double* f, std::size_t direction) const {
     const auto waves = speeds_of(f, direction);
+    if (is_inside_law(waves)) return {};
     const double D = static_cast<double>(D_);
-    if (waves.speed * D <= a_ * (1.0 + rounding) && waves.imaginary <= not_real * a_) return {};
     std::array<double, system_flux::most_variables> u{};
     moments(f, u.data());
     const std::string at = text_of(u.data()), key = fmt::format("model.{}", flux_lists.at(direction));

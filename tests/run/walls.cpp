@@ -287,6 +287,31 @@ TEST(walls, that_the_velocities_miss_are_reported_before_the_run) {
       testing::AllOf(testing::HasSubstr("[boundary.right] at t = "), testing::HasSubstr("give at least")));
 }
 
+TEST(walls, values_of_formulas_that_no_wall_has_are_refused_with_their_place) {
+  const auto refused = [](const std::vector<std::string>& overrides) {
+    try {
+      simulation run = run_of(overrides);
+      finish(run);
+    } catch (const apsis::input_error& failure) {
+      return std::string(failure.what());
+    }
+    return std::string("accepted");
+  };
+  EXPECT_THAT(
+      refused({"boundary.right.accommodation=\"0.95 + 10*t\""}),
+      testing::ContainsRegex("override '.*accommodation.*': the accommodation of \\[boundary\\.right\\] is "
+                             "1\\.[0-9]+ at t = 0\\.[0-9]+ near \\(1\\) \\(a number from 0 to 1"));
+  // It jumps, so that no temperature is too low for the velocities.
+  EXPECT_THAT(
+      refused({"boundary.right.T=\"t < 0.02 ? 1 : -1\""}),
+      testing::ContainsRegex("\\[boundary\\.right\\] has no Maxwellian at t = 0\\.[0-9]+ near \\(1\\) "
+                             "\\(temperature -1 is not positive\\)"));
+  // Before it passes 0, no velocities are fine enough for it.
+  EXPECT_THAT(refused({"boundary.right.T=\"1 - 12*t\""}),
+              testing::ContainsRegex("\\[boundary\\.right\\] has no Maxwellian at t = 0\\.[0-9]+ "
+                                     "\\(temperature -0\\.[0-9]+ is not positive\\); change its values"));
+}
+
 TEST(walls, a_remainder_of_rounding_before_the_end_makes_no_sliver) {
   const auto last_change = [](const std::string& end, long steps) {
     simulation run = run_of({"boundary.left.T=1.2", "time.steady=1e-12", "time.end=" + end});

@@ -2,6 +2,7 @@
 
 #include <apsis/boundary/boundary.hpp>
 #include <apsis/boundary/domain.hpp>
+#include <apsis/core/errors.hpp>
 #include <apsis/model/model.hpp>
 
 #include <algorithm>
@@ -14,6 +15,13 @@
 #include <vector>
 
 namespace apsis {
+
+/// Where a case gives a quantity at a face. Messages name it.
+struct quantity_origin {
+  source_place place = {};   ///< of its key
+  std::string surface = "";  ///< "[boundary.left]", "body 'disc'"
+  int dimensions = 0;        ///< of space
+};
 
 /// A quantity at a face: a number, or a function of time and of the position on the face, and of the velocity
 /// where it is a variable of_velocity. Dimensionless.
@@ -38,10 +46,17 @@ class face_quantity {
   }
   /// Whether it is a number.
   bool is_constant() const { return !function_; }
+  /// Sets where a case gives it.
+  void set_origin(quantity_origin origin) {
+    origin_ = std::make_shared<const quantity_origin>(std::move(origin));
+  }
+  /// Returns where a case gives it; null if no case does.
+  const quantity_origin* origin() const { return origin_.get(); }
 
  private:
   double number_ = 0.0;
   velocity_function function_;
+  std::shared_ptr<const quantity_origin> origin_;
 };
 
 /// Components of the variables of a boundary condition by name: "velocity" → {0, 0.1}.

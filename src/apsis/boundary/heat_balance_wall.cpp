@@ -19,7 +19,7 @@ namespace {
 
 prescribed_state emission(const model& equation, const std::string& kind,
                           const std::vector<face_quantity>& velocity) {
-  // A temperature that is a function: rows are made by write_other() alone.
+  // A temperature that is a function: rows are made by try_other() alone.
   std::vector<face_quantity> state = {1.0};
   state.insert(state.end(), velocity.begin(), velocity.end());
   state.emplace_back([](double, const position&) { return 1.0; });
@@ -133,12 +133,8 @@ class heat_balance_wall::balance {
     const std::size_t d = wall_.velocity_.size();
     std::copy_n(u_.begin(), d, numbers.begin() + 1);
     numbers[d + 1] = T;
-    try {
-      wall_.emitted_.write_other({numbers.data(), d + 2}, t_, row_);
-    } catch (const input_error& problem) {
-      why_ = problem.what();
-      return std::nullopt;
-    }
+    why_ = wall_.emitted_.try_other({numbers.data(), d + 2}, row_);
+    if (!why_.empty()) return std::nullopt;
     double heat = 0.0;
     emitted_mass_ = 0.0;
     for (std::size_t j = 0; j < mass_flux_.size(); ++j)

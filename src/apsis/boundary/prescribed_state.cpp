@@ -1,5 +1,6 @@
 #include <apsis/boundary/prescribed_state.hpp>
 
+#include <apsis/boundary/face_value_error.hpp>
 #include <apsis/core/errors.hpp>
 
 #include <algorithm>
@@ -35,13 +36,31 @@ void prescribed_state::compute(double t, const position& x, std::span<double> ro
   constexpr std::size_t usual = 8;  // not on the heap
   boost::container::small_vector<double, usual> numbers;
   for (const auto& value : values_) numbers.push_back(value.at(t, x));
-  write_other({numbers.data(), numbers.size()}, t, row);
+  write_other({numbers.data(), numbers.size()}, t, x, row);
 }
 
-void prescribed_state::write_other(std::span<const double> numbers, double t, std::span<double> row) const {
-  if (const std::string problem = form_.row(numbers, row); !problem.empty())
-    throw input_error(fmt::format("the boundary has no {} at t = {:.10g} ({}); change its values",
-                                  form_.description, t, problem));
+void prescribed_state::write_other(std::span<const double> numbers, double t, const position& x,
+                                   std::span<double> row) const {
+  const std::string problem = try_other(numbers, row);
+  if (problem.empty()) return;
+  const face_quantity& value = values_[index_of_problem(problem)];
+  refuse_value(value,
+               fmt::format("{} has no {} at {} ({}); change its values", surface_of(value, "the boundary"),
+                           form_.description, time_and_point(value, t, x), problem));
+}
+
+/// Returns the number of the value that a problem is about, whose variable is described by the first word of
+/// the problem; of another one that a case gives.
+std::size_t prescribed_state::index_of_problem(const std::string& problem) const {
+  const auto first_word = [](const std::string& text) { return text.substr(0, text.find(' ')); };
+  std::size_t found = values_.size() - 1, first = 0;
+  for (std::size_t k = 0; k < values_.size(); ++k)
+    if (values_[k].origin() != nullptr) found = k;
+  for (const data_variable& variable : form_.variables) {
+    if (first_word(variable.doc) == first_word(problem) && values_[first].origin() != nullptr) return first;
+    first += static_cast<std::size_t>(variable.size);
+  }
+  return found;
 }
 
 void prescribed_state::write(double t, const position& x, double* row) const {

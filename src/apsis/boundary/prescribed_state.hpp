@@ -24,13 +24,18 @@ class prescribed_state {
   /// constant. Throws input_error if no row has the values.
   const double* at(double t, const position& x, std::span<double> buffer) const;
   /// row ← the row with these values of the variables in place of those that it was made with. Throws as at()
-  /// does; t is for the message.
-  void write_other(std::span<const double> numbers, double t, std::span<double> row) const;
+  /// does; t and x are for the message.
+  void write_other(std::span<const double> numbers, double t, const position& x, std::span<double> row) const;
+  /// The same; returns why no row has the values, "" if one has.
+  std::string try_other(std::span<const double> numbers, std::span<double> row) const {
+    return form_.row(numbers, row);
+  }
   /// row ← the row at time t at a point of the face. Throws as at() does.
   void write(double t, const position& x, double* row) const;
 
  private:
   void compute(double t, const position& x, std::span<double> row) const;
+  std::size_t index_of_problem(const std::string& problem) const;
 
   data_form form_;
   std::vector<face_quantity> values_;

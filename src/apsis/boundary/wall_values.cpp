@@ -1,8 +1,6 @@
 #include <apsis/boundary/wall_values.hpp>
 
-#include <apsis/core/errors.hpp>
-
-#include <cstddef>
+#include <apsis/boundary/face_value_error.hpp>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -11,11 +9,15 @@ namespace apsis {
 namespace {
 
 /// Throws an input error for a velocity along the normal of a wall at a point.
-[[noreturn]] void refuse_along_normal(double normal, double t, const position& at, std::size_t dimensions,
-                                      const char* why, const char* remedy) {
-  throw input_error(fmt::format(
-      "the velocity of a wall is {:g} along its normal at t = {:.10g} near ({:.6g}) ({}); {}", normal, t,
-      fmt::join(at.begin(), at.begin() + static_cast<std::ptrdiff_t>(dimensions), ", "), why, remedy));
+[[noreturn]] void refuse_along_normal(const std::vector<face_quantity>& velocity, double normal, double t,
+                                      const position& at, const char* why, const char* remedy) {
+  const face_quantity& given = velocity.front();
+  const auto* origin = given.origin();
+  const auto dimensions = origin != nullptr ? origin->dimensions : static_cast<int>(velocity.size());
+  refuse_value(
+      given, fmt::format("the velocity of {} is {:g} along its normal at t = {:.10g} near ({:.6g}) ({}); {}",
+                         surface_of(given, "a wall"), normal, t,
+                         fmt::join(at.begin(), at.begin() + dimensions, ", "), why, remedy));
 }
 
 }  // namespace
@@ -23,10 +25,11 @@ namespace {
 double accommodation_at(const face_quantity& accommodation, double t, const position& at) {
   const double alpha = accommodation.at(t, at);
   if (!(alpha >= 0.0 && alpha <= 1.0))
-    throw input_error(
-        fmt::format("the accommodation of a diffuse wall is {:g} at t = {:.10g} (a number "
-                    "from 0 to 1 is needed); change it",
-                    alpha, t));
+    refuse_value(
+        accommodation,
+        fmt::format("the accommodation of {} is {:g} at {} (a number from 0 to 1 is needed); change it",
+                    surface_of(accommodation, "a diffuse wall"), alpha,
+                    time_and_point(accommodation, t, at)));
   return alpha;
 }
 
@@ -35,7 +38,7 @@ std::array<double, 3> velocity_along(const std::vector<face_quantity>& velocity,
   std::array<double, 3> u{};
   for (std::size_t k = 0; k < velocity.size(); ++k) u[k] = velocity[k].at(t, at);
   if (const double normal = u[static_cast<std::size_t>(where.direction)]; normal != 0.0)
-    refuse_along_normal(normal, t, at, velocity.size(), "the domain would have to move", "give 0 there");
+    refuse_along_normal(velocity, normal, t, at, "the domain would have to move", "give 0 there");
   return u;
 }
 
@@ -50,7 +53,7 @@ std::array<double, 3> velocity_along(const std::vector<face_quantity>& velocity,
   // Pieces are chords of a curved wall, which deviate from it by less.
   constexpr double most_of_square = 0.25;
   if (normal * normal > most_of_square * square)
-    refuse_along_normal(normal, where.t, where.at, velocity.size(), "the body would have to move",
+    refuse_along_normal(velocity, normal, where.t, where.at, "the body would have to move",
                         "give a velocity along the wall");
   for (std::size_t k = 0; k < velocity.size(); ++k) u[k] -= normal * where.normal[k];
   return u;

@@ -9,6 +9,8 @@
 
 namespace apsis {
 
+// Functions of this header throw as refuse_value() does.
+
 /// Returns the fraction of molecules that a wall re-emits. Throws input_error if it is not from 0 to 1.
 double accommodation_at(const face_quantity& accommodation, double t, const position& at);
 

@@ -60,14 +60,30 @@ source_place place_of_emitter(const case_config& config, const std::string& path
   return place_of(config, "space.boundary");
 }
 
+namespace {
+
+/// The name of a surface in messages, by the path of its table.
+std::string surface_name(const case_config& config, const std::string& path) {
+  for (std::size_t k = 0; k < config.solids.size(); ++k)
+    if (path == fmt::format("space.solid.{}", k + 1))
+      return fmt::format("solid box '{}'", config.solids[k].name);
+  for (std::size_t k = 0; k < config.bodies.size(); ++k)
+    if (path == fmt::format("space.body.{}", k + 1)) return fmt::format("body '{}'", config.bodies[k].name);
+  return fmt::format("[{}]", path);
+}
+
+}  // namespace
+
 std::shared_ptr<const boundary> make_wall(const case_config& config, const model& equation,
                                           const std::string& path, const std::string& kind,
                                           const state_formulas& values) {
+  const std::string surface = surface_name(config, path);
   face_quantities compiled;
   for (const auto& [name, formulas] : values)
     for (const auto& formula : formulas) {
       const source_place at = place_of(config, fmt::format("{}.{}", path, name));
       compiled[name].push_back(compile(formula, at, config, equation, variable_of(kind, equation, name)));
+      compiled[name].back().set_origin({at, surface, equation.space_dimensions()});
     }
   return at_place(place_of_emitter(config, path), [&] { return make_boundary(kind, equation, compiled); });
 }

@@ -24,7 +24,10 @@ class worst_maxwellian {
   explicit worst_maxwellian(const velocity_support& support) : support_(support) {}
 
   void see(const fluid_state& state, double t) {
-    if (!state.admissible()) return;  // the boundary itself reports it
+    if (!state.admissible()) {
+      if (!refused_) refused_ = {state, t};
+      return;
+    }
     const velocity_fit fit = support_.fit(state);
     if (!(fit.missed > fit_.missed)) return;
     fit_ = fit;
@@ -36,6 +39,7 @@ class worst_maxwellian {
   /// Returns the warning, or throws, for what the table `path` describes.
   std::optional<std::string> judge(const case_config& config, const std::string& path) const {
     if (!(fit_.missed > velocity_limits::good)) return std::nullopt;
+    if (refused_ && fit_.missed > velocity_limits::bad) refuse_state(config, path);
     const velocity_words words = words_of(config, fmt::format("the gas of [{}] at t = {:.4g}", path, t_));
     const std::string problem = velocity_problem(support_.molecules(), state_, fit_, words).problem;
     if (fit_.missed > velocity_limits::bad) throw input_error(place_of_emitter(config, path), problem);
@@ -43,10 +47,26 @@ class worst_maxwellian {
   }
 
  private:
+  struct state_in_time {
+    fluid_state state;
+    double t;
+  };
+
+  /// A temperature that passes 0 is too low for velocities before. It is the problem, not the velocities.
+  [[noreturn]] void refuse_state(const case_config& config, const std::string& path) const {
+    const auto& [state, t] = *refused_;
+    throw input_error(
+        place_of_emitter(config, path),
+        fmt::format("[{}] has no Maxwellian at t = {:.4g} ({} {:.4g} is not positive); change its values",
+                    path, t, state.rho > 0.0 ? "temperature" : "density",
+                    state.rho > 0.0 ? state.T : state.rho));
+  }
+
   const velocity_support& support_;
   velocity_fit fit_;
   fluid_state state_;
   double t_ = 0.0;
+  std::optional<state_in_time> refused_;  ///< the first without a Maxwellian
 };
 
 /// Times at which formulas are sampled.

@@ -230,11 +230,7 @@ void case_checks::check_body(std::size_t k, const boundary& wall) const {
   const int number = static_cast<int>(config_.solids.size() + k);
   for (const wall_segment& piece : mesh.cut()->walls()) {
     if (piece.solid != number) continue;
-    try {
-      static_cast<void>(made->velocity({piece.normal, piece.middle, 0.0}));
-    } catch (const input_error& failure) {
-      throw input_error(place, fmt::format("body '{}': {}", config_.bodies[k].name, failure.what()));
-    }
+    at_place(place, [&] { return made->velocity({piece.normal, piece.middle, 0.0}); });
   }
 }
 

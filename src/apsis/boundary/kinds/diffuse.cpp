@@ -84,7 +84,7 @@ class oblique_diffuse_wall final : public oblique_wall {
     std::array<double, 5> numbers = {1.0};
     for (std::size_t k = 0; k < velocity_.size(); ++k) numbers[k + 1] = u[k];
     numbers[velocity_.size() + 1] = temperature_.at(where.t, where.at);
-    emitted_.write_other({numbers.data(), velocity_.size() + 2}, where.t, row);
+    emitted_.write_other({numbers.data(), velocity_.size() + 2}, where.t, where.at, row);
     return row.data();
   }
 

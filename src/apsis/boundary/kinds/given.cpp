@@ -1,4 +1,5 @@
 #include <apsis/boundary/boundary_registry.hpp>
+#include <apsis/boundary/face_value_error.hpp>
 #include <apsis/boundary/prescribed_state.hpp>
 #include <apsis/core/errors.hpp>
 #include <apsis/model/gas_model.hpp>
@@ -34,10 +35,11 @@ class given_distribution final : public incoming_boundary {
           v[static_cast<std::size_t>(k)] = velocities_.speeds(k)[j];
         const double f = values_[set].at(t, at, v);
         if (!(f >= 0.0 && std::isfinite(f)))
-          throw input_error(fmt::format(
-              "the distribution at a boundary 'given' is {:g} at t = {:.10g}, v_x = {:.6g} (not a "
-              "finite number >= 0); change its formula",
-              f, t, v[0]));
+          refuse_value(values_[set],
+                       fmt::format("the distribution at {} is {:g} at {}, v_x = {:.6g} (not a finite number "
+                                   ">= 0); change its formula",
+                                   surface_of(values_[set], "a boundary 'given'"), f,
+                                   time_and_point(values_[set], t, at), v[0]));
         values[set * n + j] = f;
       }
   }

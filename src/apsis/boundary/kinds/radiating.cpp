@@ -1,7 +1,8 @@
+#include <apsis/boundary/face_value_error.hpp>
 #include <apsis/boundary/heat_balance_wall.hpp>
-#include <apsis/core/errors.hpp>
 
 #include <cmath>
+#include <cstddef>
 #include <memory>
 #include <utility>
 
@@ -23,15 +24,18 @@ class radiating_wall final : public heat_balance_wall {
     const double emissivity = of_radiation_[0].at(t, at), sigma = of_radiation_[1].at(t, at),
                  surroundings = of_radiation_[2].at(t, at);
     if (!(emissivity >= 0.0 && emissivity <= 1.0))
-      throw input_error(
-          fmt::format("the emissivity of a radiating wall is {:g} at t = {:.10g} (a number from 0 to 1 is "
-                      "needed); change it",
-                      emissivity, t));
-    for (const double value : {sigma, surroundings})
-      if (!(value >= 0.0 && std::isfinite(value)))
-        throw input_error(fmt::format(
-            "'{}' of a radiating wall is {:g} at t = {:.10g} (it must not be negative); change it",
-            value == sigma ? "sigma" : "surroundings", value, t));
+      refuse_value(
+          of_radiation_[0],
+          fmt::format("the emissivity of {} is {:g} at {} (a number from 0 to 1 is needed); change it",
+                      surface_of(of_radiation_[0], "a radiating wall"), emissivity,
+                      time_and_point(of_radiation_[0], t, at)));
+    for (const std::size_t k : {1U, 2U})
+      if (const double value = k == 1U ? sigma : surroundings; !(value >= 0.0 && std::isfinite(value)))
+        refuse_value(
+            of_radiation_[k],
+            fmt::format("'{}' of {} is {:g} at {} (it must not be negative); change it",
+                        k == 1U ? "sigma" : "surroundings", surface_of(of_radiation_[k], "a radiating wall"),
+                        value, time_and_point(of_radiation_[k], t, at)));
     return {emissivity * sigma, surroundings};
   }
   std::shared_ptr<heat_balance_wall> copy() const override { return std::make_shared<radiating_wall>(*this); }

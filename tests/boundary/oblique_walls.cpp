@@ -77,6 +77,22 @@ TEST(oblique_walls, mix_reflection_and_emission_by_the_accommodation) {
   }
 }
 
+TEST(oblique_walls, exist_for_the_kinds_that_say_so) {
+  const auto gas = gas_of("bgk", 2);
+  for (const apsis::boundary_entry* entry : apsis::boundary_entries()) {
+    if (entry->name == "axis") {  // needs velocities on rings
+      EXPECT_FALSE(entry->any_normal);
+      continue;
+    }
+    apsis::face_quantities values;
+    if (entry->variables != nullptr)
+      for (const apsis::data_variable& variable : entry->variables(*gas))
+        if (!variable.value && !values.contains(variable.alternative)) values[variable.name] = {1.0};
+    const auto made = apsis::make_boundary(entry->name, *gas, values);
+    EXPECT_EQ(made->oblique(gas->velocities()) != nullptr, entry->any_normal) << entry->name;
+  }
+}
+
 TEST(oblique_walls, without_a_given_temperature_balance_heat_and_mass_of_any_row) {
   std::mt19937 generator(8);
   int unmatched = 0;

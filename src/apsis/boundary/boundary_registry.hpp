@@ -84,6 +84,7 @@ struct boundary_entry {
   /// [boundary.right]; null if it has none. Throws input_error where the model cannot have the condition.
   std::vector<data_variable> (*variables)(const model& equation) = nullptr;
   std::unique_ptr<boundary> (*make)(const boundary_source& from) = nullptr;  ///< returns a new object
+  bool any_normal = false;  ///< whether boundary::oblique() serves walls with any normal, with some models
 };
 
 /// Returns all kinds, sorted by file name (generated).

@@ -9,12 +9,14 @@
 #include <apsis/config/surface_names.hpp>
 #include <apsis/core/index.hpp>
 #include <apsis/core/suggest.hpp>
+#include <apsis/mesh/hidden_body.hpp>
 #include <apsis/model/expression.hpp>
 
 #include <algorithm>
 #include <set>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace apsis {
 namespace {
@@ -64,6 +66,10 @@ class reader_of_bodies {
     taken_.clear();
     body.name = text_at(path + ".name").value_or(fmt::format("body-{}", number + 1));
     body.kind = text_at(path + ".kind").value_or(body.kind);
+    const source_place place_of_kind = place_of_emitter(config_, path + ".kind");
+    const boundary_entry& kind =
+        at_place(place_of_kind, [&]() -> decltype(auto) { return std::cref(find_boundary(body.kind)); });
+    if (!kind.any_normal) throw input_error(place_of_kind, why_no_wall_of_bodies(body.kind, equation_));
     const auto variables = boundary_variables(body.kind, equation_, place_of_emitter(config_, path));
     for (const std::string& name : variables) {
       const std::string key = fmt::format("{}.{}", path, name);
@@ -115,7 +121,7 @@ class reader_of_bodies {
     for (const shape_key& key : keys_of(entry, dimensions)) {
       const std::string of_key = path + "." + key.name;
       if (key.kind == shape_value_kind::shapes)
-        read_parts(of_key, key.planar ? 2 : dimensions, table.parts[key.name]);
+        read_parts(of_key, key, key.planar ? 2 : dimensions, table.parts[key.name]);
       else if (const raw_value* raw = text_.find(of_key))
         table.values[key.name] = value_of(*raw, of_key, key);
     }
@@ -124,7 +130,14 @@ class reader_of_bodies {
   }
 
   /// Shapes in a list of tables, or a single table.
-  void read_parts(const std::string& path, int dimensions, std::vector<shape_table>& parts) {
+  void read_parts(const std::string& path, const shape_key& key, int dimensions,
+                  std::vector<shape_table>& parts) {
+    if (const raw_value* raw = text_.find(path))
+      refuse(*raw, path,
+             key.fewest > 1 ? fmt::format("it needs at least {} shapes", key.fewest) : "it needs a shape",
+             fmt::format("write for example {} = [{{ shape = {}, radius = 1 }}{}]", key.name,
+                         dimensions == 2 ? "\"circle\", centre = [0, 0]" : "\"sphere\", centre = [0, 0, 0]",
+                         key.fewest > 1 ? ", …" : ""));
     const auto has = [&](const std::string& table) { return text_.tables.contains(table); };
     for (int k = 1; has(fmt::format("{}.{}", path, k)); ++k)
       parts.push_back(read_shape(fmt::format("{}.{}", path, k), dimensions));
@@ -210,6 +223,24 @@ std::shared_ptr<const shape> made_shape(const case_config& config, const shape_t
   return at_place(place, [&] { return make_shape(table.shape, values, dimensions); });
 }
 
+/// Returns the kinds of walls with any normal that a model can have.
+std::vector<std::string> kinds_of_bodies(const model& equation) {
+  std::vector<std::string> names;
+  for (const boundary_entry* entry : boundary_entries()) {
+    if (!entry->any_normal) continue;
+    try {
+      if (entry->variables != nullptr)
+        entry->variables(equation);
+      else if (entry->make({&equation})->oblique(equation.velocities()) == nullptr)
+        continue;
+      names.push_back(fmt::format("\"{}\"", entry->name));
+    } catch (const input_error&) {
+      continue;  // not with this model
+    }
+  }
+  return names;
+}
+
 std::array<bool, 3> periodic_directions_of(const case_config& config) {
   std::array<bool, 3> periodic{};
   for (std::size_t k = 0; k < config.space.cells.size(); ++k) {
@@ -220,6 +251,13 @@ std::array<bool, 3> periodic_directions_of(const case_config& config) {
 }
 
 }  // namespace
+
+std::string why_no_wall_of_bodies(const std::string& kind, const model& equation) {
+  const auto kinds = kinds_of_bodies(equation);
+  return fmt::format(
+      "a body cannot have the wall '{}' (its normal may have any direction); {}", kind,
+      kinds.empty() ? "use another model" : fmt::format("write kind = {}", fmt::join(kinds, " or ")));
+}
 
 void read_bodies(const case_text& text, const model& equation, case_config& config) {
   reader_of_bodies(text, equation, config).read();
@@ -233,8 +271,15 @@ std::shared_ptr<const cut_cells> cut_cells_of(const case_config& config, const g
       const auto made = made_shape(config, config.bodies[k].shape, path_of_body(k), mesh.dimensions());
       bodies.emplace_back([made](const position& x) { return made->outside(x); });
     }
-    return at_place(place_of_emitter(config, path_of_body(0)),
-                    [&] { return std::make_shared<const cut_cells>(mesh, bodies, periodic); });
+    try {
+      return std::make_shared<const cut_cells>(mesh, bodies, periodic);
+    } catch (const hidden_body& failure) {
+      const std::size_t k = failure.body();
+      throw input_error(place_of_emitter(config, path_of_body(k)),
+                        hidden_body::message(fmt::format("body '{}'", config.bodies[k].name)));
+    } catch (const input_error& failure) {
+      throw input_error(place_of_emitter(config, path_of_body(0)), failure.what());
+    }
   };
   return config.parts->cut.get(
       {config.space.cells, config.space.domain, config.solids, config.bodies, periodic, config.constants},

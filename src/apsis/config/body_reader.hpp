@@ -5,6 +5,7 @@
 #include <apsis/mesh/cut_cells.hpp>
 
 #include <memory>
+#include <string>
 
 namespace apsis {
 
@@ -12,6 +13,9 @@ namespace apsis {
 /// key: an unknown shape or key, a value of another kind, a name that occurs twice, or a mesh of one
 /// dimension.
 void read_bodies(const case_text& text, const model& equation, case_config& config);
+
+/// Returns why a body cannot have a kind of wall, with the kinds that it can have with a model.
+std::string why_no_wall_of_bodies(const std::string& kind, const model& equation);
 
 /// Returns the cells of a mesh that the bodies of a case cut, made once for a case and its copies. `mesh` is
 /// that of the case with its solid boxes. Throws input_error at the place of a body as cut_cells and the

@@ -1,6 +1,7 @@
 #include <apsis/config/case_checks.hpp>
 
 #include <apsis/config/at_place.hpp>
+#include <apsis/config/body_reader.hpp>
 #include <apsis/config/boundary_reader.hpp>
 #include <apsis/config/case_value.hpp>
 #include <apsis/config/checked_model.hpp>
@@ -217,15 +218,7 @@ void case_checks::check_body(std::size_t k, const boundary& wall) const {
   const source_place place = place_of_emitter(config_, path);
   const auto equation = checked_model(config_);
   const auto made = at_place(place, [&] { return wall.oblique(equation->velocities()); });
-  const relaxation_model* relaxes = equation->as_relaxation();
-  const bool is_gas = relaxes != nullptr && relaxes->as_gas() != nullptr;
-  if (!made)
-    throw input_error(place, fmt::format("a body cannot have the wall '{}' (its normal may have any "
-                                         "direction); write kind = {}",
-                                         config_.bodies[k].kind,
-                                         is_gas ? "\"diffuse\", \"adiabatic\", \"radiating\", "
-                                                  "\"symmetry\" or \"vacuum\""
-                                                : "\"vacuum\""));
+  if (!made) throw input_error(place, why_no_wall_of_bodies(config_.bodies[k].kind, *equation));
   const grid mesh = make_mesh(config_);
   const int number = static_cast<int>(config_.solids.size() + k);
   for (const wall_segment& piece : mesh.cut()->walls()) {

@@ -27,6 +27,7 @@ const boundary_entry boundary_adiabatic = {
       std::vector<face_quantity> velocity(from.values.begin(), from.values.end() - 1);
       return std::make_unique<adiabatic_wall>(*from.equation, "adiabatic", std::move(velocity),
                                               from.values.back());
-    }};
+    },
+    .any_normal = true};
 
 }  // namespace apsis

@@ -236,6 +236,7 @@ const boundary_entry boundary_diffuse = {
       return std::make_unique<diffuse_wall>(prescribed_state(maxwellian_form(*from.equation, "diffuse"),
                                                              std::move(state), from.equation->components()),
                                             from.values.front(), velocity, from.values.back());
-    }};
+    },
+    .any_normal = true};
 
 }  // namespace apsis

@@ -72,6 +72,7 @@ const boundary_entry boundary_radiating = {
       const auto begin = from.values.begin(), end = from.values.end();
       return std::make_unique<radiating_wall>(*from.equation, std::vector<face_quantity>(begin, end - 4),
                                               *(end - 4), std::vector<face_quantity>(end - 3, end));
-    }};
+    },
+    .any_normal = true};
 
 }  // namespace apsis

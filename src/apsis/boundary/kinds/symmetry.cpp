@@ -92,6 +92,7 @@ const boundary_entry boundary_symmetry = {
       if (from.equation != nullptr && from.equation->space_dimensions() == 1)
         from.equation->reflection_signs(0);
       return std::make_unique<symmetry_boundary>(from.equation);
-    }};
+    },
+    .any_normal = true};
 
 }  // namespace apsis

@@ -57,6 +57,7 @@ const boundary_entry boundary_vacuum = {
             "boundary 'vacuum' cannot be used (the components of the model are not densities of particles); "
             "choose another kind, see: apsis list boundaries");
       return std::make_unique<vacuum_boundary>();
-    }};
+    },
+    .any_normal = true};
 
 }  // namespace apsis

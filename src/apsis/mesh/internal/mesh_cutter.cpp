@@ -2,6 +2,7 @@
 
 #include <apsis/core/errors.hpp>
 #include <apsis/core/index.hpp>
+#include <apsis/mesh/hidden_body.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -161,11 +162,7 @@ void mesh_cutter::check_bodies() const {
     for (const piece& wall : gas.walls)
       if (at(wall.solid) >= boxes) seen[at(wall.solid) - boxes] = true;
   for (std::size_t k = 0; k < seen.size(); ++k)
-    if (!seen[k])
-      throw input_error(fmt::format(
-          "body {} has no wall in the domain (it lies outside, in another body, or between the corners of "
-          "cells); move it, or increase space.cells",
-          k + 1));
+    if (!seen[k]) throw hidden_body(k);
 }
 
 void mesh_cutter::check_thin_cells(const std::vector<int>& thin, std::size_t of_bodies) const {

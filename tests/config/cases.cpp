@@ -69,6 +69,24 @@ TEST(cases, numbers_of_overrides_may_be_fractions) {
   EXPECT_EQ(load_case("paper/ode", {"model.epsilon=1/2"}).model.epsilon.text, "1/2");
 }
 
+TEST(cases, numbers_of_overrides_may_lack_digits_on_one_side_of_the_point) {
+  const auto u0 = [](const std::string& value) {
+    return load_case("paper/decay", {"model.u0=" + value}).model.parameters.at("u0");
+  };
+  EXPECT_EQ(u0(".1"), 0.1);
+  EXPECT_EQ(u0("+.5e1"), 5.0);
+  EXPECT_EQ(u0("1."), 1.0);
+  EXPECT_EQ(u0("2.e-1"), 0.2);
+  EXPECT_THAT([&] { u0("-.5"); },
+              testing::ThrowsMessage<input_error>(HasSubstr("'model.u0' is the number -.5 (")));
+  EXPECT_EQ(*load_case("paper/ode", {"time.dt=.02"}).time.dt, 0.02);
+  EXPECT_EQ(load_case("paper/ode", {"title=.5"}).title, ".5");
+  for (const std::string no_number : {".", "-.", "1.2.3", ".e5", "1.-2", "+-.5"})
+    EXPECT_THAT([&] { u0(no_number); },
+                testing::ThrowsMessage<input_error>(HasSubstr("is not a value of TOML")))
+        << no_number;
+}
+
 TEST(cases, a_missing_case_is_an_input_error_with_the_nearest_name) {
   bad_input::expect_refused({
       {[] { load_case("paper/bgk-mixd"); }, {"did you mean 'paper/bgk-mixed'?"}},

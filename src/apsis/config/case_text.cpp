@@ -96,21 +96,33 @@ std::string in_quotes(const std::string& value) {
   return out + '"';
 }
 
+std::optional<double> decimal(std::string_view text) {
+  double x = 0.0;
+  const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), x);
+  if (problem != std::errc() || end != text.data() + text.size()) return std::nullopt;
+  return x;
+}
+
 // Returns the value of a fraction such as "1/128", which is not TOML; nothing if the text is not a fraction
 // of decimals.
-std::optional<double> fraction(const std::string& value) {
+std::optional<double> fraction(std::string_view value) {
   const auto slash = value.find('/');
-  if (slash == std::string::npos) return std::nullopt;
-  const auto number = [](std::string_view text) -> std::optional<double> {
-    double x = 0.0;
-    const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), x);
-    if (problem != std::errc() || end != text.data() + text.size()) return std::nullopt;
-    return x;
-  };
-  const auto above = number(std::string_view(value).substr(0, slash));
-  const auto below = number(std::string_view(value).substr(slash + 1));
+  if (slash == std::string_view::npos) return std::nullopt;
+  const auto above = decimal(value.substr(0, slash)), below = decimal(value.substr(slash + 1));
   if (!above || !below) return std::nullopt;
   return *above / *below;
+}
+
+// Returns the value of a decimal without digits on one side of its point, ".5" or "1.", which is not TOML.
+std::optional<double> bare_decimal(std::string_view value) {
+  const auto point = value.find('.');
+  if (point == std::string_view::npos || value.find_first_not_of("0123456789+-.eE") != std::string_view::npos)
+    return std::nullopt;
+  const auto is_digit = [&](std::size_t at) {
+    return at < value.size() && value[at] >= '0' && value[at] <= '9';
+  };
+  if (point > 0 && is_digit(point - 1) && is_digit(point + 1)) return std::nullopt;  // TOML
+  return decimal(value.substr(value.front() == '+' ? 1 : 0));
 }
 
 std::string syntax_message(std::string_view description) {
@@ -174,10 +186,11 @@ void apply_override(case_text& target, const std::string& path, const std::strin
   if (value.size() > longest_case_line)
     throw input_error(place, fmt::format("the value has {} bytes (at most {} are read); shorten it",
                                          value.size(), longest_case_line));
-  if (const auto number = fraction(value); number && !form.is_text) {
-    target.values[path] = {*number, fmt::format("the fraction {}", value), place, place};
-    return;
-  }
+  const auto take = [&](const std::optional<double>& number, const char* kind) {
+    if (number) target.values[path] = {*number, fmt::format("the {} {}", kind, value), place, place};
+    return number.has_value();
+  };
+  if (!form.is_text && (take(fraction(value), "fraction") || take(bare_decimal(value), "number"))) return;
   const bool bare = form.is_text && value.find_first_of("\"'") != 0;
   const std::string line = "value = " + (bare ? in_quotes(value) : value);
   try {

@@ -45,7 +45,7 @@ struct override_form {
 };
 
 /// Sets one key from "dotted.key=value"; the value is TOML, text may stand without quotes, and a number may
-/// be a fraction like 1/128. Throws input_error.
+/// be a fraction like 1/128, or lack digits on one side of its point: .5, 1. Throws input_error.
 void apply_override(case_text& target, const std::string& path, const std::string& value,
                     const override_form& form, const source_place& place);
 

@@ -98,7 +98,7 @@ int run_on(const std::shared_ptr<communicator>& processes, run_options options) 
     profile =
         finish_profile(computed.summary().wall_s, static_cast<std::size_t>(computed.summary().phase_points));
   if (options.json) {
-    auto out = to_json(computed, session.records());
+    auto out = to_json(computed, session.records(), session.warnings());
     if (!processes->is_root()) return code_of(end);
     if (profile) out["profile"] = to_json(*profile);
     print(json_text(out) + "\n");

@@ -8,6 +8,7 @@
 #include <apsis/core/errors.hpp>
 #include <apsis/core/log.hpp>
 #include <apsis/core/version.hpp>
+#include <apsis/core/warning_record.hpp>
 #include <apsis/exec/parallel.hpp>
 #include <apsis/output/json_text.hpp>
 #include <apsis/output/provenance.hpp>
@@ -43,6 +44,7 @@ struct options {
 /// One value for parameters of the user.
 int compute_one(const options& given, const quantity_entry& quantity,
                 const std::vector<std::string>& settings) {
+  const warning_record warnings;
   progress_bar bar;
   const std::string label = fmt::format("{} {}", quantity.name, fmt::join(settings, " "));
   const double value = compute_quantity(quantity, settings, [&](double part) {
@@ -51,7 +53,11 @@ int compute_one(const options& given, const quantity_entry& quantity,
   });
   bar.finish();
   if (given.json) {
-    print(json_text(json{{"name", quantity.name}, {"settings", settings}, {"value", value}}) + "\n");
+    print(json_text(json{{"name", quantity.name},
+                         {"settings", settings},
+                         {"value", value},
+                         {"warnings", warnings.messages()}}) +
+          "\n");
   } else {
     print(fmt::format("{:.6g}   {}\n", value, quantity.description));
   }
@@ -108,11 +114,8 @@ class comparison {
       if (!own.empty()) quantities.push_back(to_json(*quantity, own));
     }
     for (const auto& one : done_) wall += one.wall_s;
-    return {{"version", version()},
-            {"build", build_info()},
-            {"machine", machine_info()},
-            {"wall_s", wall},
-            {"quantities", quantities}};
+    return {{"version", version()}, {"build", build_info()},    {"machine", machine_info()},
+            {"wall_s", wall},       {"quantities", quantities}, {"warnings", warnings_.messages()}};
   }
 
   /// Returns how many reference values are computed, and how many of them are not met.
@@ -123,6 +126,7 @@ class comparison {
   }
 
  private:
+  warning_record warnings_;
   const options& given_;
   std::vector<const quantity_entry*> chosen_;
   result_folder folder_;

@@ -26,7 +26,7 @@ def open(folder: str | Path) -> Result:  # noqa: A001, used as apsis.open
         t, fields = stored.t, {name: stored.snapshots[name] for name in stored.fields}
     else:
         t, fields = np.array([stored.history["t"][-1]]), {name: values[None, :] for name, values in stored.fields.items()}
-    summary = {"case": manifest.get("case", {}), "method": manifest.get("method", ""), **result}
+    summary = {"case": manifest.get("case", {}), "method": manifest.get("method", ""), **result, "warnings": manifest.get("warnings", [])}
     arrays = stored.arrays
     return Result(state=str(manifest.get("state", "")), f=arrays.get("f", np.zeros((0, 0))), x=arrays.get("x", empty),
                   v=arrays.get("v", empty), epsilon=arrays.get("epsilon", empty), t=t, fields=fields, history=stored.history,

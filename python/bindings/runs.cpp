@@ -177,7 +177,7 @@ py::dict result_of(const run_session& session, run_end end) {
   const simulation& run = session.computed();
   py::dict out;
   out["state"] = to_string(end);
-  out["json"] = to_json(run, session.records()).dump();
+  out["json"] = to_json(run, session.records(), session.warnings()).dump();
   std::vector<double> f = run.whole_state();
   std::vector<double> epsilon = run.epsilon();
   const result_units units(run.config());

@@ -120,6 +120,25 @@ TEST(results, the_state_of_an_ode_is_printed_with_every_digit) {
   EXPECT_NEAR(10.0 - 20.0 * u * u - 400.0 * u * u * u - u, 0.0, 1e-13);
 }
 
+TEST(results, warnings_are_printed_and_listed) {
+  const work_folder folder;
+  // 0.3 does not divide the end, and there is no folder for checkpoints.
+  const std::vector<std::string> decay = {"run", "paper/decay", "time.method=imdrk-1-2", "time.dt=0.3"};
+  const outcome printed = run_apsis(folder, with(decay, {"output.checkpoint_every=1", "--json"})),
+                stored = run_apsis(folder, with(decay, {"--out", "o"})),
+                silent = run_apsis(folder, {"run", "paper/decay", "time.dt=0.5", "--json"});
+  const json listed = json::parse(printed.out)["warnings"];
+  ASSERT_EQ(listed.size(), 2U) << printed.err;
+  EXPECT_THAT(listed[0].get<std::string>(),
+              HasSubstr("time.dt = 0.29999999999999999 does not divide time.end"));
+  EXPECT_THAT(listed[1].get<std::string>(), HasSubstr("no checkpoints are written"));
+  for (const json& one : listed)
+    EXPECT_THAT(printed.err, HasSubstr("warning: " + one.get<std::string>() + "\n"));
+  EXPECT_EQ(stored.code, 0) << stored.err;
+  EXPECT_EQ(json::parse(read(folder.path() / "o/manifest.json"))["warnings"], json({listed[0]}));
+  EXPECT_EQ(json::parse(silent.out)["warnings"], json::array());
+}
+
 TEST(results, files_agree_with_each_other) {
   const work_folder folder;
   ASSERT_EQ(run_apsis(folder, with(small, {"time.end=0.004", "output.every=0.002", "--out", "o"})).code, 0);

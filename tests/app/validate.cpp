@@ -39,6 +39,7 @@ TEST(validate, computes_a_value_for_other_parameters) {
   const json document = json::parse(result.out);
   EXPECT_EQ(document["name"], "couette");
   EXPECT_EQ(document["settings"], (json{"delta=2.5", "velocity.points=48"}));
+  EXPECT_EQ(document["warnings"], json::array());
   // Between the reference values at δ = 2 and 5.
   EXPECT_LT(document["value"].get<double>(), 0.4436);
   EXPECT_GT(document["value"].get<double>(), 0.2522);

@@ -1,6 +1,8 @@
 // Log messages: format, verbosity levels, and atomic lines when several threads write.
 #include <apsis/core/log.hpp>
 
+#include <apsis/core/warning_record.hpp>
+
 #include <string>
 #include <thread>
 #include <vector>
@@ -38,6 +40,23 @@ TEST_F(log_of_messages, level_warning_hides_info_messages) {
 
 TEST_F(log_of_messages, level_quiet_hides_all_messages) {
   EXPECT_EQ(both_at(apsis::log::level::quiet), "");
+}
+
+TEST_F(log_of_messages, records_of_warnings_have_those_of_their_life_at_any_level) {
+  CaptureStderr();
+  apsis::log::warning("before");
+  const apsis::warning_record outer;
+  apsis::log::set_level(apsis::log::level::quiet);
+  apsis::log::warning("first");
+  {
+    const apsis::warning_record inner;
+    apsis::log::warning("second");
+    apsis::log::info("no warning");
+    EXPECT_THAT(inner.messages(), testing::ElementsAre("second"));
+  }
+  apsis::log::warning("third");
+  EXPECT_EQ(GetCapturedStderr(), "warning: before\n");
+  EXPECT_THAT(outer.messages(), testing::ElementsAre("first", "second", "third"));
 }
 
 TEST_F(log_of_messages, lines_of_several_threads_do_not_interleave) {

@@ -1,6 +1,7 @@
 #include <apsis/core/log.hpp>
 
 #include <apsis/core/printable.hpp>
+#include <apsis/core/warning_record.hpp>
 
 #include <atomic>
 #include <cstdio>
@@ -43,6 +44,7 @@ void info(const std::string& message) {
 }
 
 void warning(const std::string& message) {
+  warning_record::add_to_all(message);
   if (lowest_shown >= level::warning) write("warning", "\033[33m\033[1m", message);
 }
 

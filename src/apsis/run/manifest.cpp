@@ -145,7 +145,7 @@ std::string to_string(run_end end) {
   return "";
 }
 
-json to_json(const simulation& run, const run_records& records) {
+json to_json(const simulation& run, const run_records& records, const std::vector<std::string>& warnings) {
   json out = {{"case", apsis::to_json(run.config())}, {"method", run.config().time.method}};
   add_choice(out, run.config());
   out.update(numbers(run));
@@ -164,6 +164,7 @@ json to_json(const simulation& run, const run_records& records) {
       fields[series.names[k]] = nested(series.snapshots.back().values[k], shape);
   out["fields"] = fields;
   add_units(out, run);
+  out["warnings"] = warnings;
   return out;
 }
 
@@ -187,6 +188,7 @@ json manifest(const simulation& run, const session_record& session) {
   add_bodies(out["result"], run);
   add_wall_temperatures(out["result"], run);
   add_units(out, run);
+  out["warnings"] = session.warnings;
   out["build"] = build_info();
   out["machine"] = machine_info();
   out["machine"]["host"] = host_name();

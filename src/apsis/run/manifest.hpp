@@ -22,17 +22,19 @@ enum class run_end {
 /// Returns the name in the manifest: "complete", "interrupted", "wall time reached" or "failed".
 std::string to_string(run_end end);
 
-/// Returns the object that `apsis run --json` prints.
-nlohmann::ordered_json to_json(const simulation& run, const run_records& records);
+/// Returns the object that `apsis run --json` prints, with the warnings of the run.
+nlohmann::ordered_json to_json(const simulation& run, const run_records& records,
+                               const std::vector<std::string>& warnings = {});
 
 /// Session data of a manifest.
 struct session_record {
-  run_end end = run_end::complete;     ///< how the run ended
-  std::string message;                 ///< error of a failed run
-  std::string started;                 ///< time_stamp() at the start
-  std::vector<std::string> command;    ///< command line; empty if unknown
-  std::optional<std::string> restart;  ///< checkpoint of a restart, as given
-  steady_estimate steady = {};         ///< with time.steady
+  run_end end = run_end::complete;         ///< how the run ended
+  std::string message;                     ///< error of a failed run
+  std::string started;                     ///< time_stamp() at the start
+  std::vector<std::string> command;        ///< command line; empty if unknown
+  std::optional<std::string> restart;      ///< checkpoint of a restart, as given
+  steady_estimate steady = {};             ///< with time.steady
+  std::vector<std::string> warnings = {};  ///< so far
 };
 
 /// Returns the content of manifest.json: resolved case, version, commit, command line, times, totals, scales

@@ -343,7 +343,7 @@ void run_session::publish_checkpoint() {
 void run_session::write_results(result_folder* folder, run_end end, const std::string& message) {
   std::string about =
       json_text(manifest(simulation_, {end, message, started_, options_.command, options_.restart,
-                                       estimate_steady_state(shown_->history())})) +
+                                       estimate_steady_state(shown_->history()), warnings_.messages()})) +
       "\n";
   broadcast_text(processes(), about);
   solution final_state = make_solution(simulation_, *shown_);

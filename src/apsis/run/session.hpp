@@ -1,5 +1,6 @@
 #pragma once
 
+#include <apsis/core/warning_record.hpp>
 #include <apsis/output/provenance.hpp>
 #include <apsis/output/result_folder.hpp>
 #include <apsis/run/manifest.hpp>
@@ -46,6 +47,8 @@ class run_session {
   const simulation& computed() const { return simulation_; }
   /// Returns the records of the finished run, including a snapshot of the final state.
   const run_records& records() const { return *shown_; }
+  /// Returns the warnings since the construction.
+  std::vector<std::string> warnings() const { return warnings_.messages(); }
 
  private:
   using clock = std::chrono::steady_clock;
@@ -70,6 +73,7 @@ class run_session {
                     const std::vector<surface_table>& walls);
   void save_failure(const std::string& message);
 
+  warning_record warnings_;  ///< also of the members below
   session_options options_;
   clock::time_point start_ = clock::now(), last_checkpoint_ = start_;
   std::string started_ = time_stamp();

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <mutex>
+#include <string>
+#include <vector>
+
+namespace apsis {
+
+/// The warnings of this process during the life of the object, also those that log::level hides. Thread-safe.
+class warning_record {
+ public:
+  warning_record();
+  ~warning_record();
+  warning_record(const warning_record&) = delete;
+  warning_record& operator=(const warning_record&) = delete;
+
+  /// Returns the warnings so far, in their order.
+  std::vector<std::string> messages() const;
+  /// Adds a warning to all records of this process.
+  static void add_to_all(const std::string& message);
+
+ private:
+  mutable std::mutex mutex_;
+  std::vector<std::string> messages_;
+};
+
+}  // namespace apsis

@@ -5,6 +5,7 @@
 
 #include <apsis/core/errors.hpp>
 #include <apsis/core/log.hpp>
+#include <apsis/core/warnings_once.hpp>
 #include <apsis/exec/parallel.hpp>
 #include <apsis/output/result_folder.hpp>
 #include <apsis/study/convergence_report.hpp>
@@ -57,6 +58,7 @@ bool run_all_of(convergence& study) {
 }
 
 int converge(const options& given) {
+  const warnings_once once;
   watch_for_interrupts("the current step of every run; finished runs are retained");
   set_threads(given.threads.value_or(default_threads()));
   convergence study(study_of(given));

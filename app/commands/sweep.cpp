@@ -6,6 +6,7 @@
 
 #include <apsis/core/errors.hpp>
 #include <apsis/core/log.hpp>
+#include <apsis/core/warnings_once.hpp>
 #include <apsis/exec/parallel.hpp>
 #include <apsis/output/result_folder.hpp>
 #include <apsis/study/steady_sweep.hpp>
@@ -61,6 +62,7 @@ study_results results_of(const options& given, const sweep_table& table) {
 }
 
 int sweep(const options& given) {
+  const warnings_once once;
   watch_for_interrupts("the current iteration; steady states found before are retained");
   set_threads(given.threads.value_or(default_threads()));
   const varied_key varied = parse_sweep(given.vary, given.points);

@@ -2,6 +2,7 @@
 #include <apsis/core/log.hpp>
 
 #include <apsis/core/warning_record.hpp>
+#include <apsis/core/warnings_once.hpp>
 
 #include <string>
 #include <thread>
@@ -57,6 +58,23 @@ TEST_F(log_of_messages, records_of_warnings_have_those_of_their_life_at_any_leve
   apsis::log::warning("third");
   EXPECT_EQ(GetCapturedStderr(), "warning: before\n");
   EXPECT_THAT(outer.messages(), testing::ElementsAre("first", "second", "third"));
+}
+
+TEST_F(log_of_messages, repeated_warnings_are_hidden_where_they_differ_in_numbers_alone) {
+  CaptureStderr();
+  {
+    const apsis::warnings_once once;
+    const apsis::warning_record record;
+    apsis::log::warning("method 'md-imex-3-2' is unstable in steps of 0.1 (1.5e-3); stop");
+    apsis::log::warning("method 'md-imex-3-2' is unstable in steps of 1e-05 (-2); stop");
+    apsis::log::warning("method 'md-imex-6-3' is unstable in steps of 0.1 (1.5e-3); stop");
+    EXPECT_EQ(record.messages().size(), 2U);
+  }
+  apsis::log::warning("method 'md-imex-6-3' is unstable in steps of 0.1 (1.5e-3); stop");
+  EXPECT_EQ(GetCapturedStderr(),
+            "warning: method 'md-imex-3-2' is unstable in steps of 0.1 (1.5e-3); stop\n"
+            "warning: method 'md-imex-6-3' is unstable in steps of 0.1 (1.5e-3); stop\n"
+            "warning: method 'md-imex-6-3' is unstable in steps of 0.1 (1.5e-3); stop\n");
 }
 
 TEST_F(log_of_messages, lines_of_several_threads_do_not_interleave) {

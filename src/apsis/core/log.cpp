@@ -2,6 +2,7 @@
 
 #include <apsis/core/printable.hpp>
 #include <apsis/core/warning_record.hpp>
+#include <apsis/core/warnings_once.hpp>
 
 #include <atomic>
 #include <cstdio>
@@ -44,6 +45,7 @@ void info(const std::string& message) {
 }
 
 void warning(const std::string& message) {
+  if (!warnings_once::is_new(message)) return;
   warning_record::add_to_all(message);
   if (lowest_shown >= level::warning) write("warning", "\033[33m\033[1m", message);
 }

@@ -1,9 +1,10 @@
 // Nonnegativity and conservation of gases past random bodies in the plane and in space, for every convex
 // method, over more than 1e9 point·stages.
+#include "longest_steps.hpp"
+
 #include <apsis/config/case.hpp>
 #include <apsis/core/errors.hpp>
 #include <apsis/method/method.hpp>
-#include <apsis/run/setup.hpp>
 #include <apsis/run/simulation.hpp>
 
 #include <algorithm>
@@ -40,8 +41,9 @@ class random_bodies {
     text += "boundary = \"" + pick({"outflow", "symmetry", "diffuse"}) + "\"\n";
     for (int body = 0; body < (plane ? 2 : 1); ++body) text += table(dimensions);
     if (number(0.0, 1.0) < 0.3) text += "[force]\nacceleration = [\"0.5*y\", \"-0.4*cos(3*t)\"]\n";
-    return text + fmt::format("[velocity]\nmax = 6\npoints = {}\n[time]\nmethod = \"{}\"\nend = 1e9\n",
-                              plane ? 14 : 10, method);
+    return text +
+           fmt::format("[velocity]\nmax = 6\npoints = {}\n[time]\nmethod = \"{}\"\nsafety = 1\nend = 1e9\n",
+                       plane ? 14 : 10, method);
   }
 
  private:
@@ -104,13 +106,6 @@ class random_bodies {
   std::mt19937 generator_;
 };
 
-/// Returns the CFL number of steps r Δt_FE, shorter by rounding.
-double longest_cfl(const std::string& text) {
-  const apsis::run_setup setup(apsis::parse_case(text, "random.toml", {"time.safety=1"}));
-  const double step = setup.make_problem()->forward_euler_step(0.0, setup.initial_state());
-  return (1.0 - 1e-14) * setup.ssp_coefficient() * step / setup.cfl_length();
-}
-
 /// Every other case has steps r Δt_FE, and those between them the longest that are linearly stable.
 void expect_nonnegative(int dimensions, int steps, double point_stages, unsigned seed) {
   random_bodies cases(seed);
@@ -123,8 +118,7 @@ void expect_nonnegative(int dimensions, int steps, double point_stages, unsigned
     const std::string text = cases.next(models[k % models.size()], method, dimensions);
     try {
       const bool longest = (k + k / methods.size()) % 2 == 0;
-      const std::string dt =
-          longest ? fmt::format("time.cfl={:.17g}", longest_cfl(text)) : std::string("time.safety=1");
+      const std::string dt = longest ? steps_of_positivity(text) : std::string("time.safety=1");
       apsis::simulation run(apsis::parse_case(text, "random.toml", {dt}));
       ASSERT_TRUE(run.promises().positivity) << text;
       for (int step = 0; step < steps; ++step) run.advance();

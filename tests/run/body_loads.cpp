@@ -1,20 +1,17 @@
-// Loads of bodies: sums over their pieces, coefficients, one-way fluxes, files for ParaView, restarts.
+// Loads of bodies: sums over their pieces, coefficients, history, restarts.
 #include <apsis/run/body_loads.hpp>
 
 #include "cases_in_space.hpp"
+#include "streams_past_bodies.hpp"
 #include "support/folder.hpp"
 
 #include <apsis/core/text_file.hpp>
 #include <apsis/run/manifest.hpp>
 #include <apsis/run/result_units.hpp>
 #include <apsis/run/setup.hpp>
-#include <apsis/run/simulation.hpp>
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
-#include <map>
-#include <numbers>
 #include <string>
 #include <vector>
 
@@ -25,160 +22,7 @@
 namespace body_loads_test {
 namespace {
 
-using namespace apsis;
-
-/// A gas in the plane with few velocities.
-const std::string plane_gas = R"toml(
-[model]
-name = "bgk"
-epsilon = 0.3
-degrees_of_freedom = 3
-[velocity]
-max = 7
-points = 12
-[time]
-method = "md-imex-3-2"
-end = 0.1
-safety = 1
-)toml";
-
-const std::string open_stream = plane_gas + R"toml(
-[initial]
-rho = 1.1
-u = [1.2, 0.4]
-T = 1
-[space]
-cells = [16, 16]
-domain = [[-2, 2], [-2, 2]]
-boundary = "inflow"
-[boundary.left]
-rho = 1.1
-u = [1.2, 0.4]
-T = 1
-[boundary.right]
-kind = "outflow"
-[boundary.top]
-kind = "diffuse"
-T = 1.2
-[boundary.bottom]
-kind = "symmetry"
-)toml";
-
-const std::string disc = R"toml(
-[[space.body]]
-name = "disc"
-shape = "circle"
-centre = [-0.4, 0.1]
-radius = 0.8
-T = 1.3
-velocity = ["-0.5*(y - 0.1)", "0.5*(x + 0.4)"]
-)toml";
-
-const std::string box = R"toml(
-[[space.solid]]
-name = "box"
-from = [1, 0.5]
-to = [1.5, 1]
-)toml";
-
-const std::string loads_of_stream = R"toml(
-[output]
-surfaces = "all"
-[output.reference]
-density = 1.1
-velocity = [1.2, 0.4]
-temperature = 1
-length = 1.6
-centre = [-0.4, 0.1]
-)toml";
-
-/// A stream past a disc that turns, beside a box.
-const std::string flat = open_stream + disc + box + loads_of_stream;
-
-/// The same in space.
-const std::string deep = R"toml(
-[model]
-name = "bgk"
-epsilon = 0.3
-[initial]
-rho = 1
-u = [1.2, 0, 0]
-T = 1
-[space]
-cells = [8, 7, 7]
-domain = [[-2, 2], [-1.5, 2], [-1.5, 2]]
-boundary = "outflow"
-[[space.body]]
-name = "ball"
-shape = "sphere"
-centre = [-0.2, 0.3, 0.2]
-radius = 1
-[[space.solid]]
-name = "box"
-from = [1, 0.5, 0]
-to = [1.5, 1, 0.5]
-[velocity]
-max = 5
-points = 10
-[time]
-method = "md-imex-3-2"
-end = 0.02
-safety = 1
-[output]
-surfaces = "all"
-[output.reference]
-density = 1
-velocity = [1.2, 0, 0]
-temperature = 1
-length = 2
-area = 3.14
-up = [0, 0, 1]
-centre = [-0.2, 0.3, 0.2]
-)toml";
-
-simulation finished(const std::string& text, const std::vector<std::string>& overrides = {}) {
-  simulation run(parse_case(text, "case.toml", overrides));
-  while (!run.finished()) run.advance();
-  return run;
-}
-
-/// The runs of both, made once.
-const simulation& run_of(const std::string& text) {
-  static const simulation in_plane = finished(flat), in_space = finished(deep);
-  return text == flat ? in_plane : in_space;
-}
-
-using columns = std::map<std::string, std::vector<double>>;
-
-columns columns_of(const surface_table& table) {
-  columns all;
-  for (const auto& row : table.numbers.rows)
-    for (std::size_t k = 0; k < row.size(); ++k) all[table.numbers.columns[k]].push_back(row[k]);
-  return all;
-}
-
-surface_table table_of(const simulation& run, const std::string& name) {
-  for (auto& one : run.surfaces())
-    if (one.name == name) return one;
-  ADD_FAILURE() << "no surface " << name;
-  return {};
-}
-
-double sum(const columns& of, const std::function<double(const columns&, std::size_t)>& term) {
-  double total = 0.0;
-  for (std::size_t k = 0; k < of.at("area").size(); ++k) total += of.at("area")[k] * term(of, k);
-  return total;
-}
-
-std::map<std::string, double> values_of(const body_load& body, const reference_values& stream) {
-  std::map<std::string, double> all;
-  for (const load_value& one : loads_in_stream(body, stream)) all[one.name] = one.value;
-  return all;
-}
-
-}  // namespace
-
-namespace {
+using namespace streams_past_bodies;
 
 position cross(const position& a, const position& b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
@@ -325,7 +169,7 @@ TEST(loads_of_bodies, are_in_the_history_and_the_summary_in_units_of_the_results
 
 TEST(loads_of_bodies, are_those_of_a_turned_flow) {
   // x → y, y → −x: the same numbers with turned vectors.
-  const std::string turned = plane_gas + R"toml(
+  const std::string turned = gas_tables({}) + R"toml(
 [initial]
 rho = 1
 u = [0, 1.2]
@@ -362,98 +206,6 @@ length = 2
   for (const auto& [name, value] : a) EXPECT_NEAR(value, b.at(name), 1e-11) << name;
   EXPECT_GT(std::abs(a.at("C_L")), 0.05);
   EXPECT_GT(std::abs(a.at("C_M")), 0.005);
-}
-
-TEST(one_way_fluxes, of_mass_are_equal_at_every_wall_and_their_difference_is_what_is_given) {
-  for (const std::string& text : {flat, deep}) {
-    const simulation& run = run_of(text);
-    for (const surface_table& table : run.surfaces()) {
-      const columns wall = columns_of(table);
-      const bool is_wall = table.name == "disc" || table.name == "ball" || table.name == "box" ||
-                           (text == flat && (table.name == "top" || table.name == "bottom"));
-      for (std::size_t k = 0; k < wall.at("area").size(); ++k) {
-        const double arriving = wall.at("mass_arriving")[k], leaving = wall.at("mass_leaving")[k];
-        EXPECT_GE(arriving, 0.0);
-        EXPECT_GE(leaving, 0.0);
-        EXPECT_GE(wall.at("energy_arriving")[k], 0.0);
-        EXPECT_GE(wall.at("energy_leaving")[k], 0.0);
-        if (!is_wall) continue;
-        EXPECT_GT(arriving, 0.05);
-        // Sums over some hundred velocities.
-        EXPECT_NEAR(arriving, leaving, 1e-13) << table.name;
-        if (table.name != "bottom") continue;
-        EXPECT_NEAR(wall.at("energy_arriving")[k], wall.at("energy_leaving")[k], 1e-13);
-      }
-    }
-  }
-}
-
-TEST(coefficients_of_pieces, are_the_columns_over_the_pressure_of_the_stream) {
-  const simulation& run = run_of(flat);
-  const columns wall = columns_of(table_of(run, "disc"));
-  const double q = 0.5 * 1.1 * 1.6, speed = std::sqrt(1.6);
-  for (std::size_t k = 0; k < wall.at("area").size(); ++k) {
-    EXPECT_NEAR(wall.at("C_p")[k], (wall.at("pressure")[k] - 1.1) / q, 1e-14);
-    EXPECT_NEAR(wall.at("C_f")[k], wall.at("shear_stress")[k] / q, 1e-14);
-    EXPECT_NEAR(wall.at("C_h")[k], wall.at("heat_flux")[k] / (q * speed), 1e-14);
-    EXPECT_NEAR(std::hypot(wall.at("n_x")[k], wall.at("n_y")[k]), 1.0, 1e-14);
-    // Into the gas: away from the centre of the disc, but for the chord of a cell.
-    EXPECT_GT(wall.at("n_x")[k] * (wall.at("x")[k] + 0.4) + wall.at("n_y")[k] * (wall.at("y")[k] - 0.1),
-              0.75);
-  }
-}
-
-TEST(a_body_on_edges_of_cells, has_the_loads_and_the_arc_length_of_a_solid_box) {
-  const std::string square = "name = \"disc\"\nfrom = [-1, -0.5]\nto = [0, 0.5]\n";
-  const simulation a = finished(
-                       open_stream + "[[space.body]]\nshape = \"box\"\n" + square + box + loads_of_stream,
-                       {"time.end=0.05"}),
-                   b = finished(open_stream + "[[space.solid]]\n" + square + box + loads_of_stream,
-                                {"time.end=0.05"});
-  const auto load = [](const simulation& run) {
-    for (const body_load& one : body_loads(run.setup(), run.last()))
-      if (one.name == "disc") return one;
-    return body_load{};
-  };
-  EXPECT_NEAR(load(a).force[0], load(b).force[0], 1e-12);
-  EXPECT_NEAR(load(a).torque[0], load(b).torque[0], 1e-12);
-  const columns wall = columns_of(table_of(a, "disc"));
-  ASSERT_EQ(wall.at("s").size(), 16U);
-  EXPECT_NEAR(wall.at("s").front(), 0.125, 1e-14);
-  EXPECT_NEAR(wall.at("s").back(), 3.875, 1e-14);
-  EXPECT_NEAR(wall.at("x").front(), 0.0, 1e-14);
-}
-
-TEST(tables_of_concave_bodies, follow_the_wall_from_piece_to_piece) {
-  // A slot that opens to the right, and a disc on the floor.
-  const std::string bodies = R"toml(
-[[space.body]]
-name = "slotted"
-shape = "difference"
-shapes = [{ shape = "circle", centre = [0, 0.4], radius = 1.1 }, { shape = "box", from = [-0.2, -0.1], to = [2, 0.9] }]
-[[space.body]]
-name = "mound"
-shape = "circle"
-centre = [-1.2, -2]
-radius = 0.6
-)toml";
-  const simulation run = finished(open_stream + bodies + loads_of_stream, {"time.end=0"});
-  for (const std::string name : {"slotted", "mound"}) {
-    const surface_table table = table_of(run, name);
-    const columns wall = columns_of(table);
-    for (std::size_t k = 1; k < table.corners.size(); ++k) {
-      EXPECT_EQ(table.corners[k].front(), table.corners[k - 1].back());
-      EXPECT_NEAR(wall.at("s")[k] - wall.at("s")[k - 1], 0.5 * (wall.at("area")[k] + wall.at("area")[k - 1]),
-                  1e-14);
-    }
-    // Outside of the middle on the right, upwards.
-    EXPECT_GT(wall.at("n_x").front(), 0.3);
-    EXPECT_GT(wall.at("y")[1], wall.at("y")[0]);
-  }
-  const surface_table mound = table_of(run, "mound"), slotted = table_of(run, "slotted");
-  EXPECT_EQ(mound.corners.front().front()[1], -2.0);
-  EXPECT_EQ(mound.corners.back().back()[1], -2.0);
-  EXPECT_EQ(slotted.corners.front().front(), slotted.corners.back().back());
 }
 
 TEST(loads_of_bodies, of_a_continued_run_are_those_of_an_uninterrupted_one) {

@@ -1,5 +1,5 @@
 // Torques on bodies in a gas at rest.
-#include "cases_in_space.hpp"
+#include "gas_tables.hpp"
 
 #include <apsis/run/body_loads.hpp>
 #include <apsis/run/simulation.hpp>
@@ -14,20 +14,8 @@ namespace {
 
 using namespace apsis;
 
-const std::string gas = R"toml(
-[model]
-name = "bgk"
-epsilon = 0.3
-[velocity]
-max = 5
-points = 10
-[time]
-method = "md-imex-3-2"
-end = 0.05
-safety = 1
-[output]
-surfaces = "all"
-)toml";
+const std::string gas = gas_tables({.degrees = "", .velocity = "max = 5\npoints = 10\n", .end = "0.05"}) +
+                        "[output]\nsurfaces = \"all\"\n";
 
 const std::string plane = gas + R"toml(
 [initial]
@@ -61,8 +49,7 @@ TEST(torques, of_a_gas_at_rest_vanish) {
         space + "[[space.body]]\nshape = 'sphere'\ncentre = [0.3, -0.2, 0.1]\nradius = 1.1\n",
         space + "[[space.body]]\nshape = 'box'\nfrom = [-0.8, -0.7, -0.9]\nto = [0.9, 0.8, 1.1]\nrotate = "
                 "[1, 2, -1, 25]\n"}) {
-    simulation run(parse_case(text, "case.toml", {}));
-    while (!run.finished()) run.advance();
+    const simulation run = finished(text);
     const body_load load = body_loads(run.setup(), run.last()).front();
     // Sums of some hundred terms of the size of the pressure times the area of a cell.
     constexpr double rounding = 1e-13;

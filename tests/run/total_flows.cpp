@@ -1,4 +1,6 @@
 // Runs with a given total mass flow through a side of the domain or a solid box.
+#include "gas_tables.hpp"
+
 #include <apsis/config/case.hpp>
 #include <apsis/core/errors.hpp>
 #include <apsis/run/setup.hpp>
@@ -21,31 +23,9 @@ using namespace apsis;
 using testing::HasSubstr;
 
 /// A gas in a box with the keys of [space] after its cells; `velocity`: those of [velocity].
-std::string gas_in(const std::string& space, const std::string& velocity = "max = 6\npoints = 12\n",
-                   const std::string& more = "") {
-  return fmt::format(R"toml(
-[model]
-name = "bgk"
-degrees_of_freedom = 3
-epsilon = 0.1
-[initial]
-rho = 1
-T = 1
-[velocity]
-{}{}
-[time]
-method = "md-imex-5-2"
-safety = 1
-end = 0.02
-[space]
-{})toml",
-                     velocity, more, space);
-}
-
-simulation run_of(const std::string& text, const std::vector<std::string>& more = {}) {
-  simulation run(parse_case(text, "total.toml", more));
-  while (!run.finished()) run.advance();
-  return run;
+std::string gas_in(const std::string& space, const std::string& velocity = "max = 6\npoints = 12\n") {
+  return gas_tables({.epsilon = "0.1", .velocity = velocity, .method = "md-imex-5-2", .end = "0.02"}) +
+         "[initial]\nrho = 1\nT = 1\n[space]\n" + space;
 }
 
 /// The mass per unit of time through a side or solid box in the last step.
@@ -62,7 +42,7 @@ std::string with_flow(const std::string& side, const std::string& flow) {
 
 std::string refusal(const std::string& text, const std::vector<std::string>& more = {}) {
   try {
-    simulation run(parse_case(text, "total.toml", more));
+    simulation run(parse_case(text, "case.toml", more));
   } catch (const input_error& problem) {
     return problem.what();
   }
@@ -78,8 +58,8 @@ constexpr double rounding = 1e-13;
 
 TEST(total_flow, on_a_line_is_the_flux) {
   const std::string line = gas_in("cells = 12\nboundary = \"symmetry\"\n");
-  const auto total = run_of(line + with_flow("left", "0.2")),
-             flux = run_of(line + "[boundary.left]\nkind = \"mass-flow\"\nflux = 0.2\n");
+  const auto total = finished(line + with_flow("left", "0.2")),
+             flux = finished(line + "[boundary.left]\nkind = \"mass-flow\"\nflux = 0.2\n");
   EXPECT_EQ(total.state(), flux.state());
   EXPECT_NEAR(flow_through(total, "left"), 0.2, rounding);
 }
@@ -90,8 +70,8 @@ TEST(total_flow, in_the_plane_crosses_what_boxes_and_bodies_leave_open) {
   for (const std::string limiter : {"none", "positivity"})
     for (const std::string& obstacle : {std::string(), box, disc}) {
       const auto run =
-          run_of(gas_in(space) + with_flow("left", "0.15") + with_flow("right", "-0.11") + obstacle,
-                 {"space.limiter=" + limiter});
+          finished(gas_in(space) + with_flow("left", "0.15") + with_flow("right", "-0.11") + obstacle,
+                   {"space.limiter=" + limiter});
       EXPECT_NEAR(flow_through(run, "left"), 0.15, rounding) << limiter << obstacle;
       EXPECT_NEAR(flow_through(run, "right"), -0.11, rounding) << limiter << obstacle;
       EXPECT_LT(run.summary().conservation_defect, 1e-12);
@@ -101,8 +81,8 @@ TEST(total_flow, in_the_plane_crosses_what_boxes_and_bodies_leave_open) {
 TEST(total_flow, is_uniform_over_the_open_area) {
   // The disc covers 0.5 of 1.1, up to its polygon: chords of the cut cells deviate by h²/8R = 0.005 at most.
   const std::string space = "cells = [20, 22]\ndomain = [[0, 1], [0, 1.1]]\nboundary = \"symmetry\"\n" + disc;
-  const auto total = run_of(gas_in(space + with_flow("left", "0.12"))),
-             flux = run_of(gas_in(space + "[boundary.left]\nkind = \"mass-flow\"\nflux = 0.2\n"));
+  const auto total = finished(gas_in(space + with_flow("left", "0.12"))),
+             flux = finished(gas_in(space + "[boundary.left]\nkind = \"mass-flow\"\nflux = 0.2\n"));
   EXPECT_NEAR(flow_through(total, "left") / flow_through(flux, "left"), 0.12 / (0.2 * 0.6), 0.02);
 }
 
@@ -110,8 +90,8 @@ TEST(total_flow, of_a_solid_box_leaves_through_all_its_faces) {
   const std::string jet =
       "[[space.solid]]\nname = \"jet\"\nfrom = [0.4, 0]\nto = [0.6, 0.3]\nkind = \"mass-flow\"\n";
   const std::string space = "cells = [10, 8]\ndomain = [[0, 1], [0, 0.8]]\nboundary = \"outflow\"\n";
-  const auto total = run_of(gas_in(space) + jet + "total_flow = 0.24\n"),
-             flux = run_of(gas_in(space) + jet + "flux = 0.3\n");  // through 0.3 + 0.3 + 0.2
+  const auto total = finished(gas_in(space) + jet + "total_flow = 0.24\n"),
+             flux = finished(gas_in(space) + jet + "flux = 0.3\n");  // through 0.3 + 0.3 + 0.2
   EXPECT_NEAR(flow_through(total, "jet"), 0.24, rounding);
   EXPECT_NEAR(flow_through(flux, "jet"), 0.24, rounding);
 }
@@ -121,8 +101,8 @@ TEST(total_flow, in_space_crosses_an_area) {
                         "cells = [6, 7, 14]\ndomain = [[0, 0.6], [0, 1], [0, 2]]\nboundary = \"symmetry\"\n",
                     ball = "[[space.body]]\nshape = \"sphere\"\ncentre = [0, 0.4, 1]\nradius = 0.35\nT = 1\n";
   for (const std::string& body : {std::string(), ball}) {
-    const auto run = run_of(gas_in(space, "max = 5\npoints = 8\n") + with_flow("left", "\"0.3 + t\"") + body,
-                            {"time.end=0.01"});
+    const auto run = finished(
+        gas_in(space, "max = 5\npoints = 8\n") + with_flow("left", "\"0.3 + t\"") + body, {"time.end=0.01"});
     // The mean over a step of a formula that is linear in t.
     EXPECT_NEAR(flow_through(run, "left"), 0.3 + run.last().t - 0.5 * run.last().dt, rounding) << body;
   }
@@ -133,41 +113,40 @@ TEST(total_flow, about_an_axis_crosses_rings) {
                     sides = "geometry = \"axisymmetric\"\nboundary = \"diffuse\"\n";
   const std::string ball = "[[space.body]]\nshape = \"circle\"\ncentre = [0, 0]\nradius = 0.45\nT = 1\n";
   for (const std::string& body : {std::string(), ball}) {
-    const auto run = run_of(gas_in(sides + "cells = [10, 8]\ndomain = [[0, 1.5], [0, 1]]\n", velocity) +
-                            with_flow("left", "0.5") + with_flow("top", "-0.7") + body);
+    const auto run = finished(gas_in(sides + "cells = [10, 8]\ndomain = [[0, 1.5], [0, 1]]\n", velocity) +
+                              with_flow("left", "0.5") + with_flow("top", "-0.7") + body);
     EXPECT_NEAR(flow_through(run, "left"), 0.5, rounding) << body;
     EXPECT_NEAR(flow_through(run, "top"), -0.7, rounding) << body;
   }
   // Per length along the axis, through the circumference 2πr of both cylinders.
   const auto line =
-      run_of(gas_in(sides + "cells = 8\ndomain = [0.5, 1.5]\n", velocity) + with_flow("left", "0.4") +
-             "[boundary.right]\nkind = \"mass-flow\"\nflux = -0.05\n");
+      finished(gas_in(sides + "cells = 8\ndomain = [0.5, 1.5]\n", velocity) + with_flow("left", "0.4") +
+               "[boundary.right]\nkind = \"mass-flow\"\nflux = -0.05\n");
   EXPECT_NEAR(flow_through(line, "left"), 0.4, rounding);
   EXPECT_NEAR(flow_through(line, "right"), -0.05 * 2.0 * std::numbers::pi * 1.5, rounding);
 }
 
 TEST(total_flow, that_is_steady_settles) {
   const auto run =
-      run_of(gas_in("cells = [6, 5]\ndomain = [[0, 1], [0, 0.5]]\nboundary = \"symmetry\"\n") +
-                 with_flow("left", "0.05") + "[boundary.right]\nkind = \"pressure\"\np = 1\n[steady]\n",
-             {});
+      finished(gas_in("cells = [6, 5]\ndomain = [[0, 1], [0, 0.5]]\nboundary = \"symmetry\"\n") +
+                   with_flow("left", "0.05") + "[boundary.right]\nkind = \"pressure\"\np = 1\n[steady]\n",
+               {});
   EXPECT_NEAR(flow_through(run, "left"), 0.05, 1e-8);
   EXPECT_NEAR(flow_through(run, "right"), -0.05, 1e-6);
 }
 
 TEST(total_flow, has_units_of_its_dimension) {
   const std::string gas =
-      "[gas]\nname = \"argon\"\nlength = \"1 mm\"\ntemperature = \"300 K\"\npressure = \"100 Pa\"\n";
+      "[gas]\nname = \"argon\"\nlength = \"1 mm\"\ntemperature = \"300 K\"\npressure = \"100 Pa\"\n" +
+      gas_tables({.epsilon = "", .velocity = "max = 6\npoints = 8\n", .method = "md-imex-5-2"}) +
+      "[initial]\nrho = 1\nT = 1\n[space]\nboundary = \"symmetry\"\n";
   const auto flow_of = [&](const std::string& cells, const std::string& unit) {
-    std::string text =
-        gas_in(fmt::format("cells = {}\nboundary = \"symmetry\"\n", cells), "max = 6\npoints = 8\n", gas) +
-        with_flow("left", "\"0.01 " + unit + "\"");
-    return text.erase(text.find("epsilon = 0.1\n"), 14);  // [gas] gives it
+    return gas + fmt::format("cells = {}\n", cells) + with_flow("left", "\"0.01 " + unit + "\"");
   };
   for (const auto& [cells, unit, length] :
        {std::tuple("8", "kg/(m^2 s)", 0), std::tuple("[6, 5]", "kg/(m s)", 1),
         std::tuple("[5, 5, 5]", "kg/s", 2)}) {
-    const case_config config = parse_case(flow_of(cells, unit), "total.toml");
+    const case_config config = parse_case(flow_of(cells, unit), "case.toml");
     dimension dims = dimensions::mass_flux;
     for (int k = 0; k < length; ++k) dims = dims * dimensions::length;
     EXPECT_NEAR(std::stod(config.faces[0].values.at("total_flow").front()) * config.scales->unit(dims), 0.01,

@@ -1,4 +1,6 @@
 // The mean temperatures of walls that find them, in records, history and results.
+#include "gas_tables.hpp"
+
 #include <apsis/config/case.hpp>
 #include <apsis/run/found_walls.hpp>
 #include <apsis/run/manifest.hpp>
@@ -11,7 +13,6 @@
 #include <string>
 #include <vector>
 
-#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -23,25 +24,9 @@ using namespace apsis;
 using testing::ElementsAre;
 
 std::string gas_in(const std::string& space, const std::string& velocity = "max = 6.5\npoints = 12\n") {
-  return fmt::format(R"toml(
-[model]
-name = "bgk"
-degrees_of_freedom = 3
-epsilon = 0.2
-[initial]
-rho = "1 + 0.2*x"
-T = "1 + 0.3*x*y"
-[velocity]
-{}
-[time]
-method = "md-imex-5-2"
-safety = 1
-end = 0.03
-[output]
-surfaces = ["all"]
-[space]
-{})toml",
-                     velocity, space);
+  return gas_tables({.epsilon = "0.2", .velocity = velocity, .method = "md-imex-5-2", .end = "0.03"}) +
+         "[initial]\nrho = \"1 + 0.2*x\"\nT = \"1 + 0.3*x*y\"\n[output]\nsurfaces = [\"all\"]\n[space]\n" +
+         space;
 }
 
 const std::string plane = gas_in(R"toml(

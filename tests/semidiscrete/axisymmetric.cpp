@@ -1,4 +1,4 @@
-// Axisymmetric flow without collisions: uniform gas, conservation, positivity, order and the way through the
+// Axisymmetric flow without collisions: uniform gas past a body, conservation, positivity, order and the way through the
 // axis.
 #include "blocks.hpp"
 #include "polar_gas.hpp"
@@ -49,27 +49,6 @@ field advanced(const polar_flow& flow, field u, double dt, int steps) {
 }
 
 }  // namespace
-
-TEST(axisymmetric, uniform_gas_stays_uniform_to_rounding) {
-  // F = r f with the f that walls emit. Speeds of 1.7/Δr and of rotation, 1.3 · 16/(2π r), times values up to
-  // 1 give terms of some tens; limited fluxes have margins of 1e-13 of them.
-  for (const int dimensions : {1, 2})
-    for (const std::string scheme : {"upwind5", "weno5-z"})
-      for (const bool limited : {false, true})
-        for (const std::string outer : {"diffuse", "inflow", "outflow"})
-          for (const std::string ends : {"periodic", "diffuse", "symmetry", "inflow", "outflow"})
-            for (const double inner : {0.0, 0.3}) {
-              if (dimensions == 1 && ends != "periodic") continue;
-              const polar_flow flow = make({.dimensions = dimensions,
-                                            .inner = inner,
-                                            .scheme = scheme,
-                                            .limited = limited,
-                                            .outer = outer,
-                                            .ends = ends});
-              EXPECT_LT(largest(flow.step(flow.at_rest(), 0.0, 1.0)), limited ? 1e-11 : 1e-13)
-                  << dimensions << scheme << limited << outer << ends << inner;
-            }
-}
 
 TEST(axisymmetric, uniform_gas_stays_uniform_past_a_body_and_a_box_on_the_axis) {
   for (const bool limited : {false, true})

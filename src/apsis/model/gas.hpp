@@ -31,6 +31,7 @@ class gas {
   int degrees_of_freedom() const { return degrees_; }             ///< D
   bool reduced() const { return degrees_ > grid_.dimensions(); }  ///< whether rows are (g, h)
   int moment_count() const { return grid_.dimensions() + 2; }     ///< length of ω
+  equilibrium_choice choice() const { return choice_; }           ///< which equilibria are formulas
 
   /// ω ← the moments of rows, `pitch` numbers apart.
   void moments(const double* row, std::ptrdiff_t pitch, int rows, double* omega) const;

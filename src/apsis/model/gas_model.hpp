@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -31,6 +32,11 @@ class gas_model : public relaxation_model {
 
   const gas_model* as_gas() const final { return this; }
   const gas& molecules() const { return gas_; }  ///< the rows of the gas
+  /// Returns p of C = Pr ρ T^p by viscosity; nothing where C = 1.
+  std::optional<double> rate_exponent() const {
+    return by_viscosity_ ? std::optional<double>(exponent_) : std::nullopt;
+  }
+  double prandtl() const { return prandtl_; }  ///< Pr of C
   int components() const override { return gas_.velocities().components(); }
   int space_dimensions() const override { return space_dimensions_; }
   const velocity_set& velocities() const override { return gas_.velocities(); }

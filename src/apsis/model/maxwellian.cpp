@@ -1,6 +1,7 @@
 #include <apsis/model/maxwellian.hpp>
 
 #include <apsis/core/errors.hpp>
+#include <apsis/model/formulas/velocity_line.hpp>
 #include <apsis/model/grid_sums.hpp>
 #include <apsis/model/polar_maxwellian.hpp>
 #include <apsis/model/tensor_product.hpp>
@@ -135,10 +136,9 @@ int formula_maxwellians_on_line(const velocity_grid& grid, const double* omega, 
   // No early exit, so that the compiler can vectorize the divisions and roots.
 #pragma omp simd
   for (int p = 0; p < rows; ++p) {
-    const double rho = omega[3 * p], u = omega[3 * p + 1] / rho;
-    const double T = 2.0 * omega[3 * p + 2] / rho - u * u;
-    states[p] = {rho, u, T};
-    curves[static_cast<std::size_t>(p)] = {rho * (1.0 / std::sqrt(2.0 * std::numbers::pi * T)), u, T};
+    const auto of = scalar::state_of_line::of(omega[3 * p], omega[3 * p + 1], omega[3 * p + 2]);
+    states[p] = {of.rho, of.u, of.T};
+    curves[static_cast<std::size_t>(p)] = {of.height(), of.u, of.T};
   }
   int admissible = 0;
   while (admissible < rows && states[admissible].admissible()) ++admissible;
@@ -149,12 +149,8 @@ int formula_maxwellians_on_line(const velocity_grid& grid, const double* omega, 
 namespace {
 
 bool has_exact_moments(const velocity_line& line, const line_state& state) {
-  constexpr double dense = 1e-250;  // values below 1e-300, which are set to 0, are below its rounding
-  constexpr double enough = 40.0;   // 100 e^−40 is below the rounding of a sum
-  constexpr double spacings = enough / (2.0 * std::numbers::pi * std::numbers::pi);
-  const double room = line.max() - std::abs(state.u);
-  return line.uniform() && state.rho >= dense && state.T >= spacings * line.spacing() * line.spacing() &&
-         room > 0.0 && room * room >= 2.0 * enough * state.T;
+  return line.uniform() &&
+         scalar::gaussian_has_exact_moments(line.spacing(), line.max(), {state.rho, state.u, state.T});
 }
 
 }  // namespace

@@ -54,33 +54,43 @@ double* face_fluxes::recorded(int surface, int place) {
   return at(surface).values.row(place);
 }
 
-void face_fluxes::complete(int surface, int place, double t, std::span<const target<field, double>> targets) {
+const double* face_fluxes::enter(int surface, int place, double t) {
+  if (!prescribes(surface, place)) return nullptr;
   side& here = at(surface);
-  const grid& mesh = space_->mesh();
   const face where = space_->surfaces()[index(surface)].where;
-  double* values = here.values.row(place);
+  double *values = here.values.row(place), *incoming = here.incoming.row(place);
   const int width = equation_.components();
-  if (prescribes(surface, place)) {
-    face_rows::keep_leaving(here.inward.data(), width, values);
-    double* incoming = here.incoming.row(place);
-    space_->side(surface)->incoming_given_outgoing(where, t, space_->meeting_point(surface, place), values,
-                                                   space_->ghost_rows(surface, place), incoming);
-    const int cell = space_->cell_at(surface, place);
-    face_rows::take_entering(here.inward.data(), incoming, width, values);
-    for (const auto& to : targets)
-      face_rows::add_entering(here.inward.data(), values, to.beta, mesh.spacing(where.direction), width,
-                              to.acc->row(cell));
-  }
+  face_rows::keep_leaving(here.inward.data(), width, values);
+  space_->side(surface)->incoming_given_outgoing(where, t, space_->meeting_point(surface, place), values,
+                                                 space_->ghost_rows(surface, place), incoming);
+  face_rows::take_entering(here.inward.data(), incoming, width, values);
+  return values;
+}
+
+void face_fluxes::account(int surface, int place) {
+  side& here = at(surface);
+  double* values = here.values.row(place);
   if (observes_) {
     continue_along(surface, place);
     observe_end(here.first + index(place), here.inward, values);
   }
   // The row becomes that of the fluxes; invariants are linear functions of a row.
-  face_rows::multiply(here.inward.data(), width, values);
+  face_rows::multiply(here.inward.data(), equation_.components(), values);
   double* received = rates_.data() + (here.first + index(place)) * invariants_;
   equation_.invariant_densities(values, received);
-  const double area = mesh.measure() * mesh.face_area(where);
+  const grid& mesh = space_->mesh();
+  const double area = mesh.measure() * mesh.face_area(space_->surfaces()[index(surface)].where);
   for (std::size_t k = 0; k < invariants_; ++k) received[k] *= area;
+}
+
+void face_fluxes::complete(int surface, int place, double t, std::span<const target<field, double>> targets) {
+  if (const double* values = enter(surface, place, t); values != nullptr) {
+    const int cell = space_->cell_at(surface, place), width = equation_.components();
+    const double spacing = space_->mesh().spacing(space_->surfaces()[index(surface)].where.direction);
+    for (const auto& to : targets)
+      face_rows::add_entering(inward(surface).data(), values, to.beta, spacing, width, to.acc->row(cell));
+  }
+  account(surface, place);
 }
 
 /// Components along a face have no flux through it: beyond a face that prescribes the others they are

@@ -30,6 +30,15 @@ class face_fluxes {
   /// Completes an end of a segment whose components are all recorded: incoming fluxes are added to the
   /// targets. Concurrent calls must differ in the cell at the end.
   void complete(int surface, int place, double t, std::span<const target<field, double>> targets);
+  /// The first part of complete(): returns the upwind values with those that enter, of a boundary that
+  /// prescribes them; null for other boundaries. Concurrent calls must differ in the end.
+  const double* enter(int surface, int place, double t);
+  /// The last part: the rates of an end.
+  void account(int surface, int place);
+  /// Returns v·n of every component at a surface, n into the gas.
+  std::span<const double> inward(int surface) const {
+    return sides_[static_cast<std::size_t>(surface)].inward;
+  }
 
   /// Takes the values at an open face of a cut cell at a face of the domain, or at a wall segment, by its
   /// number in cut_cells; without effect in cells of other processes. `inward`: v·n of every component, n

@@ -86,6 +86,12 @@ problem_builder& problem_builder::with_reconstruction(std::shared_ptr<const reco
 
 problem_builder& problem_builder::with_discretization(const std::string& name) {
   discretization_ = &find_discretization(name);
+  own_discretization_ = nullptr;
+  return *this;
+}
+
+problem_builder& problem_builder::with_discretization(std::shared_ptr<const discretization> of_space) {
+  own_discretization_ = std::move(of_space);
   return *this;
 }
 
@@ -153,6 +159,7 @@ problem_builder& problem_builder::with_axis(int radial) {
 }
 
 const discretization& problem_builder::of_space() const {
+  if (has_space() && own_discretization_) return *own_discretization_;
   const bool chosen = has_space() && discretization_ != nullptr;
   return (chosen ? *discretization_ : default_discretization(equation_->space_dimensions())).instance();
 }

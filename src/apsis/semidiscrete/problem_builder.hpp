@@ -54,6 +54,8 @@ class problem_builder {
   /// Sets the discretization of space. Throws input_error with the nearest name for an unknown
   /// one.
   problem_builder& with_discretization(const std::string& name);
+  /// Sets a discretization of space that has no entry in the registry.
+  problem_builder& with_discretization(std::shared_ptr<const discretization> of_space);
   /// Keeps nonnegative data nonnegative for steps up to r Δt_FE. Throws input_error if the unknowns of the
   /// model may be negative.
   problem_builder& with_positivity_limiter();
@@ -152,8 +154,9 @@ class problem_builder {
   std::vector<domain::faces> sides_;
   std::vector<std::shared_ptr<const boundary>> solids_;
   std::shared_ptr<const reconstruction> scheme_;
-  const discretization_entry* discretization_ = nullptr;  ///< null: the default
-  std::string collisions_;                                ///< "": the default
+  const discretization_entry* discretization_ = nullptr;      ///< null: the default
+  std::shared_ptr<const discretization> own_discretization_;  ///< null: that of the entry
+  std::string collisions_;                                    ///< "": the default
   bool limited_ = false, explicit_collision_ = false, smooth_collisions_ = false;
   stage_solution stages_ = stage_solution::implicit;
   scale epsilon_;

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <algorithm>
-
 namespace apsis {
 
 /// Weights of the convex combination v = of_u·u + of_e·E that solves v = u + a Q(v) + b Q̇(v) for a
@@ -25,7 +23,7 @@ constexpr relaxation_weights<Real> relax_weights(Real a, Real b, Real rate, Real
   const Real second = b == Real(0) ? Real(0) : -b * k * k;
   const Real mu = first + second;
   // Dividing for the smaller weight and subtracting it from 1 for the larger avoids cancellation in both.
-  const Real smaller = std::min(mu, Real(1)) / (Real(1) + mu);
+  const Real smaller = (Real(1) < mu ? Real(1) : mu) / (Real(1) + mu);
   const Real larger = Real(1) - smaller;
   return mu <= Real(1) ? relaxation_weights<Real>{larger, smaller}
                        : relaxation_weights<Real>{smaller, larger};

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <apsis/device/device.hpp>
+#include <apsis/device/internal/device_array.hpp>
+#include <apsis/model/gas_model.hpp>
+#include <apsis/semidiscrete/collision.hpp>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace apsis {
+
+/// make_pointwise_collision() on a device, with the same bits: stages of the BGK model whose velocities are
+/// an even line. Cells whose equilibrium is not a formula are solved on the host, row by row.
+///
+/// Its states live in the memory of the device.
+class device_collision final : public collision {
+ public:
+  /// `on` and `equation` must outlive the operator. Arguments as of make_pointwise_collision(). Throws
+  /// input_error where why_not() has a reason.
+  device_collision(device& on, const model& equation, std::vector<double> epsilon, bool keeps_sign,
+                   std::vector<cell_range> cells, stage_solution stages);
+
+  /// Returns why collisions cannot run on a device, as a clause; "" if they can.
+  static std::string why_not(const model& equation, stage_solution stages);
+
+  void solve(double t, double a, double b, field& u) override;
+  /// On the host, with copies of the states.
+  void add_collision(double t, const field& u, std::span<const target<field, double>> targets) override;
+  /// On the host, with a copy of the state.
+  double forward_euler_step(const field& u) const override;
+  /// On the host, with a copy of the state.
+  double relaxation_time(const field& u) const override;
+  double take_cut() override { return host_->take_cut(); }
+
+ private:
+  void solve_rest(double a, double b, const cell_range& cells, field& u);
+
+  device& device_;
+  const gas_model& gas_;
+  std::vector<double> epsilon_;
+  std::vector<cell_range> cells_;
+  std::unique_ptr<collision> host_;
+  std::unique_ptr<point_collision> rest_;
+  device_array<double> v_, half_square_, epsilon_on_device_;
+  stored_numbers marks_;
+  std::vector<double> marks_on_host_;
+};
+
+}  // namespace apsis

@@ -1,0 +1,138 @@
+#include <apsis/device/internal/device_transport.hpp>
+
+#include <apsis/core/errors.hpp>
+#include <apsis/device/internal/kernel_table.hpp>
+#include <apsis/device/internal/row_launch.hpp>
+#include <apsis/device/kernels/combine.hpp>
+#include <apsis/mesh/grid.hpp>
+
+#include <algorithm>
+#include <utility>
+
+namespace apsis {
+namespace {
+
+using targets_view = std::span<const target<field, double>>;
+
+/// acc ← (fresh ? 0 : acc) + Σ α u in the cells of the gas.
+void add_terms(device& on, const grid& mesh, std::span<const linear_term<field, double>> terms, bool fresh,
+               field& sum) {
+  std::vector<cell_range> cells = mesh.fluid();
+  if (cells.empty()) cells.push_back({0, sum.cells()});
+  constexpr auto most = static_cast<std::size_t>(kernels::combine::most);
+  for (std::size_t first = 0; first < terms.size(); first += most)
+    for (const auto& [begin, end] : cells) {
+      const auto some = terms.subspan(first, std::min(most, terms.size() - first));
+      const long numbers = static_cast<long>(end - begin) * sum.stride();
+      kernels::combine::arguments of{
+          sum.row(begin), numbers, static_cast<int>(some.size()), fresh && first == 0 ? 1 : 0, {}, {}};
+      for (std::size_t k = 0; k < some.size(); ++k) {
+        of.alpha[k] = some[k].alpha;
+        of.u[k] = some[k].u->row(begin);
+      }
+      on.launch<kernels::combine>(launch_for(static_cast<std::size_t>(numbers)), of);
+    }
+}
+
+}  // namespace
+
+std::string kernel_of_reconstruction(const std::string& name) {
+  std::string kernel = "sweep_" + name;
+  std::replace(kernel.begin(), kernel.end(), '-', '_');
+  for (const host_kernel& one : host_kernels())
+    if (one.name == kernel) return kernel;
+  throw input_error("the reconstruction \"" + name +
+                    "\" is not possible on a device (its kernel is missing); use another one, or the host");
+}
+
+std::string device_transport::why_not(const model& equation, const domain& space,
+                                      const limited_reconstruction& edges) {
+  if (equation.space_dimensions() == 0) return "the model has no space";
+  if (equation.has_source()) return "the model has a source";
+  if (edges.limits_edges()) return "edge values are limited";
+  if (space.shared()) return "several processes share the mesh";
+  if (space.mesh().cut() != nullptr) return "the mesh has bodies";
+  return "";
+}
+
+device_transport::device_transport(device& on, const model& equation, std::shared_ptr<domain> space,
+                                   limited_reconstruction edges, const cell_unknown& unknown,
+                                   std::string kernel)
+    : device_(on),
+      equation_(equation),
+      space_(std::move(space)),
+      edges_(std::move(edges)),
+      kernel_(std::move(kernel)),
+      host_(equation, space_, edges_, unknown),
+      surfaces_(on, equation, space_, edges_.ghosts()),
+      speeds_(line_speeds::of(equation, space_->mesh())) {
+  if (const std::string reason = why_not(equation, *space_, edges_); !reason.empty())
+    throw input_error("the run is not possible on a device (" + reason + "); run it on the host");
+  for (int direction = 0; direction < space_->mesh().dimensions(); ++direction)
+    along_.emplace_back(device_, *space_, surfaces_, direction, edges_.halo(), edges_.ghosts());
+  limit_for_steps(1.0);
+}
+
+void device_transport::limit_for_steps(double share) {
+  host_.limit_for_steps(share);
+  line_speeds::limit_for_steps(speeds_, share, 0.0, edges_.kappa());
+  for (std::size_t k = 0; k < along_.size(); ++k) along_[k].set_speeds(speeds_[k]);
+}
+
+bool device_transport::add_transport(double t, const field& u, targets_view targets, const cells_job&) const {
+  if (std::all_of(targets.begin(), targets.end(), [](const auto& to) { return to.beta == 0.0; })) {
+    for (const auto& to : targets) {
+      const linear_term<field, double> term{to.alpha, &u};
+      add_terms(device_, space_->mesh(), {&term, 1}, to.fresh, *to.acc);
+    }
+    return false;
+  }
+  surfaces_.fill(t, u);
+  for (int direction = 0; direction < space_->mesh().dimensions(); ++direction) sweep(direction, u, targets);
+  surfaces_.complete(t, targets);
+  return false;
+}
+
+void device_transport::sweep(int direction, const field& u, targets_view targets) const {
+  constexpr auto most = static_cast<std::size_t>(kernels::sweep_arguments::most_targets);
+  for (std::size_t first = 0; first < targets.size(); first += most) {
+    const auto some = targets.subspan(first, std::min(most, targets.size() - first));
+    kernels::sweep_arguments of{};
+    of.u = u.row(0);
+    of.sent = surfaces_.sent();
+    of.at_ends = surfaces_.at_ends();
+    of.stride = u.stride();
+    of.limited = edges_.limits_fluxes() ? 1 : 0;
+    of.targets = static_cast<int>(some.size());
+    for (std::size_t k = 0; k < some.size(); ++k)
+      of.target[k] = {some[k].acc->row(0), direction == 0 ? some[k].alpha : 0.0, some[k].beta,
+                      direction == 0 && some[k].fresh ? 1 : 0};
+    along_[static_cast<std::size_t>(direction)].sweep(kernel_, of);
+  }
+}
+
+void device_transport::combine(std::span<const linear_term<field, double>> terms, field& sum) const {
+  if (terms.front().u == &sum && terms.front().alpha == 1.0)
+    add_terms(device_, space_->mesh(), terms.subspan(1), false, sum);
+  else
+    add_terms(device_, space_->mesh(), terms, true, sum);
+}
+
+std::vector<double> device_transport::observe_surfaces(double t, const field& u) const {
+  field on_host(u.cells(), u.components());
+  on_host.copy_rows(u);
+  return host_.observe_surfaces(t, on_host);
+}
+
+void device_transport::set_force(acceleration) {
+  throw input_error("a force is not possible on a device (its kernel is missing); run the case on the host");
+}
+void device_transport::set_rotation(int) {
+  throw input_error(
+      "axisymmetric flow is not possible on a device (its kernel is missing); run the case on the host");
+}
+void device_transport::set_source(source_rate) {
+  throw input_error("a source is not possible on a device (its kernel is missing); run the case on the host");
+}
+
+}  // namespace apsis

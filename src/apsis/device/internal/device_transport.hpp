@@ -1,0 +1,68 @@
+#pragma once
+
+#include <apsis/boundary/domain.hpp>
+#include <apsis/device/device.hpp>
+#include <apsis/device/internal/surface_rows.hpp>
+#include <apsis/device/internal/swept_segments.hpp>
+#include <apsis/semidiscrete/upwind_transport.hpp>
+
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace apsis {
+
+/// Returns the name of the kernel with the edges of a reconstruction, "sweep_weno5_z" of "weno5-z". Throws
+/// input_error if there is none.
+std::string kernel_of_reconstruction(const std::string& name);
+
+/// upwind_transport on a device, with the same bits. Boundaries are evaluated on the host, with the rows next
+/// to them.
+///
+/// Its states live in the memory of the device.
+class device_transport final : public transport {
+ public:
+  /// `on`, `equation` and `unknown` must outlive the operator. `kernel` is that of the reconstruction
+  /// (kernel_of_reconstruction()). Throws input_error where why_not() has a reason.
+  device_transport(device& on, const model& equation, std::shared_ptr<domain> space,
+                   limited_reconstruction edges, const cell_unknown& unknown, std::string kernel);
+
+  /// Returns why transport cannot run on a device, as a clause; "" if it can.
+  static std::string why_not(const model& equation, const domain& space, const limited_reconstruction& edges);
+
+  /// Not fused: `then` is not called, and false is returned.
+  bool add_transport(double t, const field& u, std::span<const target<field, double>> targets,
+                     const cells_job& then = {}) const override;
+  void combine(std::span<const linear_term<field, double>> terms, field& sum) const override;
+  std::span<const double> budget_rates() const override { return surfaces_.rates(); }
+  /// Copies the state to the host.
+  std::vector<double> observe_surfaces(double t, const field& u) const override;
+
+  /// Throws input_error: forces are not on the device.
+  void set_force(acceleration of) override;
+  /// Throws input_error: rotations are not on the device.
+  void set_rotation(int radial) override;
+  /// Throws input_error: sources are not on the device.
+  void set_source(source_rate rate) override;
+
+  double forward_euler_step() const override { return host_.forward_euler_step(); }
+  void limit_for_steps(double share) override;
+  double growth_of_source(double, const field&) const override { return 0.0; }
+  bool source_depends_on_state() const override { return false; }
+
+ private:
+  void sweep(int direction, const field& u, std::span<const target<field, double>> targets) const;
+
+  device& device_;
+  const model& equation_;
+  std::shared_ptr<domain> space_;
+  limited_reconstruction edges_;
+  std::string kernel_;
+  upwind_transport host_;  ///< step sizes, and what is rarely needed
+  mutable surface_rows surfaces_;
+  std::vector<swept_segments> along_;  ///< [direction]
+  std::vector<line_speeds> speeds_;
+};
+
+}  // namespace apsis

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <initializer_list>
+#include <memory>
+#include <string>
+
+namespace apsis {
+
+/// A shared library of a driver, opened while the program runs.
+class driver_library {
+ public:
+  /// Opens the first of several names that the system finds.
+  explicit driver_library(std::initializer_list<const char*> names);
+
+  /// Whether one was found.
+  bool found() const { return library_ != nullptr; }
+  /// Sets a pointer to a function of the library; returns whether it has one of this name.
+  template <class Function>
+  bool find(const char* name, Function*& function) const {
+    function = reinterpret_cast<Function*>(symbol(name));
+    return function != nullptr;
+  }
+
+ private:
+  void* symbol(const char* name) const;
+
+  std::shared_ptr<void> library_;
+};
+
+}  // namespace apsis

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <apsis/device/device.hpp>
+
+#include <algorithm>
+#include <cstddef>
+
+namespace apsis {
+
+/// Lanes of a block whose lanes know nothing of each other.
+inline constexpr int independent_lanes = 128;
+
+/// Returns the size of a launch in which each of so many numbers is the turn of some lane.
+inline launch_size launch_for(std::size_t numbers) {
+  constexpr std::size_t most_blocks = 1 << 16;
+  const std::size_t blocks = (numbers + independent_lanes - 1) / independent_lanes;
+  return {static_cast<int>(std::clamp<std::size_t>(blocks, 1, most_blocks)), independent_lanes, 0};
+}
+
+}  // namespace apsis

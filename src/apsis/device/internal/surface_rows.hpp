@@ -1,0 +1,77 @@
+#pragma once
+
+#include <apsis/boundary/domain.hpp>
+#include <apsis/device/device.hpp>
+#include <apsis/device/internal/device_array.hpp>
+#include <apsis/semidiscrete/face_fluxes.hpp>
+
+#include <array>
+#include <memory>
+#include <optional>
+#include <span>
+#include <unordered_map>
+#include <vector>
+
+namespace apsis {
+
+/// The surfaces of a domain whose state is on a device. Rows of cells next to surfaces come to the host,
+/// where boundaries compute ghost rows; after a sweep the upwind values at the surfaces come, and what enters
+/// goes back.
+class surface_rows {
+ public:
+  /// `ghosts`: rows beyond each end that a sweep reads.
+  surface_rows(device& on, const model& equation, std::shared_ptr<domain> space, int ghosts);
+
+  /// Returns the number of a row beyond an end of a segment, as sweeps on the device find it (row_beyond):
+  /// `distance` cells beyond, 0 the next one.
+  int row_beyond_end(int direction, int segment, bool upper, int distance) const;
+  /// Returns the number of the row that takes the upwind values at an end of a segment; −1 if it ends at no
+  /// surface.
+  int row_at_end(int direction, int segment, bool upper) const;
+  /// Returns the number of cells beyond an end that fluxes see; `halo` at most.
+  int seen_beyond(int direction, int segment, bool upper, int halo) const;
+
+  /// Computes the rows beyond all ends for a state on the device.
+  void fill(double t, const field& u);
+  /// Returns the rows beyond ends, on the device.
+  const double* sent() const { return sent_.data(); }
+  /// Returns the rows that sweeps set, on the device.
+  double* at_ends() const { return at_ends_.data(); }
+  /// Adds what enters to the targets, after all sweeps.
+  void complete(double t, std::span<const target<field, double>> targets);
+
+  /// Returns face_fluxes::rates().
+  std::span<const double> rates() const { return faces_.rates(); }
+
+ private:
+  /// Ends of segments at which components enter: those of a direction and side, no two at a cell.
+  struct entries {
+    double spacing = 1.0;
+    std::vector<std::array<int, 3>> ends;  ///< as kernels::enter has them
+    device_array<std::array<int, 3>> on_device;
+  };
+
+  void number_sent_rows();
+  void list_inside_rows();
+  void list_entries();
+  void send(const std::vector<double>& from, const field& to) const;
+
+  device& device_;
+  const model& equation_;
+  std::shared_ptr<domain> space_;
+  int ghosts_;
+  face_fluxes faces_;
+  field mirror_;             ///< the rows next to surfaces, of all cells on the host
+  std::vector<int> inside_;  ///< cells whose rows boundaries read
+  device_array<int> inside_on_device_;
+  std::unordered_map<const double*, int> sent_numbers_;
+  std::vector<const double*> sent_from_;  ///< rows beyond ends on the host
+  std::vector<int> first_at_surface_;     ///< of the rows at the ends of each surface
+  int ends_ = 0;
+  std::vector<entries> entries_;
+  std::vector<double> staged_;
+  std::size_t stride_;
+  mutable stored_numbers gathered_, sent_, at_ends_, entering_, inward_;
+};
+
+}  // namespace apsis

@@ -1,0 +1,14 @@
+#pragma once
+
+#include <apsis/device/sweep.hpp>
+#include <apsis/device/weno_edge.hpp>
+#include <apsis/scheme/formulas/teno5.hpp>
+
+namespace apsis::kernels {
+
+/// Sweep with the edges of teno5.
+struct sweep_teno5 : sweep<weno_edge<scalar::weights_teno>> {
+  static constexpr const char* name = "sweep_teno5";  ///< of the kernel
+};
+
+}  // namespace apsis::kernels

@@ -1,0 +1,14 @@
+#pragma once
+
+#include <apsis/device/sweep.hpp>
+#include <apsis/device/weno_edge.hpp>
+#include <apsis/scheme/formulas/weno5_js.hpp>
+
+namespace apsis::kernels {
+
+/// Sweep with the edges of weno5-js.
+struct sweep_weno5_js : sweep<weno_edge<scalar::weights_js>> {
+  static constexpr const char* name = "sweep_weno5_js";  ///< of the kernel
+};
+
+}  // namespace apsis::kernels

@@ -1,0 +1,14 @@
+#pragma once
+
+#include <apsis/device/sweep.hpp>
+#include <apsis/device/weno_edge.hpp>
+#include <apsis/scheme/formulas/weno5_z.hpp>
+
+namespace apsis::kernels {
+
+/// Sweep with the edges of weno5-z.
+struct sweep_weno5_z : sweep<weno_edge<scalar::weights_z>> {
+  static constexpr const char* name = "sweep_weno5_z";  ///< of the kernel
+};
+
+}  // namespace apsis::kernels

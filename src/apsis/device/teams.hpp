@@ -1,0 +1,14 @@
+#pragma once
+
+#include <apsis/device/device.hpp>
+#include <apsis/device/lane_team.hpp>
+
+#include <memory>
+
+namespace apsis {
+
+/// Returns a device whose kernels run on the host, lane by lane, for tests. Its memory is apart from that of
+/// the host, and NaN at first.
+std::unique_ptr<device> make_team_device(lane_order order);
+
+}  // namespace apsis

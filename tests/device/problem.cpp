@@ -1,0 +1,88 @@
+#include "device_case.hpp"
+
+#include <apsis/core/errors.hpp>
+#include <apsis/device/on_device.hpp>
+#include <apsis/integrate/any_stepper.hpp>
+#include <apsis/method/method.hpp>
+#include <apsis/semidiscrete/problem_builder.hpp>
+
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+
+namespace device_problem_test {
+
+using apsis::field;
+using apsis::lane_order;
+
+std::unique_ptr<apsis::model> gas(bool by_viscosity) {
+  apsis::model_config config = apsis::default_config(apsis::find_model("bgk"));
+  config.velocity = {8.0, 40, apsis::equilibrium_choice::automatic};
+  if (by_viscosity) config.options["collision_rate"] = "viscosity";
+  return apsis::find_model("bgk").make(config);
+}
+
+apsis::problem_builder builder_of(const apsis::model& equation, bool between_walls) {
+  apsis::problem_builder builder(equation);
+  builder.on(apsis::grid::line(24, 0.0, 2.0))
+      .with_reconstruction(apsis::find_reconstruction("weno5-z").make());
+  builder.with_discretization("finite-difference")
+      .with_positivity_limiter()
+      .with_epsilon([](const apsis::position& x) { return x[0] < 1.0 ? 1e-4 : 0.5; });
+  if (between_walls)
+    for (const bool upper : {false, true})
+      builder.with_boundary({0, upper},
+                            apsis::make_boundary("diffuse", equation, {{"T", {upper ? 1.3 : 0.8}}}));
+  return builder;
+}
+
+/// Three steps on the host and on a device; how many numbers differ.
+template <class Stepper>
+int differences(const Stepper& steps, bool between_walls, lane_order order) {
+  const auto equation = gas(between_walls);
+  const auto builder = builder_of(*equation, between_walls);
+  const auto card = apsis::make_team_device(order);
+  auto on_card = builder_of(*equation, between_walls);
+  on_card.with_discretization(apsis::on_device(*card, "weno5-z"));
+  field here = builder.sample(equation->initial().front().point_value), back(here.cells(), here.components());
+  field away(here.cells(), here.components(), card->memory());
+  away.copy_rows(here);
+  const auto host = builder.build(), device = on_card.build();
+  steps(*host, here);
+  steps(*device, away);
+  back.copy_rows(away);
+  return different_numbers(builder.mesh(), here, back);
+}
+
+TEST(device_problem, steps_of_every_method_have_the_bits_of_the_host) {
+  for (const std::string name :
+       {"md-imex-3-2", "md-imex-8-3-mixed", "md-imex-10-3-long", "ssprk-3-3", "hsz-ars-4-2"}) {
+    const auto steps = [&](apsis::semidiscrete_problem& problem, field& u) {
+      if (name == "ssprk-3-3") problem.treat_collision_explicitly();
+      apsis::stepper stepper(apsis::find_method(name), problem);
+      const double dt = 0.5 * stepper.r() * problem.forward_euler_step(0.0, u);
+      for (int step = 0; step < 3; ++step) stepper.step(step * dt, dt, u);
+    };
+    for (const bool between_walls : {false, true})
+      EXPECT_EQ(differences(steps, between_walls, lane_order::random), 0) << name << between_walls;
+  }
+}
+
+TEST(device_problem, is_refused_with_a_reason_where_a_kernel_is_missing) {
+  const auto equation = gas(false);
+  const auto card = apsis::make_team_device(lane_order::forward);
+  const auto build = [&](auto change) {
+    auto builder = builder_of(*equation, false);
+    builder.with_discretization(apsis::on_device(*card, "weno5-z"));
+    change(builder);
+    builder.build();
+  };
+  EXPECT_THAT([&] { build([&](auto& b) { b.with_exact_collision(); }); },
+              testing::ThrowsMessage<apsis::input_error>(testing::HasSubstr("exact collisions")));
+  EXPECT_THAT([&] { build([&](auto& b) { b.with_discretization(apsis::on_device(*card, "weno9")); }); },
+              testing::ThrowsMessage<apsis::input_error>(
+                  testing::HasSubstr("\"weno9\" is not possible on a device")));
+}
+
+}  // namespace device_problem_test

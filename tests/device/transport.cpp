@@ -1,0 +1,169 @@
+#include "device_case.hpp"
+
+#include <apsis/core/errors.hpp>
+#include <apsis/device/internal/device_transport.hpp>
+
+#include <array>
+#include <span>
+
+#include <gmock/gmock.h>
+
+namespace device_transport_test {
+
+using apsis::field;
+using apsis::grid;
+using apsis::lane_order;
+using apsis::target;
+using limits = apsis::limited_reconstruction::limits;
+
+constexpr lane_order orders[] = {lane_order::forward, lane_order::backward, lane_order::random};
+
+std::unique_ptr<apsis::model> gas(const std::string& name, int dimensions, int points) {
+  apsis::model_config config = apsis::default_config(apsis::find_model(name));
+  config.space_dimensions = dimensions;
+  config.velocity = {4.0, points, apsis::equilibrium_choice::automatic};
+  return apsis::find_model(name).make(config);
+}
+
+/// A boundary of a kind with usual values, functions of time where `moving`.
+std::shared_ptr<const apsis::boundary> end_of(const apsis::boundary_entry& kind, const apsis::model& equation,
+                                              bool moving) {
+  apsis::face_quantities values;
+  for (const auto& variable :
+       kind.variables != nullptr ? kind.variables(equation) : std::vector<apsis::data_variable>()) {
+    if (values.contains(variable.alternative)) continue;
+    const double number = variable.value ? *variable.value : variable.of_velocity ? 0.1 : 1.0;
+    const apsis::face_quantity::function of_time = [number](double t, const apsis::position&) {
+      return number * (1.0 - 0.01 * t);
+    };
+    values[variable.name].assign(static_cast<std::size_t>(variable.size),
+                                 moving ? apsis::face_quantity(of_time) : apsis::face_quantity(number));
+  }
+  return apsis::make_boundary(kind.name, equation, values);
+}
+
+/// A gas in 1 to 3 dimensions, periodic or with one kind of boundary at all faces and a box in it.
+device_case flow(int dimensions, const apsis::boundary_entry& kind, bool with_box) {
+  // More than a piece of a sweep on a line.
+  std::array<int, 3> cells = {dimensions == 1 ? 45 : 9, dimensions > 1 ? 7 : 1, dimensions > 2 ? 5 : 1};
+  device_case made{kind.name + " in " + std::to_string(dimensions),
+                   gas("bgk", dimensions,
+                       dimensions == 1   ? 21
+                       : dimensions == 2 ? 8
+                                         : 6),
+                   grid(dimensions, cells, {0, 0, 0}, {1, 1.5, 2})};
+  if (with_box)
+    made.mesh = made.mesh.with_solids({{.first = {4, 2, dimensions == 3 ? 2 : 0}, .cells = {2, 2, 1}}});
+  const auto side =
+      kind.name == "periodic" ? apsis::make_boundary("periodic") : end_of(kind, *made.equation, true);
+  made.sides.assign(static_cast<std::size_t>(dimensions), {side, side});
+  if (with_box) made.solids.push_back(apsis::make_boundary("diffuse", *made.equation));
+  return made;
+}
+
+/// Two evaluations with several targets, on the host and on a device; how many numbers and rates differ.
+int differences(const device_case& of, const std::string& scheme, limits limited, lane_order order) {
+  const apsis::limited_reconstruction edges{apsis::find_reconstruction(scheme).make(), limited};
+  const auto on = apsis::make_team_device(order);
+  apsis::upwind_transport host(*of.equation, of.space(), edges, apsis::point_values());
+  apsis::device_transport there(*on, *of.equation, of.space(), edges, apsis::point_values(),
+                                apsis::kernel_of_reconstruction(scheme));
+  const int components = of.equation->components();
+  const field u = varied_rows(of.mesh, *of.equation, of.label.starts_with("periodic"));
+  field a(of.mesh.size(), components), b = a, sent(of.mesh.size(), components, on->memory()), c = sent,
+                                       d = sent;
+  for (auto* one : {&c, &d}) one->copy_rows(b);
+  sent.copy_rows(u);
+  const double step = 0.5 * host.forward_euler_step();
+  int different = 0;
+  for (const double share : {1.0, 0.3}) {
+    host.limit_for_steps(share);
+    there.limit_for_steps(share);
+    const std::array<target<field, double>, 2> on_host = {
+        {{&a, 1.0, share * step, true}, {&b, 0.4, -step, false}}};
+    const std::array<target<field, double>, 2> on_device = {
+        {{&c, 1.0, share * step, true}, {&d, 0.4, -step, false}}};
+    host.add_transport(0.3, u, on_host);
+    there.add_transport(0.3, sent, on_device);
+    field back(of.mesh.size(), components);
+    back.copy_rows(c);
+    different += different_numbers(of.mesh, a, back);
+    back.copy_rows(d);
+    different += different_numbers(of.mesh, b, back);
+    const auto rates = host.budget_rates(), others = there.budget_rates();
+    EXPECT_EQ(rates.size(), others.size());
+    for (std::size_t k = 0; k < rates.size(); ++k) different += rates[k] == others[k] ? 0 : 1;
+  }
+  return different;
+}
+
+TEST(device_transport, has_the_bits_of_the_host_with_every_scheme_and_order_of_lanes) {
+  for (const auto* scheme : apsis::reconstruction_entries())
+    for (const limits limited : {limits::nothing, limits::fluxes}) {
+      if (limited == limits::fluxes && scheme->make()->order() == 1) continue;
+      for (const lane_order order : orders) {
+        const device_case line = flow(1, apsis::find_boundary("periodic"), false);
+        EXPECT_EQ(differences(line, scheme->name, limited, order), 0) << scheme->name;
+      }
+    }
+}
+
+TEST(device_transport, has_the_bits_of_the_host_with_every_boundary_in_one_to_three_dimensions) {
+  for (const auto* kind : apsis::boundary_entries()) {
+    if (kind->name == "axis") continue;  // of axisymmetric flow alone, which is refused
+    const bool in_space = kind->name == "diffuse" || kind->name == "outflow";  // tests in space take long
+    for (int dimensions = 1; dimensions <= (in_space ? 3 : 2); ++dimensions)
+      for (const bool with_box : {false, true}) {
+        if (with_box && dimensions == 1) continue;
+        const device_case of = flow(dimensions, *kind, with_box);
+        for (const limits limited : {limits::nothing, limits::fluxes})
+          EXPECT_EQ(differences(of, "weno5-z", limited, lane_order::random), 0)
+              << of.label << " " << with_box;
+      }
+  }
+}
+
+TEST(device_transport, combines_states_like_the_host) {
+  const device_case of = flow(2, apsis::find_boundary("diffuse"), true);
+  const apsis::limited_reconstruction edges{apsis::find_reconstruction("upwind5").make(), limits::nothing};
+  const auto on = apsis::make_team_device(lane_order::random);
+  const apsis::upwind_transport host(*of.equation, of.space(), edges, apsis::point_values());
+  const apsis::device_transport there(*on, *of.equation, of.space(), edges, apsis::point_values(),
+                                      apsis::kernel_of_reconstruction("upwind5"));
+  const int components = of.equation->components();
+  const field u = varied_rows(of.mesh, *of.equation, true);
+  field sent(of.mesh.size(), components, on->memory());
+  sent.copy_rows(u);
+  // More terms than a launch has, and the sum as the first of them.
+  for (const std::size_t terms : {1ul, 3ul, 11ul})
+    for (const double first : {1.0, 0.7}) {
+      field sum = u, on_device = sent, back(of.mesh.size(), components);
+      std::vector<apsis::linear_term<field, double>> here, away;
+      for (std::size_t k = 0; k < terms; ++k) {
+        const double alpha = k == 0 ? first : 0.1 * static_cast<double>(k) - 0.3;
+        here.push_back({alpha, k == 0 ? &sum : &u});
+        away.push_back({alpha, k == 0 ? &on_device : &sent});
+      }
+      host.combine(here, sum);
+      there.combine(away, on_device);
+      back.copy_rows(on_device);
+      EXPECT_EQ(different_numbers(of.mesh, sum, back), 0) << terms;
+    }
+}
+
+TEST(device_transport, refuses_what_it_does_not_have) {
+  const device_case of = flow(1, apsis::find_boundary("periodic"), false);
+  const auto on = apsis::make_team_device(lane_order::forward);
+  const auto make = [&](limits limited) {
+    return apsis::device_transport(*on, *of.equation, of.space(),
+                                   {apsis::find_reconstruction("weno5-z").make(), limited},
+                                   apsis::point_values(), apsis::kernel_of_reconstruction("weno5-z"));
+  };
+  EXPECT_THAT([&] { make(limits::edges); },
+              testing::ThrowsMessage<apsis::input_error>(testing::HasSubstr("edge values are limited")));
+  auto t = make(limits::nothing);
+  EXPECT_THAT([&] { t.set_force({}); },
+              testing::ThrowsMessage<apsis::input_error>(testing::HasSubstr("force")));
+}
+
+}  // namespace device_transport_test

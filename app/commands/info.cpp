@@ -2,6 +2,7 @@
 #include "print.hpp"
 
 #include <apsis/core/version.hpp>
+#include <apsis/device/device.hpp>
 #include <apsis/exec/parallel.hpp>
 #include <apsis/output/provenance.hpp>
 
@@ -26,10 +27,21 @@ std::string as_text(const nlohmann::ordered_json& value, const std::string& inde
   return out;
 }
 
+/// The devices of this machine, as kind and number.
+nlohmann::ordered_json devices() {
+  nlohmann::ordered_json all = nlohmann::ordered_json::object();
+  for (const device_backend_entry* kind : device_backend_entries()) {
+    if (!kind->is_real) continue;
+    int number = 0;
+    for (const std::string& name : kind->names()) all[fmt::format("{}:{}", kind->name, number++)] = name;
+  }
+  return all.empty() ? nlohmann::ordered_json("none") : all;
+}
+
 int info(bool json) {
   set_threads(0);
   const nlohmann::ordered_json all = {
-      {"version", version()}, {"build", build_info()}, {"machine", machine_info()}};
+      {"version", version()}, {"build", build_info()}, {"machine", machine_info()}, {"devices", devices()}};
   print(json ? all.dump(2) + "\n" : as_text(all));
   return 0;
 }

@@ -294,6 +294,19 @@ TEST(velocity_range, the_mass_that_a_force_moves_into_the_last_velocities_is_wha
   EXPECT_LT(none.summary.velocity_held, 1e-10);
 }
 
+TEST(velocity_range, advice_for_a_beam_at_the_end_is_beyond_the_present_velocities) {
+  // Moments of the gas do not show the beam: a Maxwellian with them ends at 7.2.
+  std::string text = gas;
+  text.replace(text.find("rho = 1\nT = 1\n"), 14,
+               "g = \"0.98*exp(-v_x^2/2)/sqrt(2*pi) + (abs(v_x - 7.5) < 0.5 ? 0.02 : 0)\"\n"
+               "h = \"2*0.98*exp(-v_x^2/2)/sqrt(2*pi)\"\n");
+  const outcome found = run_of(text, {"model.epsilon=1e12", "velocity.max=8", "velocity.points=64",
+                                      "force.acceleration=3", "time.end=0.1"});
+  EXPECT_EQ(found.code, 0) << found.error;
+  EXPECT_THAT(found.warnings, HasSubstr("the force gives the gas less energy than it should"));
+  EXPECT_THAT(found.warnings, HasSubstr("give a velocity.max above 8, or more velocity.points"));
+}
+
 TEST(velocity_range, totals_survive_a_restart) {
   const auto text = apsis::parse_case(jets, "jets.toml", {"velocity.max=11", "velocity.points=110"});
   testing::internal::CaptureStderr();

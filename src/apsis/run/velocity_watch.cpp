@@ -167,8 +167,8 @@ void velocity_watch::add_held(double share, const field& u, const step_record& a
   log::warning(
       fmt::format("the force moves the gas into the ends of the velocity grid (a fraction {:.2g} of its mass "
                   "until t = {:.6g}, "
-                  "which cannot leave there); give velocity.max = {:.3g} or more",
-                  totals.velocity_held, at.t, needed));
+                  "which cannot leave there); give {}",
+                  totals.velocity_held, at.t, larger_velocities(needed)));
 }
 
 void velocity_watch::add_lost(const field& u, const step_record& at, run_summary& totals) {
@@ -185,9 +185,18 @@ void velocity_watch::add_lost(const field& u, const step_record& at, run_summary
   const double needed = velocity_that_would_do(u, at);
   log::warning(fmt::format(
       "the force gives the gas less {} than it should (by a fraction {:.2g} at t = {:.6g}: f does "
-      "not vanish at the ends of the velocity grid, or its fluxes are limited); give "
-      "velocity.max = {:.3g} or more, or more velocity.points",
-      of_energy ? "energy" : "momentum", share, at.t, needed));
+      "not vanish at the ends of the velocity grid, or its fluxes are limited); give {}, or more "
+      "velocity.points",
+      of_energy ? "energy" : "momentum", share, at.t, larger_velocities(needed)));
+}
+
+/// Returns the remedy of velocities that end too early: the largest that is needed, which is more than there
+/// is unless f is no Maxwellian.
+std::string velocity_watch::larger_velocities(double needed) const {
+  const double largest = support_->molecules().grid().max();
+  constexpr double above_rounding = 1.01;  // of the three digits
+  return needed > above_rounding * largest ? fmt::format("velocity.max = {:.3g} or more", needed)
+                                           : fmt::format("a velocity.max above {:.3g}", largest);
 }
 
 /// The largest velocity that the gas needs now, and where its streams come to rest: relative to walls, or

@@ -7,6 +7,7 @@
 
 #include <limits>
 #include <optional>
+#include <string>
 #include <vector>
 
 namespace apsis {
@@ -68,6 +69,7 @@ class velocity_watch {
   std::optional<candidate> shared(int cell, const field& u) const;
   void judge(const candidate& worst, const field& u, const step_record& at);
   double velocity_that_would_do(const field& u, const step_record& at) const;
+  std::string larger_velocities(double needed) const;
   bool& warned(const velocity_fit& fit) { return fit.ends ? warned_of_ends_ : warned_of_spacing_; }
 
   const run_setup& setup_;

@@ -22,7 +22,6 @@ namespace {
 constexpr int least_points = 5;       // on which an edge depends
 constexpr double kappa = 1.0 / 12.0;  // of limited fluxes along velocities
 constexpr int cells_of_task = 16;
-constexpr int places_together = 512;  // whose arrays fit the first-level cache
 
 std::size_t size(int n) {
   return static_cast<std::size_t>(n);
@@ -30,18 +29,11 @@ std::size_t size(int n) {
 
 }  // namespace
 
-/// Buffers of one thread, of the longest layout.
+/// Buffers of one thread.
 struct force::workspace {
-  std::array<aligned_vector<double>, 5> places;  ///< of lattice_rows::places
-  aligned_vector<double> sum;                    ///< change of the row of a cell
-  lattice_rows::layout laid_out{};               ///< whose gaps are empty
-
-  lattice_rows::places places_for(const lattice_rows::layout& at) {
-    if (!(at == laid_out))
-      for (auto& one : places) std::fill(one.begin(), one.end(), 0.0);
-    laid_out = at;
-    return {places[0].data(), places[1].data(), places[2].data(), places[3].data(), places[4].data()};
-  }
+  aligned_vector<double> sum,  ///< change of the row of a cell
+      into_last,               ///< fluxes into the last points of all lines
+      scratch;                 ///< of lattice_rows::add_changes()
 };
 
 force::~force() = default;
@@ -91,12 +83,16 @@ lattice_rows::layout force::layout_along(std::size_t direction) const {
 }
 
 void force::add(double t, const field& u, std::span<const target<field, double>> targets) const {
-  std::size_t longest = 0;
-  for (std::size_t k = 0; k < lattice_.points.size(); ++k)
-    longest = std::max(longest, layout_along(k).size());
+  std::size_t most_lines = 0;
+  int most_points = 0;
+  for (std::size_t k = 0; k < lattice_.points.size(); ++k) {
+    most_lines = std::max(most_lines, layout_along(k).lines());
+    most_points = std::max(most_points, lattice_.points[k]);
+  }
   workspaces_->prepare([&](workspace& here) {
-    for (auto& places : here.places) places.resize(longest);
     here.sum.resize(size(u.stride()));
+    here.into_last.resize(most_lines);
+    here.scratch.resize(lattice_rows::scratch_size(most_points));
   });
   first_error failure;
   failure.run([&] {
@@ -168,37 +164,25 @@ void force::set_losses(const double* row, const std::array<double, 3>& a, double
 /// Adds −a ∂f/∂v along one direction to the sum, or sets it; returns the mass that enters the last points.
 double force::add_direction(const double* row, std::size_t direction, double a, bool fresh,
                             workspace& here) const {
-  const lattice_rows::layout of_row = layout_along(direction);
-  lattice_rows::layout at = of_row;
-  at.blocks = std::clamp(places_together / at.pitch(), 1, of_row.blocks);
-  const lattice_rows::places places = here.places_for(at);
+  const lattice_rows::layout at = layout_along(direction);
   const lattice_rows::flux_rule rule{fifth_order_, limited_, a > 0.0,
                                      1.0 / std::max(limiter::least_cfl_number, kappa * share_)};
   const double rate = std::abs(a) / lattice_.spacing[direction];
-  double held = 0.0;
-  for (int block = 0; block < of_row.blocks; block += at.blocks) {
-    lattice_rows::layout some = at;
-    some.blocks = std::min(at.blocks, of_row.blocks - block);
-    const int first = block * at.block();
-    lattice_rows::find_fluxes(some, rule, row + first, places);
-    const double* out = places.fluxes(rule);
-    lattice_rows::add_differences(some, out, rule.forward, rate, fresh, here.sum.data() + first);
-    held += mass_into_ends(some, first, rule.forward, out);
-  }
-  return rate * held;
+  lattice_rows::add_changes(at, rule, rate, row, fresh, here.sum.data(), here.into_last.data(),
+                            here.scratch.data());
+  return rate * mass_into_ends(at, rule.forward, here.into_last.data());
 }
 
 /// Of the functions on the velocities, the first is the density of the mass.
-double force::mass_into_ends(const lattice_rows::layout& at, int first, bool forward,
-                             const double* out) const {
+double force::mass_into_ends(const lattice_rows::layout& at, bool forward, const double* into_last) const {
   const auto weights = equation_.velocities().weights();
-  const int last = forward ? at.block() - at.apart : 0, upstream = forward ? -at.apart : at.apart;
+  const int last = forward ? at.block() - at.apart : 0;
   double mass = 0.0;
   for (int block = 0; block < at.blocks; ++block)
     for (int k = 0; k < at.apart; ++k) {
-      const int component = first + block * at.block() + last + k;
+      const int component = block * at.block() + last + k;
       if (component >= equation_.velocities().size()) return mass;
-      mass += weights[size(component)] * out[at.first() + block * at.pitch() + last + k + upstream];
+      mass += weights[size(component)] * into_last[block * at.apart + k];
     }
   return mass;
 }

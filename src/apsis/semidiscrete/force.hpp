@@ -54,7 +54,7 @@ class force {
   void add_cell(double t, const field& u, std::span<const target<field, double>> targets, int cell,
                 workspace& here) const;
   double add_direction(const double* row, std::size_t direction, double a, bool fresh, workspace& here) const;
-  double mass_into_ends(const lattice_rows::layout& at, int first, bool forward, const double* out) const;
+  double mass_into_ends(const lattice_rows::layout& at, bool forward, const double* into_last) const;
 
   const model& equation_;
   std::shared_ptr<domain> space_;

@@ -8,89 +8,226 @@
 #include <apsis/semidiscrete/formulas/upwind.hpp>
 
 #include <algorithm>
+#include <utility>
 
 HWY_BEFORE_NAMESPACE();
 namespace apsis::HWY_NAMESPACE {
 
 using N = pack<wide>;
+constexpr int lanes = static_cast<int>(hn::MaxLanes(wide()));
 
-/// Calls body(place, component, count) for all vectors of points, `count` of whose numbers are points.
+/// Lines whose numbers at a point are beside each other: those of point j are `pitch` numbers from those of
+/// point j − 1.
+struct bundle {
+  const double* values;
+  double *sum, *into_last;
+  std::ptrdiff_t pitch;
+  int points, count;  ///< count: lines, at most a vector
+};
+
+/// The values of a bundle in the direction of motion, vacuum beyond its ends.
+template <bool Whole>
+class values_along {
+ public:
+  HWY_INLINE values_along(const bundle& of, bool forward)
+      : first_(of.values + (forward ? 0 : (of.points - 1) * of.pitch)),
+        step_(forward ? of.pitch : -of.pitch),
+        points_(of.points),
+        count_(of.count) {}
+  HWY_INLINE N operator()(int j) const {
+    if (j < 0 || j >= points_) return N(0.0);
+    const double* from = first_ + j * step_;
+    if constexpr (Whole) return N::load(from);
+    return load_some(from, count_);
+  }
+
+ private:
+  const double* first_;
+  std::ptrdiff_t step_;
+  int points_, count_;
+};
+
+/// Five neighbouring values, and the edge downstream of the middle one.
+template <bool FifthOrder, class Values>
+class edge_window {
+ public:
+  HWY_INLINE explicit edge_window(const Values& values)
+      : values_(values), a_(0.0), b_(0.0), c_(values(0)), d_(values(1)), e_(values(2)) {}
+  HWY_INLINE N value() const { return c_; }
+  HWY_INLINE N edge() const {
+    if constexpr (FifthOrder) return upwind5_edge(a_, b_, c_, d_, e_);
+    return upwind1_edge(c_);
+  }
+  /// Moves to point j.
+  HWY_INLINE void advance_to(int j) {
+    a_ = b_;
+    b_ = c_;
+    c_ = d_;
+    d_ = e_;
+    e_ = values_(j + 2);
+  }
+
+ private:
+  const Values& values_;
+  N a_, b_, c_, d_, e_;
+};
+
+/// Fluxes as those of add_limited(), or edges.
+template <bool Limited, class Window>
+class flux_walk {
+ public:
+  HWY_INLINE flux_walk(Window& window, double inverse_cfl)
+      : window_(window), inverse_cfl_(inverse_cfl), here_(first(window, inverse_cfl_)) {}
+  /// The flux out of point j − 1, having moved from it to point j.
+  HWY_INLINE N to(int j) {
+    window_.advance_to(j);
+    if constexpr (Limited) {
+      const auto after = limited_after(here_, window_.value(), window_.edge(), inverse_cfl_);
+      const N out = limited_flux(here_, after);
+      here_ = after;
+      return out;
+    } else {
+      const N out = here_;
+      here_ = window_.edge();
+      return out;
+    }
+  }
+
+ private:
+  static HWY_INLINE auto first(const Window& window, N inverse_cfl) {
+    if constexpr (Limited)
+      return limited_after(unlimited(N(0.0), N(0.0), inverse_cfl), window.value(), window.edge(),
+                           inverse_cfl);
+    else
+      return window.edge();
+  }
+
+  Window& window_;
+  N inverse_cfl_;
+  decltype(first(std::declval<const Window&>(), N(0.0))) here_;
+};
+
+template <bool Limited, bool FifthOrder, bool Whole>
+HWY_INLINE void change_bundle(const bundle& of, const lattice_rows::flux_rule& rule, double rate,
+                              bool fresh) {
+  const values_along<Whole> values(of, rule.forward);
+  edge_window<FifthOrder, values_along<Whole>> window(values);
+  flux_walk<Limited, decltype(window)> fluxes(window, rule.inverse_cfl);
+  const std::ptrdiff_t step = rule.forward ? of.pitch : -of.pitch;
+  double* sum = of.sum + (rule.forward ? 0 : (of.points - 1) * of.pitch);
+  N in(0.0);
+  const auto put = [&](N out) APSIS_PACKED {
+    const N before = fresh ? N(0.0) : Whole ? N::load(sum) : load_some(sum, of.count);
+    const N after = fma(N(rate), in - out, before);
+    if constexpr (Whole)
+      after.store(sum);
+    else
+      store_some(after, of.count, sum);
+    sum += step;
+  };
+  for (int j = 1; j < of.points; ++j) {
+    const N out = fluxes.to(j);
+    put(out);
+    in = out;
+  }
+  put(N(0.0));  // nothing leaves the last point
+  store_some(in, of.count, of.into_last);
+}
+
+template <bool Limited, bool FifthOrder>
+HWY_INLINE void change_lines(const bundle& of, const lattice_rows::flux_rule& rule, double rate, bool fresh) {
+  if (of.count == lanes)
+    change_bundle<Limited, FifthOrder, true>(of, rule, rate, fresh);
+  else
+    change_bundle<Limited, FifthOrder, false>(of, rule, rate, fresh);
+}
+
+void change_bundle_by(const bundle& of, const lattice_rows::flux_rule& rule, double rate, bool fresh) {
+  if (rule.limited && rule.fifth_order) return change_lines<true, true>(of, rule, rate, fresh);
+  if (rule.limited) return change_lines<true, false>(of, rule, rate, fresh);
+  if (rule.fifth_order) return change_lines<false, true>(of, rule, rate, fresh);
+  change_lines<false, false>(of, rule, rate, fresh);
+}
+
+/// Exchanges rows and columns of a square of lanes².
+HWY_INLINE void transpose([[maybe_unused]] N (&row)[lanes]) {
+#if HWY_TARGET != HWY_SCALAR  // which has no such operations
+  const wide d;
+  if constexpr (lanes >= 2)
+    for (int k = 0; k < lanes; k += 2) {
+      const auto low = hn::InterleaveLower(d, row[k].v, row[k + 1].v);
+      row[k + 1] = N(hn::InterleaveUpper(d, row[k].v, row[k + 1].v));
+      row[k] = N(low);
+    }
+  if constexpr (lanes == 4)
+    for (int k = 0; k < 2; ++k) {
+      const auto low = hn::ConcatLowerLower(d, row[k + 2].v, row[k].v);
+      row[k + 2] = N(hn::ConcatUpperUpper(d, row[k + 2].v, row[k].v));
+      row[k] = N(low);
+    }
+  if constexpr (lanes == 8) {
+    for (int k = 0; k < 8; ++k) {
+      if ((k & 2) != 0) continue;
+      const auto low = row[k].v, high = row[k + 2].v;
+      row[k] = N(hn::OddEvenBlocks(hn::SwapAdjacentBlocks(high), low));
+      row[k + 2] = N(hn::OddEvenBlocks(high, hn::SwapAdjacentBlocks(low)));
+    }
+    for (int k = 0; k < 4; ++k) {
+      const auto low = hn::ConcatLowerLower(d, row[k + 4].v, row[k].v);
+      row[k + 4] = N(hn::ConcatUpperUpper(d, row[k + 4].v, row[k].v));
+      row[k] = N(low);
+    }
+  }
+#endif
+}
+
+/// Calls body(point) for squares of lanes points that cover a line; the last one may begin in another.
 template <class Body>
-HWY_INLINE void for_points(const lattice_rows::layout& at, const Body& body) {
-  const int length = static_cast<int>(hn::Lanes(wide())), n = at.block();
-  for (int block = 0; block < at.blocks; ++block)
-    for (int k = 0; k < n; k += length)
-      body(at.first() + block * at.pitch() + k, block * n + k, std::min(n - k, length));
+HWY_INLINE void for_squares(int points, const Body& body) {
+  for (int point = 0; point < points; point += lanes) body(std::max(0, std::min(point, points - lanes)));
 }
 
-/// Calls body(place) for vectors of all places, those of gaps included, which costs less than masks.
-template <class Body>
-HWY_INLINE void for_places(const lattice_rows::layout& at, const Body& body) {
-  const int length = static_cast<int>(hn::Lanes(wide())), first = at.first(), end = first + at.lanes();
-  for (int place = first; place < end; place += length) body(place);
+/// Lines of contiguous points to the columns of a bundle, and back.
+HWY_INLINE void to_columns(const double* lines, int count, int points, double* columns) {
+  for_squares(points, [&](int point) APSIS_PACKED {
+    N square[lanes];
+    for (int k = 0; k < lanes; ++k)
+      square[k] = k < count ? load_some(lines + k * points + point, points - point) : N(0.0);
+    transpose(square);
+    for (int k = 0; k < lanes; ++k) square[k].store(columns + (point + k) * lanes);
+  });
 }
-
-void find_edges(const lattice_rows::layout& at, const lattice_rows::flux_rule& rule,
-                const lattice_rows::places& to) {
-  const int downstream = rule.forward ? at.apart : -at.apart;
-  const double* values = to.values;
-  double *edges = to.edges, *low_order = to.low_order;
-  for_places(at, [=](int place) APSIS_PACKED {
-    const auto value = [=](int i) APSIS_PACKED { return N::load(values + place + i * downstream); };
-    const N here = value(0), low = upwind1_edge(here);
-    low.store(low_order + place);
-    (rule.fifth_order ? upwind5_edge(value(-2), value(-1), here, value(1), value(2)) : low)
-        .store(edges + place);
+HWY_INLINE void to_lines(const double* columns, int count, int points, double* lines) {
+  for_squares(points, [&](int point) APSIS_PACKED {
+    N square[lanes];
+    for (int k = 0; k < lanes; ++k) square[k] = N::load(columns + (point + k) * lanes);
+    transpose(square);
+    for (int k = 0; k < count; ++k) store_some(square[k], points - point, lines + k * points + point);
   });
 }
 
-void limit_edges_along(const lattice_rows::layout& at, const lattice_rows::flux_rule& rule,
-                       const lattice_rows::places& to) {
-  const int downstream = rule.forward ? at.apart : -at.apart;
-  const double *values = to.values, *edges = to.edges, *low_order = to.low_order;
-  double *fractions = to.fractions, *out = to.limited_out;
-  const N inverse_cfl(rule.inverse_cfl);
-  for_places(at, [=](int place) APSIS_PACKED {
-    const int before = place - downstream;
-    const N low_up = N::load(low_order + before), low = N::load(low_order + place);
-    limited_fraction(low_up, low, N::load(values + place), N::load(edges + before) - low_up,
-                     N::load(edges + place) - low, inverse_cfl)
-        .store(fractions + place);
-  });
-  for_places(at, [=](int place) APSIS_PACKED {
-    const N low = N::load(low_order + place), edge = N::load(edges + place);
-    limited_edge(low, edge, N::load(fractions + place), N::load(fractions + place + downstream))
-        .store(out + place);
-  });
-}
-
-/// Sets `count` numbers from a place of every block on to 0.
-HWY_INLINE void clear(const lattice_rows::layout& at, int from, int count, double* places) {
-  const int length = static_cast<int>(hn::Lanes(wide()));
-  for (int block = 0; block < at.blocks; ++block)
-    for (int k = 0; k < count; k += length)
-      store_some(N(0.0), count - k, places + at.first() + block * at.pitch() + from + k);
-}
-
-void find_fluxes(const lattice_rows::layout& at, const lattice_rows::flux_rule& rule, const double* row,
-                 const lattice_rows::places& to) {
-  for_points(at, [&](int place, int component, int count) APSIS_PACKED {
-    store_some(load_some(row + component, count), count, to.values + place);
-  });
-  find_edges(at, rule, to);
-  clear(at, at.block(), at.first(), to.edges);  // gaps have no points
-  if (rule.limited) limit_edges_along(at, rule, to);
-  clear(at, rule.forward ? at.block() - at.apart : 0, at.apart, to.fluxes(rule));
-}
-
-void add_differences(const lattice_rows::layout& at, const double* out, bool forward, double rate, bool fresh,
-                     double* sum) {
-  const int upstream = forward ? -at.apart : at.apart;
-  for_points(at, [&](int place, int component, int count) APSIS_PACKED {
-    const N difference = load_some(out + place + upstream, count) - load_some(out + place, count);
-    const N before = fresh ? N(0.0) : load_some(sum + component, count);
-    store_some(fma(N(rate), difference, before), count, sum + component);
-  });
+void add_changes(const lattice_rows::layout& at, const lattice_rows::flux_rule& rule, double rate,
+                 const double* row, bool fresh, double* sum, double* into_last, double* scratch) {
+  if (at.apart > 1) {
+    for (int block = 0; block < at.blocks;
+         ++block, row += at.block(), sum += at.block(), into_last += at.apart)
+      for (int k = 0; k < at.apart; k += lanes)
+        change_bundle_by(
+            {row + k, sum + k, into_last + k, at.apart, at.points, std::min(lanes, at.apart - k)}, rule, rate,
+            fresh);
+    return;
+  }
+  double *values = scratch, *changes = scratch + (at.points + lanes) * lanes;
+  for (int line = 0; line < at.blocks; line += lanes) {
+    const int count = std::min(lanes, at.blocks - line);
+    const std::ptrdiff_t first = static_cast<std::ptrdiff_t>(line) * at.points;
+    double into[lanes];
+    to_columns(row + first, count, at.points, values);
+    if (!fresh) to_columns(sum + first, count, at.points, changes);
+    change_bundle_by({values, changes, into, lanes, at.points, lanes}, rule, rate, fresh);
+    to_lines(changes, count, at.points, sum + first);
+    std::copy_n(into, count, into_last + line);
+  }
 }
 
 void add(const double* change, double beta, int n, double* acc) {
@@ -106,20 +243,20 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace apsis {
 namespace {
-HWY_EXPORT(find_fluxes);
-HWY_EXPORT(add_differences);
+HWY_EXPORT(add_changes);
 HWY_EXPORT(add);
 }  // namespace
 
 namespace lattice_rows {
 
-void find_fluxes(const layout& at, const flux_rule& rule, const double* row, const places& to) {
-  HWY_DYNAMIC_DISPATCH(find_fluxes)(at, rule, row, to);
+std::size_t scratch_size(int points) {
+  constexpr std::size_t most_lanes = 8;
+  return 2 * (static_cast<std::size_t>(points) + most_lanes) * most_lanes;
 }
 
-void add_differences(const layout& at, const double* out, bool forward, double rate, bool fresh,
-                     double* sum) {
-  HWY_DYNAMIC_DISPATCH(add_differences)(at, out, forward, rate, fresh, sum);
+void add_changes(const layout& at, const flux_rule& rule, double rate, const double* row, bool fresh,
+                 double* sum, double* into_last, double* scratch) {
+  HWY_DYNAMIC_DISPATCH(add_changes)(at, rule, rate, row, fresh, sum, into_last, scratch);
 }
 
 void add(const double* change, double beta, int n, double* acc) {

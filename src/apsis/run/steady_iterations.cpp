@@ -10,7 +10,6 @@
 #include <limits>
 #include <span>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -59,7 +58,7 @@ void steady_iterations::make_solver() {
 
 void steady_iterations::advance() {
   try {
-    const steady_iteration done = rarer_ ? follow_rarer() : march_ ? march() : iterate();
+    const steady_iteration done = easier_ ? follow_continuation() : march_ ? march() : iterate();
     run_.march.advance(1.0);
     record(done);
     found_ = done.converged;
@@ -76,8 +75,8 @@ steady_iteration steady_iterations::iterate() {
     } catch (const steady_imbalance&) {
       throw;
     } catch (const steady_stall& stall) {
-      if (!begin_rarer(stall)) throw;
-      return follow_rarer();
+      if (!begin_continuation(stall)) throw;
+      return follow_continuation();
     } catch (const numerical_error& failure) {
       if (begin_again(failure)) continue;
       return recover(failure);
@@ -87,7 +86,7 @@ steady_iteration steady_iterations::iterate() {
 
 /// The next iteration where no pseudo-time term helps.
 steady_iteration steady_iterations::recover(const numerical_error& failure) {
-  if (begin_rarer(failure)) return follow_rarer();
+  if (begin_continuation(failure)) return follow_continuation();
   begin_march(failure);
   return march();
 }
@@ -103,30 +102,29 @@ bool steady_iterations::begin_again(const numerical_error& failure) {
   return true;
 }
 
-/// Begins with rarer gases. Returns false if they were tried before, or if the gas is rare itself.
-bool steady_iterations::begin_rarer(const numerical_error& failure) {
-  std::vector<double> factors = rarer_gases::factors(solver_->optical_length());
-  if (std::exchange(tried_rarer_, true) || factors.empty()) return false;
-  log::info(
-      fmt::format("iteration {}: {}; steady states with {:g} times the epsilon, one after the other, give "
-                  "the next start",
-                  run_.march.step(), cause_of(failure), fmt::join(factors, ", ")));
+/// Begins with easier problems from the first state. Returns false if no continuation is left.
+bool steady_iterations::begin_continuation(const numerical_error& failure) {
+  easier_.reset();
+  while (!easier_ && tried_ < continuations)
+    easier_ = make_continuation(tried_++, *run_.setup.equation->as_relaxation(), run_.setup.builder(), first_,
+                                solver_->optical_length(), run_.config.steady_state.images);
+  if (!easier_) return false;
+  log::info(fmt::format("iteration {}: {}; {}, one after the other, give the next start", run_.march.step(),
+                        cause_of(failure), easier_->name()));
   run_.state = first_;
-  rarer_ = std::make_unique<rarer_gases>(*run_.setup.equation->as_relaxation(), run_.setup.builder(),
-                                         std::move(factors), run_.config.steady_state.images);
   return true;
 }
 
-/// Takes one iteration of a rarer gas. Its residual is that of the equation of the case.
-steady_iteration steady_iterations::follow_rarer() {
+/// Takes one iteration of an easier problem. Its residual is that of the equation of the case.
+steady_iteration steady_iterations::follow_continuation() {
   try {
-    rarer_->iterate(run_.state);
+    easier_->iterate(run_.state);
   } catch (const numerical_error& failure) {
-    rarer_.reset();
+    if (begin_continuation(failure)) return follow_continuation();
     begin_march(failure);
     return march();
   }
-  return end_of_detour(rarer_->finished());
+  return end_of_detour(easier_->finished());
 }
 
 /// Begins steps in time, twice as long as those before.
@@ -146,14 +144,14 @@ steady_iteration steady_iterations::march() {
   return end_of_detour(march_->finished());
 }
 
-/// Returns the record of a step of rarer gases or of a march. After the last one the solver begins anew.
+/// Returns the record of a step of a continuation or of a march. After the last one the solver begins anew.
 steady_iteration steady_iterations::end_of_detour(bool finished) {
   steady_iteration done;
   done.residual = solver_->relative_residual(run_.state);
   done.change = std::numeric_limits<double>::quiet_NaN();
   if (finished) {
-    damping_ = rarer_ ? rarer_->damping() : 0;
-    rarer_.reset();
+    damping_ = easier_ ? easier_->damping() : 0;
+    easier_.reset();
     march_.reset();
     solver_->restart(damping_);
   }

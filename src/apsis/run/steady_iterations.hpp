@@ -3,7 +3,7 @@
 #include <apsis/mesh/field.hpp>
 #include <apsis/run/interim_march.hpp>
 #include <apsis/run/progression.hpp>
-#include <apsis/steady/rarer_gases.hpp>
+#include <apsis/steady/continuation.hpp>
 #include <apsis/steady/steady_solver.hpp>
 
 #include <cstddef>
@@ -17,9 +17,9 @@ namespace apsis {
 /// Nothing is promised but for the sign of the steady state (is_nonnegative()).
 ///
 /// Where an iteration fails because f has no equilibrium, or because it diverges, it begins again from the
-/// first state with a stronger pseudo-time term. Where that fails too, or where the residual stays, rarer
-/// gases give the next start, once. Where an iteration fails after that, the run marches in time from its
-/// first state, and then iterates again. Iterations of rarer gases count as others do; a part of the march
+/// first state with a stronger pseudo-time term. Where that fails too, or where the residual stays, each
+/// continuation gives a start, once. Where an iteration fails after that, the run marches in time from its
+/// first state, and then iterates again. Iterations of a continuation count as others do; a part of the march
 /// counts as one.
 class steady_iterations final : public progression {
  public:
@@ -43,8 +43,8 @@ class steady_iterations final : public progression {
   steady_iteration iterate();
   steady_iteration recover(const numerical_error& failure);
   bool begin_again(const numerical_error& failure);
-  bool begin_rarer(const numerical_error& failure);
-  steady_iteration follow_rarer();
+  bool begin_continuation(const numerical_error& failure);
+  steady_iteration follow_continuation();
   void begin_march(const numerical_error& failure);
   steady_iteration march();
   steady_iteration end_of_detour(bool finished);
@@ -55,13 +55,13 @@ class steady_iterations final : public progression {
 
   running_case& run_;
   std::optional<steady_solver> solver_;
-  std::unique_ptr<rarer_gases> rarer_;  ///< between two attempts
-  std::optional<interim_march> march_;  ///< between two attempts
-  field first_;                         ///< the state of the first iteration
-  bool tried_rarer_ = false;            ///< gases, or there are none
-  int marches_ = 0;                     ///< begun
-  int damping_ = 0;                     ///< of the last iteration
-  bool found_ = false;                  ///< the steady state
+  std::unique_ptr<continuation> easier_;  ///< between two attempts
+  std::optional<interim_march> march_;    ///< between two attempts
+  field first_;                           ///< the state of the first iteration
+  std::size_t tried_ = 0;                 ///< continuations
+  int marches_ = 0;                       ///< begun
+  int damping_ = 0;                       ///< of the last iteration
+  bool found_ = false;                    ///< the steady state
 };
 
 }  // namespace apsis

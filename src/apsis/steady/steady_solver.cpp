@@ -6,6 +6,7 @@
 #include <apsis/exec/parallel.hpp>
 #include <apsis/exec/profile.hpp>
 #include <apsis/steady/cell_links.hpp>
+#include <apsis/steady/continuation.hpp>
 #include <apsis/steady/cut_links.hpp>
 #include <apsis/steady/damping.hpp>
 #include <apsis/steady/internal/cell_measures.hpp>
@@ -14,9 +15,9 @@
 #include <apsis/steady/internal/state_update.hpp>
 #include <apsis/steady/internal/steady_residual.hpp>
 #include <apsis/steady/octant_sweep.hpp>
-#include <apsis/steady/rarer_gases.hpp>
 
 #include <cmath>
+#include <cstddef>
 #include <limits>
 #include <numbers>
 #include <optional>
@@ -242,16 +243,23 @@ void steady_solver::set_reference(double residual) {
 
 steady_iteration steady_solver::solve(field& f, const std::function<void(const steady_iteration&)>& watch) {
   const field start = f;
-  bool may_continue = true;
-  // Returns whether f is the solution of a rarer gas now.
+  std::size_t tried = 0;
+  // Returns whether f is the solution of an easier problem now.
   const auto continues = [&] {
-    rarer_gases rarer(impl_->equation, impl_->builder, rarer_gases::factors(optical_length()),
-                      impl_->options.depth);
-    if (!std::exchange(may_continue, false) || rarer.finished()) return false;
-    f = start;
-    while (!rarer.finished()) rarer.iterate(f);
-    restart(rarer.damping());
-    return true;
+    while (tried < continuations) {
+      const auto easier = make_continuation(tried++, impl_->equation, impl_->builder, start, optical_length(),
+                                            impl_->options.depth);
+      if (!easier) continue;
+      f = start;
+      try {
+        while (!easier->finished()) easier->iterate(f);
+      } catch (const numerical_error&) {
+        continue;
+      }
+      restart(easier->damping());
+      return true;
+    }
+    return false;
   };
   for (;;) {
     steady_iteration now;

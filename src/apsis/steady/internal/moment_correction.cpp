@@ -32,8 +32,8 @@ void moment_correction::note_residual(double residual) {
   if (holds_neutral_mode_)
     throw steady_imbalance(fmt::format(
         "no steady state is found: the residual stays at {:.2g} of that of the start (a front has no "
-        "position at which the fluxes of the ends are equal); give the ends states with equal "
-        "fluxes, more velocities, or a larger steady.tolerance",
+        "position at which the fluxes of the ends are equal, or no end fixes the pressure); give the ends "
+        "states with equal fluxes, an outlet 'pressure', more velocities, or a larger steady.tolerance",
         residual));
   forget_system();
 }

@@ -22,6 +22,9 @@ class progression {
   /// are allowed.
   virtual void check() {}
 
+  /// Whether advance() enters what the velocities miss into the totals (monitor::watch_velocities()).
+  virtual bool watches_velocities() const { return false; }
+
   /// Whether no step is left, or the state is steady.
   virtual bool finished() const = 0;
   virtual double next_dt() = 0;  ///< length of the next step

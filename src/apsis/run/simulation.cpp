@@ -140,7 +140,7 @@ const step_record& simulation::advance() {
   run.totals.wall_s += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   run.totals.cpu_s += thread_seconds() - cpu;
   impl_->progress->check();
-  run.watch.watch_velocities(run.state, run.last, run.totals);
+  if (!impl_->progress->watches_velocities()) run.watch.watch_velocities(run.state, run.last, run.totals);
   run.flows.update(run.last);
   return run.last;
 }

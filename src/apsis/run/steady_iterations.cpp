@@ -58,14 +58,28 @@ void steady_iterations::make_solver() {
 
 void steady_iterations::advance() {
   try {
-    const steady_iteration done = easier_ ? follow_continuation() : march_ ? march() : iterate();
+    steady_iteration done = easier_ ? follow_continuation() : march_ ? march() : iterate();
     run_.march.advance(1.0);
-    record(done);
+    try {
+      record(done);
+    } catch (const numerical_error& failure) {
+      if (done.converged) throw;
+      done = replace(failure);
+      record(done);
+    }
     found_ = done.converged;
     log_removed(done);
   } catch (const numerical_error& failure) {
     throw run_.located(failure);
   }
+}
+
+/// The next iteration where the run cannot go on from the last one, such as from a gas that is too hot for
+/// the velocities.
+steady_iteration steady_iterations::replace(const numerical_error& failure) {
+  if (march_) throw failure;
+  if (!easier_ && begin_again(failure)) return iterate();
+  return recover(failure);
 }
 
 steady_iteration steady_iterations::iterate() {
@@ -207,6 +221,10 @@ void steady_iterations::record(const steady_iteration& done) {
   for (const double rate : last.conservation_defect)
     totals.conservation_defect = std::max(totals.conservation_defect, rate);
   for (const double cut : last.cut) totals.largest_cut = cut;
+  constexpr double unlimited = std::numeric_limits<double>::infinity();
+  totals.velocity_room = totals.velocity_resolution = unlimited;
+  totals.velocity_beyond = totals.velocity_missed = totals.velocity_needed = 0.0;
+  run_.watch.watch_velocities(run_.state, last, totals);
 }
 
 void steady_iterations::set_net_rates() {

@@ -30,6 +30,7 @@ class steady_iterations final : public progression {
   void advance() override;
   /// Throws numerical_error where steady.iterations were not enough.
   void check() override;
+  bool watches_velocities() const override { return true; }
   bool finished() const override { return found_; }
   double next_dt() override { return run_.march.next(1.0); }
   long steps_left() override { return run_.march.steps_left(1.0); }
@@ -42,6 +43,7 @@ class steady_iterations final : public progression {
   void make_solver();
   steady_iteration iterate();
   steady_iteration recover(const numerical_error& failure);
+  steady_iteration replace(const numerical_error& failure);
   bool begin_again(const numerical_error& failure);
   bool begin_continuation(const numerical_error& failure);
   steady_iteration follow_continuation();

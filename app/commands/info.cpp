@@ -2,7 +2,7 @@
 #include "print.hpp"
 
 #include <apsis/core/version.hpp>
-#include <apsis/device/device.hpp>
+#include <apsis/device/find_device.hpp>
 #include <apsis/exec/parallel.hpp>
 #include <apsis/output/provenance.hpp>
 
@@ -27,14 +27,9 @@ std::string as_text(const nlohmann::ordered_json& value, const std::string& inde
   return out;
 }
 
-/// The devices of this machine, as kind and number.
 nlohmann::ordered_json devices() {
   nlohmann::ordered_json all = nlohmann::ordered_json::object();
-  for (const device_backend_entry* kind : device_backend_entries()) {
-    if (!kind->is_real) continue;
-    int number = 0;
-    for (const std::string& name : kind->names()) all[fmt::format("{}:{}", kind->name, number++)] = name;
-  }
+  for (const found_device& one : found_devices()) all[one.place] = one.name;
   return all.empty() ? nlohmann::ordered_json("none") : all;
 }
 

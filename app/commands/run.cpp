@@ -12,6 +12,7 @@
 #include <apsis/config/case_explanation.hpp>
 #include <apsis/core/errors.hpp>
 #include <apsis/core/log.hpp>
+#include <apsis/device/find_device.hpp>
 #include <apsis/exec/agreement.hpp>
 #include <apsis/exec/interruption.hpp>
 #include <apsis/exec/parallel.hpp>
@@ -39,6 +40,7 @@ struct run_options {
   std::vector<std::string> overrides;
   session_options session;
   std::optional<int> threads;
+  std::optional<std::string> device;
   bool json = false, profile = false, explain = false;
 };
 
@@ -73,6 +75,9 @@ int run_on(const std::shared_ptr<communicator>& processes, run_options options) 
   set_threads(options.threads.value_or(threads_for(config, *processes)));
   progress_bar bar;
   options.session.processes = processes;
+  run_collectively(*processes, [&] {
+    if (options.device) options.session.on = open_device(*options.device);
+  });
   options.session.command = command_line();
   options.session.stop = interrupted;
   if (processes->is_root())
@@ -129,6 +134,13 @@ action define(CLI::App& command) {
   command.add_flag("--json", options->json, "print only one JSON object on standard output");
   add_threads(command, options->threads, "threads to use",
               "all processors for a large case and 1 for a small one");
+  command
+      .add_option(
+          "--device", options->device,
+          "run on a device of this machine (apsis info), the first one or the one of a number; results have "
+          "the bits of the host")
+      ->expected(0, 1)
+      ->type_name("[N]");
   command.add_flag("--explain", options->explain,
                    "log every value of the case, with a mark whether it is given, a default or derived");
   command.add_flag("--profile", options->profile,

@@ -113,18 +113,18 @@ def cases() -> list[str]:
 
 @overload
 def run(case: Case, *overrides: str, out: str | Path | None = None, restart: str | Path | None = None,
-        wall: float | None = None, threads: int | None = None, progress: Progress | None = None,
+        wall: float | None = None, threads: int | None = None, device: str | int | None = None, progress: Progress | None = None,
         initial: Initial | None = None, jumps: Sequence[float] = (), comm: None = None) -> Result: ...
 
 
 @overload
 def run(case: Case, *overrides: str, out: str | Path | None = None, restart: str | Path | None = None,
-        wall: float | None = None, threads: int | None = None, progress: Progress | None = None,
+        wall: float | None = None, threads: int | None = None, device: str | int | None = None, progress: Progress | None = None,
         initial: Initial | None = None, jumps: Sequence[float] = (), comm: Any) -> Result | None: ...
 
 
 def run(case: Case, *overrides: str, out: str | Path | None = None, restart: str | Path | None = None,
-        wall: float | None = None, threads: int | None = None, progress: Progress | None = None,
+        wall: float | None = None, threads: int | None = None, device: str | int | None = None, progress: Progress | None = None,
         initial: Initial | None = None, jumps: Sequence[float] = (), comm: Any = None) -> Result | None:
     """Runs a case: the name of a built-in one, a file, or a mapping such as {"model": {"name": "bgk"}, …}.
 
@@ -143,10 +143,11 @@ def run(case: Case, *overrides: str, out: str | Path | None = None, restart: str
     first process; the others get None.
 
     `threads`: 0 for all processors; default: OMP_NUM_THREADS, else all for a large case and 1 for a small one.
+    `device`: a device of this machine (`apsis info`) by its number or place, "" for the first one; results have the bits of the host.
     Releases the GIL. Raises InputError, NumericalError, FileError, KeyboardInterrupt; of several processes on all of them."""
     handle = _handle(comm)
     try:
-        arguments = (*_arguments(case, overrides, out, restart, wall, threads, progress, initial, jumps), handle)
+        arguments = (*_arguments(case, overrides, out, restart, wall, threads, device, progress, initial, jumps), handle)
     except Exception as problem:
         if handle is not None:
             _core.refuse_on_all(handle, str(problem))
@@ -158,7 +159,8 @@ def run(case: Case, *overrides: str, out: str | Path | None = None, restart: str
 
 
 def _arguments(case: Case, overrides: Sequence[str], out: str | Path | None, restart: str | Path | None, wall: float | None,
-               threads: int | None, progress: Progress | None, initial: Initial | None, jumps: Sequence[float]) -> tuple[Any, ...]:
+               threads: int | None, device: str | int | None, progress: Progress | None, initial: Initial | None,
+               jumps: Sequence[float]) -> tuple[Any, ...]:
     """Returns the arguments of the compiled part but the communicator. Raises InputError."""
     if not isinstance(case, (str, Path, Mapping)):
         raise InputError(f"case is a {type(case).__name__} (it must be a name, a file or a mapping); see apsis.cases()")
@@ -171,7 +173,7 @@ def _arguments(case: Case, overrides: Sequence[str], out: str | Path | None, res
     everything = list(overrides) + ([] if initial is None else ["initial.from=python"])
     return (text, "case" if text is not None else str(case), everything, _path(out), _path(restart),
             None if wall is None else number("wall", wall, positive=True),
-            None if threads is None else whole_number("threads", threads), progress,
+            None if threads is None else whole_number("threads", threads), None if device is None else str(device), progress,
             dict(initial) if isinstance(initial, Mapping) else initial, sorted(number("jumps", x) for x in jumps))
 
 

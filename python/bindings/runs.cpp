@@ -7,6 +7,7 @@
 #include <apsis/core/first_error.hpp>
 #include <apsis/core/log.hpp>
 #include <apsis/core/version.hpp>
+#include <apsis/device/find_device.hpp>
 #include <apsis/exec/agreement.hpp>
 #include <apsis/exec/parallel.hpp>
 #include <apsis/exec/processes.hpp>
@@ -218,7 +219,8 @@ constexpr double patience = 60.0;
 py::object run_on(const std::shared_ptr<communicator>& processes, const std::optional<std::string>& text,
                   const std::string& name, const std::vector<std::string>& overrides,
                   const std::optional<std::string>& out, const std::optional<std::string>& restart,
-                  std::optional<double> wall, std::optional<int> threads, const progress_function& progress,
+                  std::optional<double> wall, std::optional<int> threads,
+                  const std::optional<std::string>& device, const progress_function& progress,
                   const py::object& initial, const std::vector<double>& jumps) {
   const silence_of_others quiet(*processes);
   case_config config;
@@ -228,6 +230,9 @@ py::object run_on(const std::shared_ptr<communicator>& processes, const std::opt
   attendant asks(progress);
   session_options how;
   how.processes = processes;
+  run_collectively(*processes, [&] {
+    if (device) how.on = open_device(*device);
+  });
   how.out = out;
   how.restart = restart;
   how.wall = wall;
@@ -266,14 +271,16 @@ py::object run_on(const std::shared_ptr<communicator>& processes, const std::opt
 py::object run_case(const std::optional<std::string>& text, const std::string& name,
                     const std::vector<std::string>& overrides, const std::optional<std::string>& out,
                     const std::optional<std::string>& restart, std::optional<double> wall,
-                    std::optional<int> threads, const progress_function& progress, const py::object& initial,
+                    std::optional<int> threads, const std::optional<std::string>& device,
+                    const progress_function& progress, const py::object& initial,
                     const std::vector<double>& jumps, std::optional<int> communicator_handle) {
   const turn_of_processes turn(communicator_handle.has_value());
   const auto processes = communicator_handle ? processes_of(*communicator_handle) : single_process();
   std::exception_ptr failure;
   py::object result;
   try {
-    result = run_on(processes, text, name, overrides, out, restart, wall, threads, progress, initial, jumps);
+    result = run_on(processes, text, name, overrides, out, restart, wall, threads, device, progress, initial,
+                    jumps);
   } catch (...) {
     failure = std::current_exception();
   }

@@ -160,6 +160,18 @@ std::vector<int> memory_need::points_that_fit(double limit) const {
   return {};
 }
 
+/// The states of a step live on the device, beside rows at surfaces; the host has a copy for records.
+void check_device_memory(const run_setup& setup) {
+  const device* on = setup.runs_on();
+  if (on == nullptr) return;
+  const double free = static_cast<double>(on->free_bytes()), need = memory_need(setup, 0).bytes();
+  if (need > free)
+    throw io_error(
+        fmt::format("the device {} has {} of free memory (the run needs about {}); use fewer space.cells or "
+                    "velocity.points, or the host",
+                    on->name(), in_units(free), in_units(need)));
+}
+
 void check_memory(const run_setup& setup, int copies) {
   const memory_need need(setup, copies);
   memory_limit limit = available_memory();

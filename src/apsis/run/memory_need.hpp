@@ -45,5 +45,7 @@ class memory_need {
 /// fit, before anything large is allocated, if a run needs more than the available memory
 /// (available_memory).
 void check_memory(const run_setup& setup, int copies);
+/// Throws io_error if the device of a run has too little free memory for its states.
+void check_device_memory(const run_setup& setup);
 
 }  // namespace apsis

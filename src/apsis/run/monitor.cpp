@@ -5,6 +5,7 @@
 #include <apsis/exec/global_sum.hpp>
 #include <apsis/exec/parallel.hpp>
 #include <apsis/exec/profile.hpp>
+#include <apsis/mesh/on_host.hpp>
 #include <apsis/scheme/row_check.hpp>
 #include <apsis/semidiscrete/force_losses.hpp>
 
@@ -188,7 +189,9 @@ monitor::totals monitor::sum(const field& u) const {
   return t;
 }
 
-step_record monitor::start(const field& u) {
+step_record monitor::start(const field& state) {
+  field room;
+  const field& u = on_host(state, room);
   totals t = sum(u);
   invariants_ = t.invariants;
   scales_ = t.scales;
@@ -217,7 +220,9 @@ void monitor::keep_velocities(const totals& t) {
   margins_ = t.margins;
 }
 
-void monitor::watch_velocities(const field& u, const step_record& last, run_summary& summary) {
+void monitor::watch_velocities(const field& state, const step_record& last, run_summary& summary) {
+  field room;
+  const field& u = on_host(state, room);
   if (last.step == 0) return velocities_.start(extremes_, margins_, u, summary);
   if (!losses_.empty() && losses_[force_losses::held] > 0.0)
     velocities_.add_held(losses_[force_losses::held] / last.total.front(), u, last, summary);
@@ -226,7 +231,8 @@ void monitor::watch_velocities(const field& u, const step_record& last, run_summ
 }
 
 step_record monitor::check(const budgeted_state& after, double dt, const step_record& previous, double cut) {
-  const field& u = after.unknowns;
+  field room;
+  const field& u = on_host(after.unknowns, room);
   if (velocities_.active()) velocities_.set_mass(previous.total.front());
   const totals t = sum(u);
   keep_velocities(t);

@@ -1,6 +1,7 @@
 #include <apsis/run/running_case.hpp>
 
 #include <apsis/exec/agreement.hpp>
+#include <apsis/mesh/on_host.hpp>
 #include <apsis/run/memory_need.hpp>
 #include <apsis/run/step_plan.hpp>
 
@@ -27,7 +28,7 @@ running_case::running_case(std::unique_ptr<run_setup> prepared, const state_sour
       flows(setup),
       walls(setup),
       rounding(rounding_of(setup)),
-      now{start ? start(setup) : setup.initial_state(), {}},
+      now{moved_to(setup.memory(), start ? start(setup) : setup.initial_state()), {}},
       march(times_of(setup)) {}
 
 void running_case::start_records() {
@@ -59,7 +60,9 @@ std::unique_ptr<run_setup> setup_that_fits(const case_config& config,
   return setup;
 }
 
-std::vector<double> without_padding(const field& u) {
+std::vector<double> without_padding(const field& state) {
+  field room;
+  const field& u = on_host(state, room);
   std::vector<double> values;
   values.reserve(static_cast<std::size_t>(u.cells()) * static_cast<std::size_t>(u.components()));
   for (int cell = 0; cell < u.cells(); ++cell)
@@ -68,9 +71,11 @@ std::vector<double> without_padding(const field& u) {
 }
 
 void copy_rows(const std::vector<double>& values, field& u) {
+  field rows(u.cells(), u.components());
   for (int cell = 0; cell < u.cells(); ++cell)
     std::copy_n(values.data() + static_cast<std::ptrdiff_t>(cell) * u.components(), u.components(),
-                u.row(cell));
+                rows.row(cell));
+  u.copy_rows(rows);
 }
 
 }  // namespace apsis

@@ -79,9 +79,10 @@ std::unique_ptr<run_setup> setup_with_room_for_results(const case_config& config
   log_unused_times(config);
   std::unique_ptr<run_setup> setup;
   run_collectively(*options.processes, [&] {
-    setup = std::make_unique<run_setup>(config, options.processes);
+    setup = std::make_unique<run_setup>(config, options.processes, options.on);
     const int copies = options.out ? 2 : 0;
     check_memory(*setup, copies);
+    check_device_memory(*setup);
     log::info(fmt::format("{}: needs {}", config.source, memory_need(*setup, copies).text()));
   });
   return setup;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <apsis/core/warning_record.hpp>
+#include <apsis/device/device.hpp>
 #include <apsis/output/provenance.hpp>
 #include <apsis/output/result_folder.hpp>
 #include <apsis/run/manifest.hpp>
@@ -22,6 +23,7 @@ int threads_for(const case_config& config, const communicator& processes = *sing
 /// Session options: output, restart, limits, callbacks.
 struct session_options {
   std::shared_ptr<communicator> processes = single_process();  ///< share the mesh; all get the same options
+  std::shared_ptr<device> on;                                  ///< a device for the run; null: the host
   std::optional<std::string> out;      ///< result folder; without it nothing is written
   std::optional<std::string> restart;  ///< checkpoint of the same case to continue from
   std::optional<double> wall;          ///< wall time in seconds after which to stop with a checkpoint

@@ -9,10 +9,12 @@
 #include <apsis/config/source_reader.hpp>
 #include <apsis/core/errors.hpp>
 #include <apsis/core/log.hpp>
+#include <apsis/device/on_device.hpp>
 #include <apsis/exec/agreement.hpp>
 #include <apsis/exec/global_sum.hpp>
 #include <apsis/exec/interruption.hpp>
 #include <apsis/mesh/cut_cells.hpp>
+#include <apsis/mesh/on_host.hpp>
 #include <apsis/model/expression.hpp>
 #include <apsis/run/cfl_limit.hpp>
 #include <apsis/run/initial_file.hpp>
@@ -85,8 +87,12 @@ void at_key(const case_config& config, const std::string& key, const Body& body)
 
 }  // namespace
 
-run_setup::run_setup(const case_config& config, std::shared_ptr<communicator> processes)
-    : equation(make_model(config)), config_(with_chosen_method(config)), builder_(*equation) {
+run_setup::run_setup(const case_config& config, std::shared_ptr<communicator> processes,
+                     std::shared_ptr<device> on)
+    : equation(make_model(config)),
+      config_(with_chosen_method(config)),
+      device_(std::move(on)),
+      builder_(*equation) {
   integrator_ = &find_integrator(config_.time.method);
   set_stability_limit();
   check_method();
@@ -99,6 +105,24 @@ run_setup::run_setup(const case_config& config, std::shared_ptr<communicator> pr
   if (ssp_coefficient() == 0.0 || integrator_->needs.explicit_collision) builder_.with_smooth_collisions();
   if (integrator_->starter().kind == method_kind::explicit_only) builder_.with_explicit_collision();
   if (integrator_->needs.exact_collision) builder_.with_exact_collision();
+  if (device_) move_to_device();
+}
+
+void run_setup::move_to_device() {
+  const auto missing = [&](const std::string& key, const std::string& what) {
+    refuse(config_, key,
+           what + " is not possible on a device (its kernels are missing); run the case on the host");
+  };
+  if (!has_space()) missing("model.name", "a model without space");
+  if (config_.space.discretization != "finite-difference")
+    missing("space.formulation", "space.formulation = \"" + config_.space.discretization + "\"");
+  if (config_.steady_state.tolerance) missing("steady", "a table [steady]");
+  if (builder_.processes().size() > 1) missing("space.cells", "a mesh that several processes share");
+  builder_.with_discretization(on_device(*device_, config_.space.reconstruction));
+}
+
+const memory_space& run_setup::memory() const {
+  return device_ ? device_->memory() : host_memory();
 }
 
 void run_setup::build_space(std::shared_ptr<communicator> processes) {
@@ -298,7 +322,7 @@ field run_setup::initial_state() const {
 }
 
 const field& run_setup::densities(const field& u, field& room) const {
-  if (!mesh().has_axis()) return u;
+  if (!mesh().has_axis()) return on_host(u, room);
   room = u;
   for (int cell = 0; cell < u.cells(); ++cell) {
     if (mesh().solid(cell) >= 0) continue;
@@ -386,7 +410,9 @@ double run_setup::cfl_length() const {
   return 1.0 / builder_.cfl_rate();
 }
 
-double run_setup::equilibrium_defect(const field& u) const {
+double run_setup::equilibrium_defect(const field& state) const {
+  field room;
+  const field& u = on_host(state, room);
   const auto* relaxation = equation->as_relaxation();
   if (relaxation == nullptr || equation->invariants().empty()) return 0.0;
   const std::size_t count = equation->invariants().size();

@@ -2,6 +2,7 @@
 
 #include <apsis/config/case.hpp>
 #include <apsis/core/construction_count.hpp>
+#include <apsis/device/device.hpp>
 #include <apsis/method/time_integrator.hpp>
 #include <apsis/model/model_registry.hpp>
 #include <apsis/model/velocity_support.hpp>
@@ -22,7 +23,10 @@ class run_setup : public construction_count<run_setup> {
   /// Throws input_error if the mesh is smaller than the stencil, the method cannot integrate the model, or
   /// epsilon(x) is not a finite number ≥ 0 on the mesh.
   /// `processes` share the mesh; states and fields are those of the block of this process.
-  explicit run_setup(const case_config& config, std::shared_ptr<communicator> processes = single_process());
+  /// `on`: a device that the problem and its states live on, with the bits of the host; null for the host.
+  /// Throws input_error where a part of the case has no kernel.
+  explicit run_setup(const case_config& config, std::shared_ptr<communicator> processes = single_process(),
+                     std::shared_ptr<device> on = nullptr);
 
   std::shared_ptr<const model> equation;  ///< model.name with its parameters and velocity grid
 
@@ -56,6 +60,10 @@ class run_setup : public construction_count<run_setup> {
   /// velocity grid does not support it; `computed`: a velocity grid on which the state was computed is not
   /// refused, but a warning given.
   field checked(field u, bool computed = false) const;
+  /// Returns the memory of the states of a run.
+  const memory_space& memory() const;
+  /// Returns the device; null for the host.
+  const device* runs_on() const { return device_.get(); }
   /// Returns the builder of the problem, which samples functions of position on the mesh.
   const problem_builder& builder() const { return builder_; }
   /// Returns the exact solution at time t in the same form; nothing if no formula is known.
@@ -115,6 +123,7 @@ class run_setup : public construction_count<run_setup> {
   void warn_of_velocities(const velocity_support& support, double missed, int cell,
                           const std::vector<double>& omega) const;
   void build_space(std::shared_ptr<communicator> processes);
+  void move_to_device();
   void set_epsilon();
   void set_prescribed_data();
   void check_method();
@@ -123,6 +132,7 @@ class run_setup : public construction_count<run_setup> {
   void check_tolerance() const;
 
   case_config config_;
+  std::shared_ptr<device> device_;  ///< null: the host
   problem_builder builder_;
   initial_data prescribed_;  ///< of the table [initial]
   const time_integrator* integrator_ = nullptr;

@@ -17,6 +17,7 @@
 #include <optional>
 #include <span>
 #include <utility>
+#include <vector>
 
 namespace apsis {
 
@@ -63,6 +64,7 @@ struct simulation::impl {
   running_case run;
   std::unique_ptr<progression> progress;
   bool inside_step = false;  ///< also after a step that failed
+  std::vector<double> row;   ///< a copy of one of a state on a device
 };
 
 namespace {
@@ -199,7 +201,11 @@ std::vector<double> simulation::whole_state() const {
 
 std::span<const double> simulation::row(int cell) const {
   const field& u = impl_->run.state;
-  return {u.row(cell), static_cast<std::size_t>(u.components())};
+  const auto width = static_cast<std::size_t>(u.components());
+  if (u.memory().on_host()) return {u.row(cell), width};
+  impl_->row.resize(width);
+  u.memory().copy_to_host(u.row(cell), width, impl_->row.data());
+  return impl_->row;
 }
 
 std::vector<double> simulation::densities_in(int cell) const {

@@ -2,6 +2,7 @@
 
 #include <apsis/exec/global_sum.hpp>
 #include <apsis/exec/parallel.hpp>
+#include <apsis/mesh/on_host.hpp>
 #include <apsis/scheme/row_check.hpp>
 
 #include <array>
@@ -11,7 +12,9 @@
 
 namespace apsis {
 
-double relative_distance(const field& u, const field& v, communicator& processes) {
+double relative_distance(const field& one, const field& other, communicator& processes) {
+  field room, other_room;
+  const field &u = on_host(one, room), &v = on_host(other, other_room);
   std::vector<row_squares> squares(static_cast<std::size_t>(u.cells()));
   constexpr int block = 16;
   const loops_over numbers(u.size());

@@ -1,0 +1,108 @@
+// Runs on a device have the bits of the host. Lanes on the host take the part of the device.
+#include "same_results.hpp"
+
+#include <apsis/config/case.hpp>
+#include <apsis/core/errors.hpp>
+#include <apsis/device/find_device.hpp>
+#include <apsis/run/session.hpp>
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <support/folder.hpp>
+
+namespace device_runs_test {
+
+using namespace apsis;
+using testing::HasSubstr;
+
+namespace {
+
+/// A few steps of a gas on a line between walls or in a periodic domain.
+std::string small_gas(bool between_walls, const std::string& time) {
+  std::string text =
+      "[model]\nname = \"bgk\"\nepsilon = \"0.001 + 0.1*x\"\n"
+      "[space]\ncells = 20\ndomain = [0.0, 2.0]\nformulation = \"finite-difference\"\n"
+      "[velocity]\nmax = 9.0\npoints = 36\n[output]\nevery = 0.011\n[time]\n" +
+      time;
+  if (between_walls)
+    text +=
+        "[boundary.left]\nkind = \"diffuse\"\nT = \"1 + 0.2*sin(20*t)\"\n[boundary.right]\nkind = "
+        "\"diffuse\"\nT = 0.9\n";
+  return text;
+}
+
+/// The end of a run and its history; stops after `steps`, and continues a checkpoint if there is one.
+outcome run(const std::string& text, bool on_device, const std::string& folder = "", long steps = -1,
+            std::optional<std::string> restart = {}) {
+  session_options how;
+  if (on_device) how.on = open_device("teams");
+  if (!folder.empty()) how.out = folder;
+  how.restart = std::move(restart);
+  long done = 0;
+  how.watch = [&done](const simulation& now) { done = now.step(); };
+  how.stop = [&done, steps] { return steps >= 0 && done >= steps; };
+  run_session session(parse_case(text, "gas.toml"), how);
+  session.run();
+  return {session.computed().state(), session.records().history(), session.records().fields()};
+}
+
+}  // namespace
+
+TEST(device_runs, have_the_bits_of_the_host) {
+  for (const std::string time : {"method = \"md-imex-8-3-mixed\"\nsafety = 1\nend = 0.03\n",
+                                 "method = \"imex-bdf-3\"\ndt = 0.002\nend = 0.02\n",
+                                 "method = \"md-imex-8-3-mixed\"\ntolerance = 1e-4\nsafety = 1\nend = 0.03\n",
+                                 "method = \"md-imex-6-3\"\nsafety = 1\nend = 0.03\nsteady = 1e-9\n"})
+    for (const bool between_walls : {false, true}) {
+      const std::string text = small_gas(between_walls, time);
+      expect_same(run(text, true), run(text, false), text);
+    }
+}
+
+TEST(device_runs, are_continued_on_the_host_and_on_a_device) {
+  const std::string text = small_gas(true, "method = \"imex-bdf-3\"\ndt = 0.002\nend = 0.02\n");
+  const outcome whole = run(text, false);
+  for (const bool first : {false, true}) {
+    const test_folder folder;
+    run(text, first, folder / "run", 5);
+    expect_same(run(text, !first, folder / "run", -1, folder / "run/checkpoint.h5"), whole,
+                first ? "from a device to the host" : "from the host to a device");
+  }
+}
+
+TEST(device_runs, are_refused_before_the_first_step_where_a_kernel_is_missing) {
+  const std::string time = "method = \"md-imex-6-3\"\nsafety = 1\nend = 0.01\n";
+  const auto refused = [](const std::string& text, const std::string& reason) {
+    EXPECT_THAT([&] { run(text, true); }, testing::ThrowsMessage<input_error>(HasSubstr(reason))) << text;
+  };
+  const std::string gas = small_gas(false, time);
+  const auto changed = [&](const std::string& from, const std::string& to) {
+    std::string text = gas;
+    return text.replace(text.find(from), from.size(), to);
+  };
+  refused(changed("formulation = \"finite-difference\"", "formulation = \"finite-volume\""), "formulation");
+  refused(changed("name = \"bgk\"", "name = \"bgk\"\nvelocity_dimensions = 2"),
+          "even line of velocities alone");
+  refused(gas + "[steady]\ntolerance = 1e-6\n", "a table [steady]");
+  refused(gas + "[force]\nacceleration = [0.1]\n", "force");
+  refused(
+      "[model]\nname = \"broadwell\"\nepsilon = 1\n[space]\ncells = 20\nformulation = "
+      "\"finite-difference\"\n[time]\n" +
+          time,
+      "the kernel of its collisions is missing");
+  refused("[model]\nname = \"decay\"\nepsilon = 1\n[time]\nmethod = \"md-imex-6-3\"\ndt = 0.1\nend = 1\n",
+          "a model without space");
+}
+
+TEST(device_runs, unknown_devices_are_refused_with_those_that_there_are) {
+  const bool none = found_devices().empty();
+  EXPECT_THAT(
+      [] { open_device("cuda:99"); },
+      testing::ThrowsMessage<input_error>(HasSubstr(none ? "no device was found" : "no device 'cuda:99'")));
+}
+
+}  // namespace device_runs_test

@@ -76,4 +76,23 @@ TEST(a_steady_estimate, of_a_gas_between_plates_is_the_distance_of_a_longer_run)
   EXPECT_EQ(json["steady"]["distance"].get<double>(), found.distance);
 }
 
+/// Steps as long as epsilon move the steady state of methods with second derivatives, whatever time.steady
+/// is.
+TEST(a_steady_estimate, a_method_whose_steady_state_depends_on_the_step_warns_of_it) {
+  const auto warnings = [](const std::string& method, const std::string& time) {
+    run_session run(between_walls::case_of({method, time, "", "formulation = \"finite-difference\"", "0.01"}),
+                    {});
+    run.run();
+    return run.warnings();
+  };
+  const auto about_steps =
+      testing::Contains(HasSubstr("the steady state of method 'md-imex-8-3-mixed' depends on dt C/epsilon"));
+  EXPECT_THAT(warnings("md-imex-8-3-mixed", "cfl = 0.8\nend = 0.1\nsteady = 1e-4"), about_steps);
+  EXPECT_THAT(warnings("md-imex-8-3-mixed", "cfl = 0.8\nend = 0.1"), testing::Not(about_steps));
+  EXPECT_THAT(warnings("md-imex-8-3-mixed", "dt = 0.0005\nend = 0.01\nsteady = 1e-4"),
+              testing::Not(about_steps));
+  EXPECT_THAT(warnings("bhr-553", "cfl = 0.2\nend = 0.1\nsteady = 1e-4"),
+              testing::Not(testing::Contains(HasSubstr("depends on dt C/epsilon"))));
+}
+
 }  // namespace steady_estimate_test

@@ -19,6 +19,10 @@ void warn_of_stiff_collision(const run_setup& setup, double relaxation, double d
 /// `growth` is source_rate::growth.
 void warn_of_fast_source(double growth, double dt);
 
+/// Warns if steps dt move the steady state to which a run with time.steady marches: that of a method with
+/// steady_state_defect() depends on dt/epsilon, at most dt over `relaxation`.
+void warn_of_moved_steady_state(const run_setup& setup, double relaxation, double dt);
+
 /// Warns of implicit stages whose dense Newton systems have more than 200 unknowns.
 void warn_of_dense_stages(const run_setup& setup);
 

@@ -57,6 +57,7 @@ void time_steps::warn_before_steps(double relaxation) {
   warn_of_stiff_collision(run_.setup, relaxation, next_dt());
   warn_of_fast_source(run_.problem->growth_of_source(run_.march.t(), run_.state), next_dt());
   warn_of_unstable_steps(run_.setup, next_dt());
+  warn_of_moved_steady_state(run_.setup, relaxation, next_dt());
   warn_of_rays(run_.setup, relaxation);
 }
 

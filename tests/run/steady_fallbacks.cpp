@@ -1,4 +1,4 @@
-// What a steady run does where it fails from its first state, and what it cannot find.
+// Steady runs that fail from their first state, and flows without a steady state.
 #include <apsis/config/case.hpp>
 #include <apsis/core/errors.hpp>
 #include <apsis/run/simulation.hpp>

@@ -33,7 +33,7 @@ row maxwellian(const apsis::relaxation_model& equation, double T) {
   return f;
 }
 
-/// What enters at the left end of a gas with the row `inside`.
+/// Returns the row that enters at the left end of a gas with the row `inside`.
 row entering(const apsis::relaxation_model& equation, const apsis::boundary& of, const row& inside) {
   const apsis::velocity_set velocities = equation.velocities();
   const auto prepared = of.prepared({0, false}, velocities);  // nullptr where it needs no tables

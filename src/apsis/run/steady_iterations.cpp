@@ -74,8 +74,8 @@ void steady_iterations::advance() {
   }
 }
 
-/// The next iteration where the run cannot go on from the last one, such as from a gas that is too hot for
-/// the velocities.
+/// The next iteration where the last one is no start for it, such as a gas that is too hot for the
+/// velocities.
 steady_iteration steady_iterations::replace(const numerical_error& failure) {
   if (march_) throw failure;
   if (!easier_ && begin_again(failure)) return iterate();

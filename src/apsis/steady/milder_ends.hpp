@@ -12,7 +12,7 @@ namespace apsis {
 ///   f_in = s g + (1 − s) c M,   s = 1/64, 1/32, …, 1/2,
 /// with g of the boundary condition and the equilibrium M of the mean moments of the start. The factor c
 /// gives M the mass flux of g, so that no mass crosses a wall. A wall of temperature T in a gas of T₀ then
-/// emits the energy of one with s T + (1 − s) T₀, and momentum with s u + (1 − s) u₀. What enters is not
+/// emits the energy of one with s T + (1 − s) T₀, and momentum with s u + (1 − s) u₀. The mixture is not
 /// negative where g is not.
 class milder_ends final : public continuation {
  public:
@@ -33,7 +33,7 @@ class milder_ends final : public continuation {
 };
 
 /// Returns the boundary condition f_in = s g + (1 − s) c M of milder_ends, g being that of another one.
-/// `row`: M, of which the components of the first set give the mass.
+/// `row`: M. The components of its first set give the mass.
 std::shared_ptr<const boundary> milder_end(std::shared_ptr<const boundary> of, double share,
                                            std::shared_ptr<const std::vector<double>> row);
 

@@ -152,7 +152,7 @@ def test_a_small_file_that_claims_to_be_large_is_refused_before_it_is_expanded(t
     write(tmp_path / "a.h5", columns={name: values for name, values in COLUMNS.items() if name != "T"})
     with h5py.File(tmp_path / "a.h5", "a") as file:
         file.create_dataset("T", (2**27,), "f8", chunks=(2**20,), compression="gzip", fillvalue=1.0)
-    with pytest.raises(apsis.InputError, match="'T' has 134217728 numbers and 'x' has 40; give one for each cell"):
+    with pytest.raises(apsis.InputError, match="'T' has 134217728 numbers and 'x' has 40 .each cell has one.; give as many"):
         run(tmp_path / "a.h5")
 
 

@@ -71,15 +71,6 @@ double difference(const std::vector<double>& a, const std::vector<double>& b) {
   return largest / size;
 }
 
-std::string refused(const std::string& text, const std::vector<std::string>& overrides = {}) {
-  try {
-    apsis::simulation run(make_case(text, overrides));
-  } catch (const apsis::input_error& problem) {
-    return problem.what();
-  }
-  return "accepted";
-}
-
 const std::vector<double>& column(const apsis::field_table& table, const std::string& name) {
   const auto found = std::find(table.names.begin(), table.names.end(), name);
   return table.values.at(static_cast<std::size_t>(found - table.names.begin()));
@@ -252,29 +243,6 @@ safety = 1
     EXPECT_LE(run.last().entropy, before);
     before = run.last().entropy;
   }
-}
-
-TEST(axisymmetric_run, refuses_before_a_run_what_it_cannot_do) {
-  const std::string sides = "boundary = \"outflow\"\n", plain = tube(sides);
-  EXPECT_THAT(refused(plain, {"space.cells=[8,8,8]", "space.domain=[[0,1],[0,1],[0,1]]"}),
-              testing::HasSubstr("axisymmetric flow in 3 space dimensions"));
-  EXPECT_THAT(refused(plain, {"space.domain=[[0,1],[-1,1]]"}),
-              testing::HasSubstr("it begins at the distance r = -1"));
-  EXPECT_THAT(refused(plain, {"space.discretization=\"finite-volume\""}),
-              testing::HasSubstr("space.discretization"));
-  EXPECT_THAT(refused(plain, {"steady.tolerance=1e-6"}),
-              testing::HasSubstr("table [steady] has no rotation"));
-  EXPECT_THAT(refused(plain, {"force.acceleration=[\"1\"]"}), testing::HasSubstr("remove the table [force]"));
-  EXPECT_THAT(refused(plain, {"velocity.angles=30"}), testing::HasSubstr("give 32"));
-  EXPECT_THAT(refused(plain, {"boundary.bottom.kind=\"symmetry\""}),
-              testing::HasSubstr("r = 0 is a line without area"));
-  EXPECT_THAT(refused(plain, {"boundary.top.kind=\"symmetry\""}),
-              testing::HasSubstr("a cylinder is no plane of symmetry"));
-  EXPECT_THAT(refused(plain, {"space.geometry=\"cartesian\""}), testing::HasSubstr("'velocity.rings'"));
-  EXPECT_THAT(refused(plain, {"model.name=\"broadwell\""}), testing::HasSubstr("space.geometry"));
-  // Reflections by walls with any normal interpolate between velocities.
-  EXPECT_THAT(refused(plain + ball + "accommodation = 0.5\n"), testing::HasSubstr("wall with any normal"));
-  EXPECT_EQ(refused(plain + ball), "accepted");
 }
 
 }  // namespace axisymmetric_test

@@ -74,7 +74,8 @@ class earlier_side {
     if (has_units || theirs.is_null()) return;
     if (!scales_ || theirs != to_json(*scales_))
       throw input_error(
-          "its units are those of another table [gas]; write it with output.units = \"SI\", or use the same "
+          "its units are those of another table [gas] (the scales differ); write it with output.units = "
+          "\"SI\", or use the same "
           "reference state");
   }
 

@@ -106,7 +106,8 @@ void initial_table_file::take_manifest(const std::string& text) {
   const bool in_si = at(manifest_, {"case", "output", "units"}) == choice_name(units_choice::si);
   if (!scales.is_null() && config_.scales && !in_si && scales != to_json(*config_.scales))
     refuse(
-        "its units are those of another table [gas]; write it with output.units = \"SI\", or use the same "
+        "its units are those of another table [gas] (the scales differ); write it with output.units = "
+        "\"SI\", or use the same "
         "reference state");
 }
 
@@ -252,8 +253,8 @@ void initial_table_file::check_rows(const std::string& name, std::uint64_t rows)
     const auto cells = static_cast<std::uint64_t>(make_mesh(config_).size());
     if (rows != cells) refuse_cells(rows, cells);
   } else if (has_column("x") && (rows != rows_of("x") || rows == 0)) {
-    refuse(
-        fmt::format("'{}' has {} numbers and 'x' has {}; give one for each cell", name, rows, rows_of("x")));
+    refuse(fmt::format("'{}' has {} numbers and 'x' has {} (each cell has one); give as many", name, rows,
+                       rows_of("x")));
   }
 }
 
@@ -346,8 +347,8 @@ void initial_table_file::read_state(const hdf5_file& file) {
       mesh_rank() > 1 && cells != wanted)
     refuse_cells(cells, wanted);
   if (mesh_rank() == 1 && has_column("x") && rows_of("x") != cells)
-    refuse(fmt::format("'x' has {} numbers and the state has {} cells; give one for each cell", rows_of("x"),
-                       cells));
+    refuse(fmt::format("'x' has {} numbers and the state has {} cells (each cell has one); give as many",
+                       rows_of("x"), cells));
   state_ = file.read("f");
 }
 
@@ -463,8 +464,8 @@ initial_table_file::line_ends initial_table_file::ends(int cells) const {
   if (!has_column("x")) refuse("it has no column 'x' (centres of the cells); add it");
   const std::vector<double> x = column({"x"}, dimensions::length);
   if (x.size() != static_cast<std::size_t>(cells))
-    refuse(fmt::format("'x' has {} numbers and the state has {} cells; give one for each cell", x.size(),
-                       cells));
+    refuse(fmt::format("'x' has {} numbers and the state has {} cells (each cell has one); give as many",
+                       x.size(), cells));
   if (x.size() < 2) refuse("it has one row (the width of a cell is not known from it); give several");
   constexpr double digits = 1e-2;  // of a cell, for centres written with few digits
   const double width = (x.back() - x.front()) / (cells - 1);

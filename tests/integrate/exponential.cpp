@@ -16,6 +16,7 @@
 #include <gtest/gtest.h>
 #include <integrate/ode_model.hpp>
 #include <integrate/reference.hpp>
+#include <support/bad_input.hpp>
 
 namespace exponential_test {
 
@@ -63,16 +64,14 @@ TEST(exponential, flow_weights_sum_to_one_and_are_accurate) {
 TEST(exponential, methods_and_problems_that_do_not_belong_together_are_refused) {
   auto problem = ode_model::as_relaxation<state>(1.0L);
   apsis::exact_collisions exact(problem);
-  EXPECT_THAT(
-      [&] { const apsis::stepper march(apsis::find_method("exponential-2"), problem); },
-      testing::ThrowsMessage<apsis::input_error>(testing::HasSubstr(
-          "method 'exponential-2' cannot integrate this problem (it is exponential, and the collisions of "
-          "the problem are not solved exactly); wrap the problem in exact_collisions")));
-  EXPECT_THAT(
-      [&] { const apsis::stepper march(apsis::find_method("md-imex-3-2"), exact); },
-      testing::ThrowsMessage<apsis::input_error>(testing::HasSubstr(
-          "method 'md-imex-3-2' cannot integrate this problem (its collisions are solved exactly, and the "
-          "method is not exponential)")));
+  bad_input::expect_refused({
+      {[&] { const apsis::stepper march(apsis::find_method("exponential-2"), problem); },
+       {"method 'exponential-2' cannot integrate this problem (it is exponential, and the collisions of "
+        "the problem are not solved exactly); wrap the problem in exact_collisions"}},
+      {[&] { const apsis::stepper march(apsis::find_method("md-imex-3-2"), exact); },
+       {"method 'md-imex-3-2' cannot integrate this problem (its collisions are solved exactly, and the "
+        "method is not exponential)"}},
+  });
 }
 
 TEST(exponential, relaxation_without_transport_is_exact_for_any_step) {

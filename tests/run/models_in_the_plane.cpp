@@ -15,6 +15,7 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <support/bad_input.hpp>
 
 namespace models_in_the_plane_test {
 
@@ -323,9 +324,10 @@ TEST(models_in_the_plane, steps_are_as_long_as_every_single_velocity_allows) {
 }
 
 TEST(models_in_the_plane, laws_have_no_mirror_without_the_signs_of_its_direction) {
-  EXPECT_THAT(
-      [] { apsis::simulation(apsis::parse_case(basin, "law.toml", {"model.odd_y=[]"})); },
-      testing::ThrowsMessage<apsis::input_error>(testing::HasSubstr("model.odd_y does not say which")));
+  bad_input::expect_refused({
+      {[] { apsis::simulation(apsis::parse_case(basin, "law.toml", {"model.odd_y=[]"})); },
+       {"model.odd_y does not say which"}},
+  });
 }
 
 }  // namespace models_in_the_plane_test

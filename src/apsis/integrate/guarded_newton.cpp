@@ -294,8 +294,9 @@ class newton {
 
   [[noreturn]] void fail_to_reduce() {
     throw numerical_error(fmt::format(
-        "Newton's method cannot reduce the residual {:.3g} of the stage equation any further {}(iteration "
-        "{}): there seems to be no {}root; reduce the time step, or use an unconditionally SSP method",
+        "Newton's method cannot reduce the residual {:.3g} of the stage equation any further {}(at "
+        "iteration {} there seems to be no {}root); reduce the time step, or use an unconditionally SSP "
+        "method",
         static_cast<double>(norm_), inside_ ? "inside the admissible set " : "", iteration_,
         inside_ ? "admissible " : ""));
   }

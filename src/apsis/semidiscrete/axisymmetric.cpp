@@ -23,7 +23,9 @@ std::span<const double> row_of_f(std::span<const double> u, double r) {
 void refuse_axis(const std::vector<domain::faces>& sides) {
   for (const auto& [lower, upper] : sides)
     if (lower->is_axis() || upper->is_axis())
-      throw input_error("the boundary 'axis' in a flow that is not axisymmetric; choose another boundary");
+      throw input_error(
+          "the boundary 'axis' in a flow that is not axisymmetric (it has no radius r); choose another "
+          "boundary");
 }
 
 void decorate(std::shared_ptr<const boundary>& side, int radial, const grid& mesh) {

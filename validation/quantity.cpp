@@ -111,17 +111,19 @@ reference_value printed(origin from, quantity_values at, const std::string& digi
 double positive_number(const quantity_values& parameters, const std::string& name) {
   const double value = number_of(parameters.at(name));
   if (!(value > 0.0) || std::isinf(value))
-    throw input_error(fmt::format("{} = '{}' is not a number > 0; write for example {}=1", name,
-                                  parameters.at(name).substr(0, 60), name));
+    throw input_error(fmt::format(
+        "{} = '{}' is not a number > 0 (the parameter has no other values); write for example {}=1", name,
+        parameters.at(name).substr(0, 60), name));
   return value;
 }
 
 double number_between(const quantity_values& parameters, const std::string& name, double low, double high) {
   const double value = number_of(parameters.at(name));
   if (!(value >= low && value <= high))
-    throw input_error(fmt::format("{} = '{}' is not a number from {} to {}; write for example {}={}", name,
-                                  parameters.at(name).substr(0, 60), low, high, name,
-                                  value > high ? high : low));
+    throw input_error(
+        fmt::format("{} = '{}' is not a number from {} to {} (the parameter has no other values); write for "
+                    "example {}={}",
+                    name, parameters.at(name).substr(0, 60), low, high, name, value > high ? high : low));
   return value;
 }
 

@@ -122,6 +122,7 @@ std::optional<double> bare_decimal(std::string_view value) {
     return at < value.size() && value[at] >= '0' && value[at] <= '9';
   };
   if (point > 0 && is_digit(point - 1) && is_digit(point + 1)) return std::nullopt;  // TOML
+  if (value.starts_with("+-")) return std::nullopt;
   return decimal(value.substr(value.front() == '+' ? 1 : 0));
 }
 

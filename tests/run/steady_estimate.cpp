@@ -80,8 +80,8 @@ TEST(a_steady_estimate, of_a_gas_between_plates_is_the_distance_of_a_longer_run)
 /// is.
 TEST(a_steady_estimate, a_method_whose_steady_state_depends_on_the_step_warns_of_it) {
   const auto warnings = [](const std::string& method, const std::string& time) {
-    run_session run(between_walls::case_of({method, time, "", "formulation = \"finite-difference\"", "0.01"}),
-                    {});
+    run_session run(
+        between_walls::case_of({method, time, "", "formulation = \"finite-difference\"", "0.003"}), {});
     run.run();
     return run.warnings();
   };

@@ -1,6 +1,7 @@
 // Formulas of all families on a double, as kernels of a graphics processor would use them: compiled to
 // assembly only (test_formulas.py), without any library.
 #include <apsis/boundary/formulas/continuation.hpp>
+#include <apsis/model/formulas/arithmetic.hpp>
 #include <apsis/model/formulas/grid_sums.hpp>
 #include <apsis/model/formulas/line.hpp>
 #include <apsis/model/formulas/relaxation.hpp>
@@ -52,6 +53,10 @@ extern "C" void linear_edges(const double* u, double* to) {
   to[1] = scalar::upwind1_edge(u[0]) + outflow_edge<scalar::weights_teno>(u);
   to[2] = scalar::upwind5_edge(u[0], u[1], u[2], u[3], u[4]);
   scalar::limiter::limit_edges(u[2], to[0], to[2]);
+}
+
+extern "C" void powers(const double* u, double* to) {
+  to[0] = scalar::square_of(u[0]) + scalar::cube_of(u[1]) + scalar::fourth_power_of(u[2]);
 }
 
 extern "C" void boundaries(const double* u, double* to) {

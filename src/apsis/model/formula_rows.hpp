@@ -13,7 +13,7 @@ namespace formula_rows {
 inline constexpr int most_points = 64,  ///< of one evaluation, the distance of columns
     most_columns = 32;                  ///< of one evaluation
 
-/// What a step does.
+/// Kind of a step.
 enum class operation { add, subtract, multiply, divide, negate, square, cube, fourth_power, call };
 
 /// A column, or a number where the column is negative.

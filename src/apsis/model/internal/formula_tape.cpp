@@ -28,7 +28,7 @@ class recorder {
 
   /// The value of a variable.
   static double variable(std::size_t k) { return name_of(static_cast<int>(k)); }
-  /// What a value of the parser stands for, a variable or the result of a step by its number.
+  /// The variable or, by its number, the step that a value of the parser stands for.
   static operand meant_by(double value) {
     const auto bits = std::bit_cast<std::uint64_t>(value);
     if (bits <= first_name || bits - first_name > last_name) return {-1, value};

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <type_traits>
 
 namespace apsis {
 namespace {
@@ -35,8 +36,14 @@ void for_lines(const velocity_grid& grid, const fluid_state& state, const Body& 
   }
 }
 
-/// P along the last line of a grid of d dimensions, the other components of c given.
-template <std::size_t d>
+/// Whether P has no term of third degree.
+bool is_quadratic(const target_polynomial& p) {
+  return p.w[0] == 0.0 && p.w[1] == 0.0 && p.w[2] == 0.0;
+}
+
+/// P along the last line of a grid of d dimensions, the other components of c given. `Cubic`: P has terms of
+/// third degree.
+template <std::size_t d, bool Cubic>
 target_rows::cubic along_last(const velocity_grid& grid, const target_polynomial& p,
                               const std::array<double, 2>& c) {
   const auto last = static_cast<std::size_t>(grid.last_component());
@@ -44,17 +51,21 @@ target_rows::cubic along_last(const velocity_grid& grid, const target_polynomial
   target_rows::cubic of_line{p.k, p.l[last], p.a[last][last], p.w[last]};
   for (std::size_t k = 0; k + 1 < d; ++k) {
     const auto i = static_cast<std::size_t>(grid.component_across(static_cast<int>(k)));
-    square += c[k] * c[k];
-    along += p.w[i] * c[k];
+    if constexpr (Cubic) {
+      square += c[k] * c[k];
+      along += p.w[i] * c[k];
+    }
     of_line.k0 += p.l[i] * c[k];
     of_line.k1 += 2.0 * p.a[i][last] * c[k];
     for (std::size_t l = 0; l + 1 < d; ++l)
       of_line.k0 +=
           p.a[i][static_cast<std::size_t>(grid.component_across(static_cast<int>(l)))] * c[k] * c[l];
   }
-  of_line.k0 += along * square;
-  of_line.k1 += p.w[last] * square;
-  of_line.k2 += along;
+  if constexpr (Cubic) {
+    of_line.k0 += along * square;
+    of_line.k1 += p.w[last] * square;
+    of_line.k2 += along;
+  }
   return of_line;
 }
 
@@ -66,8 +77,15 @@ bool weigh_lines(const velocity_grid& grid, const fluid_state& state, const targ
   bool raised = false;
   for_lines(grid, state, [&](const line_batch& some) {
     std::array<target_rows::cubic, together> of_lines;  // NOLINT(cppcoreguidelines-pro-type-member-init)
-    for (int i = 0; i < some.count; ++i)
-      of_lines[static_cast<std::size_t>(i)] = along_last<d>(grid, p, some.c[static_cast<std::size_t>(i)]);
+    const auto find = [&](auto cubic) {
+      for (int i = 0; i < some.count; ++i)
+        of_lines[static_cast<std::size_t>(i)] =
+            along_last<d, cubic>(grid, p, some.c[static_cast<std::size_t>(i)]);
+    };
+    if (is_quadratic(p))
+      find(std::false_type());
+    else
+      find(std::true_type());
     const std::ptrdiff_t first = static_cast<std::ptrdiff_t>(some.first) * n;
     raised |= target_rows::weigh(base + first, grid.last_line().v().data(), state.u[grid.last_component()],
                                  of_lines.data(), some.count, f + first, keep, n, e + first);
@@ -134,11 +152,6 @@ bool is_accurate(const target_defect& found, double ratio) {
          std::abs(found.energy) <= std::min(target_accuracy * ratio, largest_bound);
 }
 
-/// Whether P has no term of third degree.
-bool is_quadratic(const target_polynomial& p) {
-  return p.w[0] == 0.0 && p.w[1] == 0.0 && p.w[2] == 0.0;
-}
-
 /// Corrects the shape by moments of the base, without a pass over the target. Returns false where that is
 /// not possible.
 bool correct_by_moments(const gas& of, const fluid_state& state, const target_base& base,
@@ -167,6 +180,16 @@ central_moments compute_central_moments(const gas& of, const double* row, const 
   const central_sums h(grid, row + grid.size(), state.u, 1);
   for (std::size_t k = 0; k < d; ++k) all.heat[k] += 0.5 * h.along({k});
   return all;
+}
+
+std::array<std::array<double, 3>, 3> compute_stress(const gas& of, const double* row,
+                                                    const fluid_state& state) {
+  const auto d = static_cast<std::size_t>(of.dimensions());
+  const central_sums g(of.grid(), row, state.u, 2);
+  std::array<std::array<double, 3>, 3> stress{};
+  for (std::size_t k = 0; k < d; ++k)
+    for (std::size_t l = 0; l < d; ++l) stress[k][l] = g.along({k, l}) / state.rho;
+  return stress;
 }
 
 bool conservative_target(const gas& of, const double* omega, const target_base& base,

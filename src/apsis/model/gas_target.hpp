@@ -15,6 +15,10 @@ struct central_moments {
 /// Returns those of a row whose density and bulk velocity are given.
 central_moments compute_central_moments(const gas& of, const double* row, const fluid_state& state);
 
+/// Returns the second ones alone.
+std::array<std::array<double, 3>, 3> compute_stress(const gas& of, const double* row,
+                                                    const fluid_state& state);
+
 /// The polynomial P(c) = k + l·c + cᵀA c + (w·c)|c|² in the resolved components c = v − u.
 struct target_polynomial {
   double k = 1.0;                            ///< k

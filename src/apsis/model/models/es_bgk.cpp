@@ -56,9 +56,9 @@ class es_bgk_model final : public gas_model {
     std::fill_n(s, relaxing_count(), 0.0);
     const fluid_state state = molecules().state(omega);
     if (!state.admissible()) return;
-    const central_moments m = compute_central_moments(molecules(), f, state);
+    const auto stress = compute_stress(molecules(), f, state);
     for (std::size_t k = 0; k < size(); ++k)
-      for (std::size_t l = k; l < size(); ++l) *s++ = m.stress[k][l] - (k == l ? state.T : 0.0);
+      for (std::size_t l = k; l < size(); ++l) *s++ = stress[k][l] - (k == l ? state.T : 0.0);
   }
 
   void relax(const stage_coefficients& of, double* s) const override {

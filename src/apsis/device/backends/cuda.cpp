@@ -1,11 +1,12 @@
 #include <apsis/core/errors.hpp>
 #include <apsis/device/device.hpp>
+#include <apsis/device/internal/driven_device.hpp>
 #include <apsis/device/internal/driver_library.hpp>
 #include <apsis/device/internal/kernel_table.hpp>
 
 #include <array>
 #include <cstdint>
-#include <map>
+#include <cstdio>
 #include <optional>
 
 #include <fmt/format.h>
@@ -15,7 +16,7 @@ namespace {
 
 /// The functions of the CUDA driver that are needed, declared as in its documentation (CUDA Driver
 /// API, 12.0). They return 0 on success.
-struct cuda_driver {
+struct cuda_functions {
   using address = std::uint64_t;
   using handle = void*;
 
@@ -24,7 +25,6 @@ struct cuda_driver {
   int (*device_of)(int* device, int number);
   int (*device_name)(char* name, int length, int device);
   int (*attribute)(int* value, int attribute, int device);
-  int (*total_memory)(std::size_t* bytes, int device);
   int (*retain_context)(handle* context, int device);
   int (*set_context)(handle context);
   int (*release_context)(int device);
@@ -43,174 +43,152 @@ struct cuda_driver {
   int (*synchronize)();
   int (*error_text)(int error, const char** text);
 
-  /// Returns the driver of this machine; nothing if it has none, or an older one without these functions.
+  /// Finds all of them; false if the library lacks one.
+  bool find_in(const driver_library& library) {
+    return library.find("cuInit", init) && library.find("cuDeviceGetCount", device_count) &&
+           library.find("cuDeviceGet", device_of) && library.find("cuDeviceGetName", device_name) &&
+           library.find("cuDeviceGetAttribute", attribute) &&
+           library.find("cuDevicePrimaryCtxRetain", retain_context) &&
+           library.find("cuCtxSetCurrent", set_context) &&
+           library.find("cuDevicePrimaryCtxRelease_v2", release_context) &&
+           library.find("cuMemGetInfo_v2", memory_info) && library.find("cuModuleLoadDataEx", load) &&
+           library.find("cuModuleGetFunction", function_of) &&
+           library.find("cuFuncSetAttribute", set_function) && library.find("cuMemAlloc_v2", allocate) &&
+           library.find("cuMemFree_v2", release) && library.find("cuMemsetD8_v2", clear) &&
+           library.find("cuMemcpyDtoD_v2", copy) && library.find("cuMemcpyHtoD_v2", copy_from_host) &&
+           library.find("cuMemcpyDtoH_v2", copy_to_host) && library.find("cuLaunchKernel", launch) &&
+           library.find("cuCtxSynchronize", synchronize) && library.find("cuGetErrorString", error_text);
+  }
+};
+
+/// The driver as driven_device asks for it.
+class cuda_driver {
+ public:
+  using handle = cuda_functions::handle;
+
+  /// A device that is open, with its kernels.
+  struct context {
+    context(const cuda_driver& of, int number) : driver(of) {
+      driver.require(driver.call_.device_of(&device, number), "it was opened");
+      driver.require(driver.call_.retain_context(&opened, device), "it was opened");
+      driver.require(driver.call_.set_context(opened), "it was opened");
+      code = driver.load(device, number);
+    }
+    ~context() { driver.call_.release_context(device); }
+    context(const context&) = delete;
+    context& operator=(const context&) = delete;
+
+    const cuda_driver& driver;
+    int device = 0;
+    handle opened = nullptr, code = nullptr;
+  };
+
+  /// Returns the driver of this machine; null if it has none, or an older one without these functions.
   static const cuda_driver* find() {
-    static const std::optional<cuda_driver> only = open();
+    static const std::optional<cuda_driver> only = [] {
+      cuda_driver found;
+      const bool there = found.call_.find_in(driver_library({"libcuda.so.1"})) && found.call_.init(0) == 0;
+      return there ? std::optional(found) : std::nullopt;
+    }();
     return only ? &*only : nullptr;
   }
 
+  int count() const {
+    int count = 0;
+    return call_.device_count(&count) == 0 ? count : 0;
+  }
+  std::string name_of(int number) const {
+    std::array<char, 128> name{};
+    int device = 0;
+    const bool named = call_.device_of(&device, number) == 0 &&
+                       call_.device_name(name.data(), static_cast<int>(name.size()) - 1, device) == 0;
+    return named ? name.data() : "unknown";
+  }
+  std::pair<std::size_t, std::size_t> memory_info() const {
+    std::size_t free = 0, total = 0;
+    require(call_.memory_info(&free, &total), "its memory was examined");
+    return {free, total};
+  }
+
+  void allocate(std::size_t bytes, void*& memory) const {
+    cuda_functions::address place = 0;
+    constexpr int out_of_memory = 2;
+    const int result = call_.allocate(&place, bytes);
+    if (result != out_of_memory) require(result, "memory was allocated");
+    memory = reinterpret_cast<void*>(place);
+  }
+  void release(void* memory) const noexcept { call_.release(place(memory)); }
+  void clear(void* memory, std::size_t bytes) const {
+    require(call_.clear(place(memory), 0, bytes), "memory was cleared");
+  }
+  void copy(void* to, const void* from, std::size_t bytes, copy_kind kind) const {
+    const int result = kind == copy_kind::inside      ? call_.copy(place(to), place(from), bytes)
+                       : kind == copy_kind::to_device ? call_.copy_from_host(place(to), from, bytes)
+                                                      : call_.copy_to_host(to, place(from), bytes);
+    require(result, "memory was copied");
+  }
+
+  handle function_of(const context& of, const std::string& kernel) const {
+    handle function = nullptr;
+    require(call_.function_of(&function, of.code, kernel.c_str()), "a kernel was looked up");
+    return function;
+  }
+  void launch(handle function, const launch_size& size, const void* arguments, std::size_t) const {
+    const std::size_t shared = size.shared_numbers * sizeof(double);
+    constexpr int largest_shared_memory = 8;
+    constexpr std::size_t without_request = std::size_t{48} << 10;
+    if (shared > without_request)
+      require(call_.set_function(function, largest_shared_memory, static_cast<int>(shared)),
+              "shared memory was reserved");
+    void* all[] = {const_cast<void*>(arguments)};
+    require(
+        call_.launch(function, static_cast<unsigned>(size.blocks), 1, 1, static_cast<unsigned>(size.lanes), 1,
+                     1, static_cast<unsigned>(shared), nullptr, all, nullptr),
+        "a kernel was started");
+  }
+  void finish() const { require(call_.synchronize(), "kernels ran"); }
+
+ private:
   /// Throws io_error unless a result is success.
   void require(int result, const char* doing) const {
     if (result == 0) return;
     const char* text = nullptr;
-    error_text(result, &text);
+    call_.error_text(result, &text);
     throw io_error(
         fmt::format("the device failed while {} (CUDA error {}: {}); restart from the last checkpoint", doing,
                     result, text == nullptr ? "unknown" : text));
   }
 
- private:
-  static std::optional<cuda_driver> open() {
-    const driver_library library({"libcuda.so.1"});
-    cuda_driver d{};
-    const bool complete =
-        library.find("cuInit", d.init) && library.find("cuDeviceGetCount", d.device_count) &&
-        library.find("cuDeviceGet", d.device_of) && library.find("cuDeviceGetName", d.device_name) &&
-        library.find("cuDeviceGetAttribute", d.attribute) &&
-        library.find("cuDeviceTotalMem_v2", d.total_memory) &&
-        library.find("cuDevicePrimaryCtxRetain", d.retain_context) &&
-        library.find("cuCtxSetCurrent", d.set_context) &&
-        library.find("cuDevicePrimaryCtxRelease_v2", d.release_context) &&
-        library.find("cuMemGetInfo_v2", d.memory_info) && library.find("cuModuleLoadDataEx", d.load) &&
-        library.find("cuModuleGetFunction", d.function_of) &&
-        library.find("cuFuncSetAttribute", d.set_function) && library.find("cuMemAlloc_v2", d.allocate) &&
-        library.find("cuMemFree_v2", d.release) && library.find("cuMemsetD8_v2", d.clear) &&
-        library.find("cuMemcpyDtoD_v2", d.copy) && library.find("cuMemcpyHtoD_v2", d.copy_from_host) &&
-        library.find("cuMemcpyDtoH_v2", d.copy_to_host) && library.find("cuLaunchKernel", d.launch) &&
-        library.find("cuCtxSynchronize", d.synchronize) && library.find("cuGetErrorString", d.error_text);
-    if (!complete || d.init(0) != 0) return std::nullopt;
-    return d;
-  }
-};
-
-class cuda_memory final : public memory_space {
- public:
-  cuda_memory(const cuda_driver& driver, std::string name) : driver_(driver), name_(std::move(name)) {}
-
-  std::string_view name() const override { return name_; }
-  bool on_host() const override { return false; }
-  double* allocate(std::size_t count) const override {
-    cuda_driver::address memory = 0;
-    constexpr int out_of_memory = 2;
-    const int result = driver_.allocate(&memory, count * sizeof(double));
-    if (result == out_of_memory) throw std::bad_alloc();
-    driver_.require(result, "memory was allocated");
-    return reinterpret_cast<double*>(memory);
-  }
-  void release(double* numbers, std::size_t) const noexcept override { driver_.release(place(numbers)); }
-  void clear(double* numbers, std::size_t count) const override {
-    driver_.require(driver_.clear(place(numbers), 0, count * sizeof(double)), "memory was cleared");
-  }
-  void copy(const double* from, std::size_t count, double* to) const override {
-    driver_.require(driver_.copy(place(to), place(from), count * sizeof(double)), "memory was copied");
-  }
-  void copy_from_host(const double* host, std::size_t count, double* to) const override {
-    driver_.require(driver_.copy_from_host(place(to), host, count * sizeof(double)), "data were sent to it");
-  }
-  void copy_to_host(const double* from, std::size_t count, double* host) const override {
-    driver_.require(driver_.copy_to_host(host, place(from), count * sizeof(double)), "results were read");
-  }
-
- private:
-  static cuda_driver::address place(const double* numbers) {
-    return reinterpret_cast<cuda_driver::address>(numbers);
-  }
-  const cuda_driver& driver_;
-  std::string name_;
-};
-
-std::string name_of(const cuda_driver& driver, int number) {
-  std::array<char, 128> name{};
-  int place = 0;
-  if (driver.device_of(&place, number) != 0 ||
-      driver.device_name(name.data(), static_cast<int>(name.size()) - 1, place) != 0)
-    return "unknown";
-  return name.data();
-}
-
-class cuda_device final : public device {
- public:
-  cuda_device(const cuda_driver& driver, int number)
-      : driver_(driver), name_(name_of(driver, number)), memory_(driver, name_) {
-    driver_.require(driver_.device_of(&place_, number), "it was opened");
-    driver_.require(driver_.retain_context(&context_, place_), "it was opened");
-    driver_.require(driver_.set_context(context_), "it was opened");
-    load();
-  }
-  ~cuda_device() override { driver_.release_context(place_); }
-
-  std::string name() const override { return name_; }
-  const memory_space& memory() const override { return memory_; }
-  std::size_t bytes() const override { return info().second; }
-  std::size_t free_bytes() const override { return info().first; }
-
-  void start(std::string_view kernel, const launch_size& size, const void* arguments, std::size_t) override {
-    const cuda_driver::handle function = function_of(std::string(kernel));
-    const std::size_t shared = size.shared_numbers * sizeof(double);
-    constexpr int largest_shared_memory = 8;
-    constexpr std::size_t without_request = std::size_t{48} << 10;
-    if (shared > without_request)
-      driver_.require(driver_.set_function(function, largest_shared_memory, static_cast<int>(shared)),
-                      "shared memory was reserved");
-    void* all[] = {const_cast<void*>(arguments)};
-    driver_.require(
-        driver_.launch(function, static_cast<unsigned>(size.blocks), 1, 1, static_cast<unsigned>(size.lanes),
-                       1, 1, static_cast<unsigned>(shared), nullptr, all, nullptr),
-        "a kernel was started");
-  }
-  void finish() override { driver_.require(driver_.synchronize(), "kernels ran"); }
-
- private:
-  void load() {
-    constexpr int major_version = 75, minor_version = 76;
+  handle load(int device, int number) const {
+    constexpr int major_version = 75, minor_version = 76, unsupported_version = 222;
     int major = 0, minor = 0;
-    driver_.attribute(&major, major_version, place_);
-    driver_.attribute(&minor, minor_version, place_);
+    call_.attribute(&major, major_version, device);
+    call_.attribute(&minor, minor_version, device);
     const device_code_object* newest = nullptr;
     for (const auto& one : device_code_objects()) {
       int of_code = 0;
       if (std::sscanf(one.processor, "sm_%d", &of_code) == 1 && of_code <= 10 * major + minor) newest = &one;
     }
     if (newest == nullptr)
-      throw input_error(
-          fmt::format("{} cannot run the kernels (its compute capability is {}.{}); use a device of "
-                      "compute capability 7.0 or later",
-                      name_, major, minor));
-    const int result = driver_.load(&code_, newest->code, 0, nullptr, nullptr);
-    constexpr int unsupported_version = 222;
+      throw input_error(fmt::format(
+          "{} cannot run the kernels (its compute capability is {}.{}, or Apsis was built without "
+          "clang++-19); use a device of compute capability 7.0 or later",
+          name_of(number), major, minor));
+    handle code = nullptr;
+    const int result = call_.load(&code, newest->code, 0, nullptr, nullptr);
     if (result == unsupported_version)
-      throw input_error("the driver of " + name_ + " is too old for the kernels; use a newer driver");
-    driver_.require(result, "kernels were loaded");
+      throw input_error("the driver of " + name_of(number) +
+                        " is too old for the kernels (it does not know their PTX); use a newer driver");
+    require(result, "kernels were loaded");
+    return code;
   }
 
-  cuda_driver::handle function_of(const std::string& kernel) {
-    auto& function = functions_[kernel];
-    if (function == nullptr)
-      driver_.require(driver_.function_of(&function, code_, kernel.c_str()), "a kernel was looked up");
-    return function;
-  }
-  std::pair<std::size_t, std::size_t> info() const {
-    std::size_t free = 0, total = 0;
-    driver_.require(driver_.memory_info(&free, &total), "its memory was examined");
-    return {free, total};
+  static cuda_functions::address place(const void* memory) {
+    return reinterpret_cast<cuda_functions::address>(memory);
   }
 
-  const cuda_driver& driver_;
-  int place_ = 0;
-  cuda_driver::handle context_ = nullptr, code_ = nullptr;
-  std::string name_;
-  cuda_memory memory_;
-  std::map<std::string, cuda_driver::handle> functions_;
+  cuda_functions call_{};
 };
-
-std::vector<std::string> cuda_names() {
-  const cuda_driver* driver = cuda_driver::find();
-  int count = 0;
-  if (driver == nullptr || driver->device_count(&count) != 0) return {};
-  std::vector<std::string> all;
-  for (int k = 0; k < count; ++k) all.push_back(name_of(*driver, k));
-  return all;
-}
 
 }  // namespace
 
@@ -218,10 +196,7 @@ extern const device_backend_entry device_backend_cuda;
 const device_backend_entry device_backend_cuda = {.name = "cuda",
                                                   .description = "processors of NVIDIA, by their driver",
                                                   .is_real = true,
-                                                  .names = cuda_names,
-                                                  .open = [](int number) -> std::unique_ptr<device> {
-                                                    return std::make_unique<cuda_device>(*cuda_driver::find(),
-                                                                                         number);
-                                                  }};
+                                                  .names = driven_device<cuda_driver>::names,
+                                                  .open = driven_device<cuda_driver>::open};
 
 }  // namespace apsis

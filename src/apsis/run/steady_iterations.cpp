@@ -89,7 +89,7 @@ steady_iteration steady_iterations::iterate() {
     } catch (const steady_imbalance&) {
       throw;
     } catch (const steady_stall& stall) {
-      if (!begin_continuation(stall)) throw;
+      if (!begin_continuation(stall, continuations_after(stall))) throw;
       return follow_continuation();
     } catch (const numerical_error& failure) {
       if (begin_again(failure)) continue;
@@ -116,10 +116,11 @@ bool steady_iterations::begin_again(const numerical_error& failure) {
   return true;
 }
 
-/// Begins with easier problems from the first state. Returns false if no continuation is left.
-bool steady_iterations::begin_continuation(const numerical_error& failure) {
+/// Begins with easier problems from the first state. Returns false if none of the first `allowed`
+/// continuations is left.
+bool steady_iterations::begin_continuation(const numerical_error& failure, std::size_t allowed) {
   easier_.reset();
-  while (!easier_ && tried_ < continuations)
+  while (!easier_ && tried_ < allowed)
     easier_ = make_continuation(tried_++, *run_.setup.equation->as_relaxation(), run_.setup.builder(), first_,
                                 solver_->optical_length(), run_.config.steady_state.images);
   if (!easier_) return false;
@@ -133,12 +134,12 @@ bool steady_iterations::begin_continuation(const numerical_error& failure) {
 steady_iteration steady_iterations::follow_continuation() {
   try {
     easier_->iterate(run_.state);
+    return end_of_detour(easier_->finished());  // its state may have no equilibrium in the case
   } catch (const numerical_error& failure) {
     if (begin_continuation(failure)) return follow_continuation();
     begin_march(failure);
     return march();
   }
-  return end_of_detour(easier_->finished());
 }
 
 /// Begins steps in time, twice as long as those before.

@@ -45,7 +45,7 @@ class steady_iterations final : public progression {
   steady_iteration recover(const numerical_error& failure);
   steady_iteration replace(const numerical_error& failure);
   bool begin_again(const numerical_error& failure);
-  bool begin_continuation(const numerical_error& failure);
+  bool begin_continuation(const numerical_error& failure, std::size_t allowed = continuations);
   steady_iteration follow_continuation();
   void begin_march(const numerical_error& failure);
   steady_iteration march();

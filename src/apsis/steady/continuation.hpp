@@ -3,6 +3,7 @@
 #include <apsis/mesh/field.hpp>
 #include <apsis/model/model.hpp>
 #include <apsis/semidiscrete/problem_builder.hpp>
+#include <apsis/steady/damping.hpp>
 #include <apsis/steady/steady_solver.hpp>
 
 #include <cstddef>
@@ -57,5 +58,9 @@ std::unique_ptr<continuation> make_continuation(std::size_t number, const relaxa
                                                 double optical_length, int images);
 /// Their number.
 inline constexpr std::size_t continuations = 2;
+/// The number of those that may help after a stall.
+inline std::size_t continuations_after(const steady_stall& stall) {
+  return stall.is_near() ? 1 : continuations;
+}
 
 }  // namespace apsis

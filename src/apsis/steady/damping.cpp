@@ -62,12 +62,15 @@ bool damping::note_residual(double residual) {
     return true;
   }
   if (idle_ > patience)
-    throw steady_stall(fmt::format(
-        "no steady state is found: the residual stays at {:.2g} of that of the start for {} "
-        "iterations (nonlinear weights of a reconstruction or limits of slopes may never settle, nor flows "
-        "without a steady state); use upwind5 or weno5-z-smooth, give a larger tolerance, or march in "
-        "time",
-        best_, patience));
+    throw steady_stall(
+        fmt::format(
+            "no steady state is found: the residual stays at {:.2g} of that of the start for {} "
+            "iterations (nonlinear weights of a reconstruction or limits of slopes may never settle, nor "
+            "flows "
+            "without a steady state); use upwind5 or weno5-z-smooth, give a larger tolerance, or march in "
+            "time",
+            best_, patience),
+        best_);
   return false;
 }
 

@@ -4,13 +4,22 @@
 
 #include <cstddef>
 #include <limits>
+#include <string>
 
 namespace apsis {
 
 /// The iteration does not find a steady state although it finds a state in every iteration.
 class steady_stall : public numerical_error {
  public:
-  using numerical_error::numerical_error;
+  /// `residual`: relative to that of the start.
+  steady_stall(const std::string& problem, double residual)
+      : numerical_error(problem), near_(residual < 1e-3) {}
+  /// Whether the state is nearly steady, as where the weights of a reconstruction never settle: starts from
+  /// other ends lead to the same states.
+  bool is_near() const { return near_; }
+
+ private:
+  bool near_;
 };
 
 /// A stall that another start will not end: the ends of the gas have different fluxes.

@@ -245,8 +245,8 @@ steady_iteration steady_solver::solve(field& f, const std::function<void(const s
   const field start = f;
   std::size_t tried = 0;
   // Returns whether f is the solution of an easier problem now.
-  const auto continues = [&] {
-    while (tried < continuations) {
+  const auto continues = [&](std::size_t allowed) {
+    while (tried < allowed) {
       const auto easier = make_continuation(tried++, impl_->equation, impl_->builder, start, optical_length(),
                                             impl_->options.depth);
       if (!easier) continue;
@@ -267,13 +267,13 @@ steady_iteration steady_solver::solve(field& f, const std::function<void(const s
       now = iterate(f);
     } catch (const steady_imbalance&) {
       throw;
-    } catch (const steady_stall&) {
-      if (!continues()) throw;
+    } catch (const steady_stall& stall) {
+      if (!continues(continuations_after(stall))) throw;
       continue;
     } catch (const numerical_error&) {
       if (begin_again())
         f = start;
-      else if (!continues())
+      else if (!continues(continuations))
         throw;
       continue;
     }

@@ -30,11 +30,14 @@ moment_correction::moment_correction(const relaxation_model& equation, const pro
 void moment_correction::note_residual(double residual) {
   if (!damped_.note_residual(residual)) return;
   if (holds_neutral_mode_)
-    throw steady_imbalance(fmt::format(
-        "no steady state is found: the residual stays at {:.2g} of that of the start (a front has no "
-        "position at which the fluxes of the ends are equal, or no end fixes the pressure); give the ends "
-        "states with equal fluxes, an outlet 'pressure', more velocities, or a larger steady.tolerance",
-        residual));
+    throw steady_imbalance(
+        fmt::format(
+            "no steady state is found: the residual stays at {:.2g} of that of the start (a front has no "
+            "position at which the fluxes of the ends are equal, or no end fixes the pressure); give the "
+            "ends "
+            "states with equal fluxes, an outlet 'pressure', more velocities, or a larger steady.tolerance",
+            residual),
+        residual);
   forget_system();
 }
 

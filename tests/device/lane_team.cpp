@@ -92,7 +92,7 @@ TEST(team_device, unwritten_memory_is_not_a_number) {
   EXPECT_THAT(seen, testing::Each(testing::IsNan()));
 }
 
-/// A sum of which one term was never copied to the device.
+/// A sum with a term that was never copied to the device.
 TEST(team_device, a_missing_copy_leaves_no_number_right) {
   const auto on = apsis::make_team_device(lane_order::forward);
   const std::vector<double> ones(4, 1.0);

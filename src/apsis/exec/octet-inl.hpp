@@ -136,7 +136,7 @@ HWY_INLINE pack<wide>* vectors_of(several<Count>& x) {
   return x.part;
 }
 
-/// What formulas ask of eight numbers (exec/octet.hpp), on this processor.
+/// The operations that formulas ask of eight numbers (exec/octet.hpp), on this processor.
 struct octet_group {
   using number = octet;
 

@@ -134,13 +134,10 @@ action define(CLI::App& command) {
   command.add_flag("--json", options->json, "print only one JSON object on standard output");
   add_threads(command, options->threads, "threads to use",
               "all processors for a large case and 1 for a small one");
-  command
-      .add_option(
-          "--device", options->device,
-          "run on a device of this machine (apsis info), the first one or the one of a number; results have "
-          "the bits of the host")
-      ->expected(0, 1)
-      ->type_name("[N]");
+  command.add_option(
+      "--device", options->device,
+      "run on a device of this machine, by its number (0) or place (cuda:0) in apsis info; results "
+      "have the bits of the host");
   command.add_flag("--explain", options->explain,
                    "log every value of the case, with a mark whether it is given, a default or derived");
   command.add_flag("--profile", options->profile,

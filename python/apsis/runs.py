@@ -143,7 +143,7 @@ def run(case: Case, *overrides: str, out: str | Path | None = None, restart: str
     first process; the others get None.
 
     `threads`: 0 for all processors; default: OMP_NUM_THREADS, else all for a large case and 1 for a small one.
-    `device`: a device of this machine (`apsis info`) by its number or place, "" for the first one; results have the bits of the host.
+    `device`: a device of this machine (`apsis info`) by its number or place; results have the bits of the host.
     Releases the GIL. Raises InputError, NumericalError, FileError, KeyboardInterrupt; of several processes on all of them."""
     handle = _handle(comm)
     try:

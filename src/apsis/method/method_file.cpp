@@ -55,8 +55,9 @@ method_claims read_claims(const toml::table& root, const std::string& file) {
     claims.intermediate = table.text("intermediate");
     const std::vector<std::string> kinds = {"slow", "all"};
     if (std::find(kinds.begin(), kinds.end(), *claims.intermediate) == kinds.end())
-      table.fail("intermediate", fmt::format("unknown claim '{}'; {}", claims.intermediate->substr(0, 40),
-                                             suggest(*claims.intermediate, kinds)));
+      table.fail("intermediate",
+                 fmt::format("unknown claim '{}' (there is no such claim); {}",
+                             claims.intermediate->substr(0, 40), suggest(*claims.intermediate, kinds)));
   }
   return claims;
 }

@@ -7,6 +7,7 @@
 #include <apsis/model/formulas/relaxation.hpp>
 #include <apsis/model/formulas/target.hpp>
 #include <apsis/model/formulas/velocity.hpp>
+#include <apsis/model/formulas/velocity_line.hpp>
 #include <apsis/scheme/formulas/quartic.hpp>
 #include <apsis/scheme/formulas/row.hpp>
 #include <apsis/scheme/formulas/teno5.hpp>
@@ -38,6 +39,32 @@ double outflow_edge(const double* u) {
 }
 
 }  // namespace
+
+/// One of eight lanes, whose sums are its own numbers.
+struct one_of_eight {
+  using number = double;
+  int place;
+  double load(const double* from) const { return from[place]; }
+  double load_once(const double* from) const { return from[place]; }
+  double load(const double* from, int count) const { return place < count ? from[place] : 0.0; }
+  double numbers() const { return place; }
+  double total(double mine) const { return mine; }
+};
+
+extern "C" void line(const double* f, const double* v, int n, double* to) {
+  const one_of_eight group{3};
+  scalar::moments_of_line sums;
+  scalar::sum_moments<1>(group, f, 0, v, v, n, &sums);
+  const auto state = scalar::state_of_line::of(sums.mass, sums.momentum, sums.energy);
+  const scalar::spaced_line line{n, v[1]};
+  const scalar::gaussian_of_line of{state.height(), state.u, state.T};
+  const auto put = [&](int k, double value) { to[k] = value; };
+  if (!state.admissible() || !scalar::gaussian_has_exact_moments(v[1], v[0], state)) return;
+  if (scalar::walks_outwards(line, of))
+    scalar::walk_outwards(scalar::gaussian_outwards<double>{f[0], f[1], f[2], f[3]}, 1, line, of, put);
+  else
+    scalar::gaussian_by_octets(group, line, of, put);
+}
 
 extern "C" void transport_z(const double* u, double* acc) {
   const auto first = scalar::unlimited(u[2], outflow_edge<scalar::weights_z>(u), acc[2]);

@@ -173,7 +173,8 @@ def _arguments(case: Case, overrides: Sequence[str], out: str | Path | None, res
     everything = list(overrides) + ([] if initial is None else ["initial.from=python"])
     return (text, "case" if text is not None else str(case), everything, _path(out), _path(restart),
             None if wall is None else number("wall", wall, positive=True),
-            None if threads is None else whole_number("threads", threads), None if device is None else str(device), progress,
+            None if threads is None else whole_number("threads", threads),
+            None if device is None else str(device), progress,
             dict(initial) if isinstance(initial, Mapping) else initial, sorted(number("jumps", x) for x in jumps))
 
 

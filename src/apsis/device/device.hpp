@@ -57,7 +57,7 @@ struct device_backend_entry {
   bool is_real;             ///< false for processors of the host that take the part of a device
   /// Returns the names of all devices that are found; throws nothing.
   std::vector<std::string> (*names)();
-  /// Returns a device by its number. Throws input_error where there is none of this number, or it cannot run
+  /// Returns a device by its number. Throws input_error where no device has this number, or it cannot run
   /// the kernels.
   std::unique_ptr<device> (*open)(int number);
 };

@@ -14,7 +14,7 @@
 namespace apsis {
 
 /// Returns the name of the kernel with the edges of a reconstruction, "sweep_weno5_z" of "weno5-z". Throws
-/// input_error if there is none.
+/// input_error if that kernel is missing.
 std::string kernel_of_reconstruction(const std::string& name);
 
 /// upwind_transport on a device, with the same bits. Boundaries are evaluated on the host, with the rows next

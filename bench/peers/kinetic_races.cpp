@@ -94,9 +94,9 @@ const std::string kinetic_note =
         "after "
         "any step. Contestants: every IMEX method of the catalogue and extrapolated Euler steps, with equal "
         "steps "
-        "and with steps chosen by a tolerance; ") +
+        "and with steps chosen by a tolerance. Others: ") +
     words_of_others +
-    "; runs of methods with "
+    ". Runs of methods with "
     "an SSP coefficient count only with f ≥ 0 "
     "throughout. For each contestant the cheapest run that reaches the error, whatever its setting. All use "
     "the same T and Q. ARKODE: T explicit, Q/ε implicit; tuned: implicit right-hand side deduced, 20 "

@@ -97,15 +97,12 @@ contest contestants(const stiff_task& task, bool quick) {
 
 const std::string note =
     std::string(
-        " Contestants: every IMEX method of the catalogue, and extrapolated Euler steps of orders 2 to 8, "
-        "with 1 "
-        "to "
-        "8192 equal steps, without and with graded starts whose times grow by factors of 2, 4 and 8, and "
-        "with "
-        "steps chosen by a tolerance where it has an "
-        "embedded solution; explicit methods; ") +
+        " Contestants: every IMEX method of the catalogue, and extrapolated Euler steps of orders 2 to 8. "
+        "They take 1 to 8192 equal steps, without and with graded starts whose times grow by factors of 2, 4 "
+        "and 8. Those with an embedded solution also take steps chosen by a tolerance. Others: explicit "
+        "methods; ") +
     words_of_others +
-    "; CVODE (BDF, dense); ARKODE (T "
+    ". Peers: CVODE (BDF, dense); ARKODE (T "
     "explicit, or all implicit, or all explicit); "
     "Radau "
     "IIA of order 5 with the control of RADAU5 (bench/peers/radau_steps.hpp). CPU microseconds of a whole "

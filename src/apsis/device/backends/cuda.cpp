@@ -1,13 +1,12 @@
 #include <apsis/core/errors.hpp>
 #include <apsis/device/device.hpp>
 #include <apsis/device/internal/driven_device.hpp>
-#include <apsis/device/internal/driver_library.hpp>
+#include <apsis/device/internal/driver_calls.hpp>
 #include <apsis/device/internal/kernel_table.hpp>
 
 #include <array>
 #include <cstdint>
 #include <cstdio>
-#include <optional>
 
 #include <fmt/format.h>
 
@@ -43,6 +42,12 @@ struct cuda_functions {
   int (*synchronize)();
   int (*error_text)(int error, const char** text);
 
+  static driver_library library() { return driver_library({"libcuda.so.1"}); }
+  std::string describe(int error) const {
+    const char* text = nullptr;
+    error_text(error, &text);
+    return fmt::format("CUDA error {}: {}", error, text == nullptr ? "unknown" : text);
+  }
   /// Finds all of them; false if the library lacks one.
   bool find_in(const driver_library& library) {
     return library.find("cuInit", init) && library.find("cuDeviceGetCount", device_count) &&
@@ -62,10 +67,8 @@ struct cuda_functions {
 };
 
 /// The driver as driven_device asks for it.
-class cuda_driver {
+class cuda_driver : public driver_calls<cuda_functions> {
  public:
-  using handle = cuda_functions::handle;
-
   /// A device that is open, with its kernels.
   struct context {
     context(const cuda_driver& of, int number) : driver(of) {
@@ -83,31 +86,14 @@ class cuda_driver {
     handle opened = nullptr, code = nullptr;
   };
 
-  /// Returns the driver of this machine; null if it has none, or an older one without these functions.
-  static const cuda_driver* find() {
-    static const std::optional<cuda_driver> only = [] {
-      cuda_driver found;
-      const bool there = found.call_.find_in(driver_library({"libcuda.so.1"})) && found.call_.init(0) == 0;
-      return there ? std::optional(found) : std::nullopt;
-    }();
-    return only ? &*only : nullptr;
-  }
+  static const cuda_driver* find() { return only<cuda_driver>(); }
 
-  int count() const {
-    int count = 0;
-    return call_.device_count(&count) == 0 ? count : 0;
-  }
   std::string name_of(int number) const {
     std::array<char, 128> name{};
     int device = 0;
     const bool named = call_.device_of(&device, number) == 0 &&
                        call_.device_name(name.data(), static_cast<int>(name.size()) - 1, device) == 0;
     return named ? name.data() : "unknown";
-  }
-  std::pair<std::size_t, std::size_t> memory_info() const {
-    std::size_t free = 0, total = 0;
-    require(call_.memory_info(&free, &total), "its memory was examined");
-    return {free, total};
   }
 
   void allocate(std::size_t bytes, void*& memory) const {
@@ -128,11 +114,6 @@ class cuda_driver {
     require(result, "memory was copied");
   }
 
-  handle function_of(const context& of, const std::string& kernel) const {
-    handle function = nullptr;
-    require(call_.function_of(&function, of.code, kernel.c_str()), "a kernel was looked up");
-    return function;
-  }
   void launch(handle function, const launch_size& size, const void* arguments, std::size_t) const {
     const std::size_t shared = size.shared_numbers * sizeof(double);
     constexpr int largest_shared_memory = 8;
@@ -146,18 +127,9 @@ class cuda_driver {
                      1, static_cast<unsigned>(shared), nullptr, all, nullptr),
         "a kernel was started");
   }
-  void finish() const { require(call_.synchronize(), "kernels ran"); }
 
  private:
-  /// Throws io_error unless a result is success.
-  void require(int result, const char* doing) const {
-    if (result == 0) return;
-    const char* text = nullptr;
-    call_.error_text(result, &text);
-    throw io_error(
-        fmt::format("the device failed while {} (CUDA error {}: {}); restart from the last checkpoint", doing,
-                    result, text == nullptr ? "unknown" : text));
-  }
+  friend driver_calls;
 
   handle load(int device, int number) const {
     constexpr int major_version = 75, minor_version = 76, unsupported_version = 222;
@@ -186,8 +158,6 @@ class cuda_driver {
   static cuda_functions::address place(const void* memory) {
     return reinterpret_cast<cuda_functions::address>(memory);
   }
-
-  cuda_functions call_{};
 };
 
 }  // namespace

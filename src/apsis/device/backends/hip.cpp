@@ -1,11 +1,10 @@
 #include <apsis/core/errors.hpp>
 #include <apsis/device/device.hpp>
 #include <apsis/device/internal/driven_device.hpp>
-#include <apsis/device/internal/driver_library.hpp>
+#include <apsis/device/internal/driver_calls.hpp>
 #include <apsis/device/internal/kernel_table.hpp>
 
 #include <array>
-#include <optional>
 #include <string_view>
 
 #include <fmt/format.h>
@@ -34,6 +33,10 @@ struct hip_functions {
   int (*synchronize)();
   const char* (*error_text)(int error);
 
+  static driver_library library() {
+    return driver_library({"libamdhip64.so", "libamdhip64.so.7", "libamdhip64.so.6", "libamdhip64.so.5"});
+  }
+  std::string describe(int error) const { return fmt::format("HIP error {}: {}", error, error_text(error)); }
   /// Finds all of them; false if the library lacks one.
   bool find_in(const driver_library& library) {
     return library.find("hipInit", init) && library.find("hipGetDeviceCount", device_count) &&
@@ -47,10 +50,8 @@ struct hip_functions {
 };
 
 /// The runtime as driven_device asks for it.
-class hip_driver {
+class hip_driver : public driver_calls<hip_functions> {
  public:
-  using handle = hip_functions::handle;
-
   /// A device that is open, with its kernels.
   struct context {
     context(const hip_driver& driver, int number) {
@@ -66,31 +67,12 @@ class hip_driver {
     handle code = nullptr;
   };
 
-  /// Returns the runtime of this machine; null if it has none.
-  static const hip_driver* find() {
-    static const std::optional<hip_driver> only = [] {
-      hip_driver found;
-      const driver_library library(
-          {"libamdhip64.so", "libamdhip64.so.7", "libamdhip64.so.6", "libamdhip64.so.5"});
-      const bool there = found.call_.find_in(library) && found.call_.init(0) == 0;
-      return there ? std::optional(found) : std::nullopt;
-    }();
-    return only ? &*only : nullptr;
-  }
+  static const hip_driver* find() { return only<hip_driver>(); }
 
-  int count() const {
-    int count = 0;
-    return call_.device_count(&count) == 0 ? count : 0;
-  }
   std::string name_of(int number) const {
     std::array<char, 128> name{};
     const bool named = call_.device_name(name.data(), static_cast<int>(name.size()) - 1, number) == 0;
     return named ? name.data() : "unknown";
-  }
-  std::pair<std::size_t, std::size_t> memory_info() const {
-    std::size_t free = 0, total = 0;
-    require(call_.memory_info(&free, &total), "its memory was examined");
-    return {free, total};
   }
 
   void allocate(std::size_t bytes, void*& memory) const {
@@ -113,11 +95,6 @@ class hip_driver {
     require(call_.copy(to, from, bytes, direction), "memory was copied");
   }
 
-  handle function_of(const context& of, const std::string& kernel) const {
-    handle function = nullptr;
-    require(call_.function_of(&function, of.code, kernel.c_str()), "a kernel was looked up");
-    return function;
-  }
   void launch(handle function, const launch_size& size, const void* arguments, std::size_t bytes) const {
     // The marks of the runtime for a buffer with all arguments, its size, and the end.
     void* extra[] = {reinterpret_cast<void*>(1), const_cast<void*>(arguments), reinterpret_cast<void*>(2),
@@ -127,18 +104,9 @@ class hip_driver {
                      1, static_cast<unsigned>(size.shared_numbers * sizeof(double)), nullptr, nullptr, extra),
         "a kernel was started");
   }
-  void finish() const { require(call_.synchronize(), "kernels ran"); }
 
  private:
-  /// Throws io_error unless a result is success.
-  void require(int result, const char* doing) const {
-    if (result != 0)
-      throw io_error(
-          fmt::format("the device failed while {} (HIP error {}: {}); restart from the last checkpoint",
-                      doing, result, call_.error_text(result)));
-  }
-
-  hip_functions call_{};
+  friend driver_calls;
 };
 
 }  // namespace

@@ -1,13 +1,13 @@
-# Kernels of devices (device/lane.hpp): one text for the host and for graphics processors. Sets APSIS_DEVICE_GENERATED to
-# the sources with the table of kernels for the host and the code for processors. The latter is empty without
-# clang++-19 and its linker, which compile it without a toolkit of a vendor.
+# Kernels of devices (device/internal/lane.hpp): one text for the host and for graphics processors. Sets
+# APSIS_DEVICE_GENERATED to the sources with the table of kernels for the host and the code for processors.
+# The latter is empty without clang++-19 and its linker, which compile it without a toolkit of a vendor.
 #
-# A file of kernels/ defines the kernel of its name.
+# A file of internal/kernels/ defines the kernel of its name.
 find_program(APSIS_DEVICE_COMPILER clang++-19 DOC "clang++ that compiles kernels for graphics processors")
 find_program(APSIS_DEVICE_LINKER ld.lld-19 DOC "linker of kernels for processors of AMD")
 set(APSIS_DEVICE_PROCESSORS "sm_70;gfx90a;gfx942" CACHE STRING "Graphics processors that kernels are compiled for")
 
-set(kernels_folder ${CMAKE_CURRENT_SOURCE_DIR}/device/kernels)
+set(kernels_folder ${CMAKE_CURRENT_SOURCE_DIR}/device/internal/kernels)
 file(GLOB kernel_files CONFIGURE_DEPENDS ${kernels_folder}/*.hpp)
 list(SORT kernel_files)
 set(kernel_includes "")
@@ -15,14 +15,14 @@ set(kernel_entries "")
 set(kernel_rows "")
 foreach(file IN LISTS kernel_files)
   get_filename_component(stem ${file} NAME_WE)
-  string(APPEND kernel_includes "#include <apsis/device/kernels/${stem}.hpp>\n")
+  string(APPEND kernel_includes "#include <apsis/device/internal/kernels/${stem}.hpp>\n")
   string(APPEND kernel_entries "ENTRY(${stem})\n")
   string(APPEND kernel_rows "    row<${stem}>(),\n")
 endforeach()
 
 set(generated ${CMAKE_CURRENT_BINARY_DIR}/generated)
 file(CONFIGURE OUTPUT ${generated}/host_kernels.cpp @ONLY CONTENT
-"// Generated from the files of device/kernels/; do not edit.
+"// Generated from the files of device/internal/kernels/; do not edit.
 #include <apsis/device/internal/kernel_table.hpp>
 @kernel_includes@
 namespace apsis {
@@ -44,7 +44,7 @@ std::span<const host_kernel> host_kernels() {
 }  // namespace apsis
 ")
 file(CONFIGURE OUTPUT ${generated}/device_kernels.cu.cpp @ONLY CONTENT
-"// Generated from the files of device/kernels/ for graphics processors; do not edit.
+"// Generated from the files of device/internal/kernels/ for graphics processors; do not edit.
 @kernel_includes@
 #if defined(__NVPTX__)
 #define KERNEL __attribute__((nvptx_kernel))

@@ -1,7 +1,7 @@
 #include <apsis/device/lane_team.hpp>
 
 #include <apsis/device/internal/kernel_table.hpp>
-#include <apsis/device/kernels/combine.hpp>
+#include <apsis/device/internal/kernels/combine.hpp>
 #include <apsis/device/teams.hpp>
 
 #include <cmath>

@@ -17,8 +17,8 @@ struct launch_size {
   std::size_t shared_numbers = 0;  ///< numbers that the lanes of a block share
 };
 
-/// A processor with memory of its own that runs kernels (device/lane.hpp). Launches run one after the other,
-/// and return before they are complete; copies of memory() wait for them.
+/// A processor with memory of its own that runs kernels (device/internal/lane.hpp). Launches run one after
+/// the other, and return before they are complete; copies of memory() wait for them.
 ///
 /// Every member function throws io_error if the device fails.
 class device {

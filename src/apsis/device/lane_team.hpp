@@ -9,7 +9,7 @@ namespace apsis {
 
 class lane_team;
 
-/// A lane of a kernel on the host (device/lane.hpp).
+/// A lane of a kernel on the host (device/internal/lane.hpp).
 class team_lane {
  public:
   int index() const { return index_; }  ///< number in the block

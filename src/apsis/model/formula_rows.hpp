@@ -25,7 +25,8 @@ struct operand {
 /// One operation, whose result is a column. An operation on one number takes the first operand.
 struct step {
   operation what;                              ///< kind
-  operand first, second;                       ///< operands
+  operand first,                               ///< first operand
+      second;                                  ///< second operand
   int result = 0;                              ///< column, which may be that of an operand
   double (*of_one)(double) = nullptr;          ///< function of a call
   double (*of_two)(double, double) = nullptr;  ///< the same, of two numbers

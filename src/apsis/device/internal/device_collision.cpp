@@ -1,7 +1,7 @@
 #include <apsis/device/internal/device_collision.hpp>
 
 #include <apsis/core/errors.hpp>
-#include <apsis/device/kernels/collide_line.hpp>
+#include <apsis/device/internal/kernels/collide_line.hpp>
 #include <apsis/exec/aligned.hpp>
 
 #include <utility>

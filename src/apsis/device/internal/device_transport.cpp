@@ -2,8 +2,8 @@
 
 #include <apsis/core/errors.hpp>
 #include <apsis/device/internal/kernel_table.hpp>
+#include <apsis/device/internal/kernels/combine.hpp>
 #include <apsis/device/internal/row_launch.hpp>
-#include <apsis/device/kernels/combine.hpp>
 #include <apsis/mesh/grid.hpp>
 
 #include <algorithm>

@@ -13,7 +13,7 @@ struct host_kernel {
   void (*run)(const team_lane& lane, const void* arguments);  ///< runs one lane
 };
 
-/// Returns all kernels of device/kernels/ (generated).
+/// Returns all kernels of device/internal/kernels/ (generated).
 std::span<const host_kernel> host_kernels();
 
 /// Code of all kernels for one kind of processors.

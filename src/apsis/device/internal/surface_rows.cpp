@@ -1,9 +1,9 @@
 #include <apsis/device/internal/surface_rows.hpp>
 
+#include <apsis/device/internal/kernels/copy_rows.hpp>
+#include <apsis/device/internal/kernels/enter.hpp>
 #include <apsis/device/internal/row_launch.hpp>
-#include <apsis/device/kernels/copy_rows.hpp>
-#include <apsis/device/kernels/enter.hpp>
-#include <apsis/device/sweep.hpp>
+#include <apsis/device/internal/sweep.hpp>
 
 #include <algorithm>
 #include <cstring>

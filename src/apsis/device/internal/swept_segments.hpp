@@ -4,7 +4,7 @@
 #include <apsis/device/device.hpp>
 #include <apsis/device/internal/device_array.hpp>
 #include <apsis/device/internal/surface_rows.hpp>
-#include <apsis/device/sweep.hpp>
+#include <apsis/device/internal/sweep.hpp>
 #include <apsis/semidiscrete/block_sweep.hpp>
 
 #include <string>

@@ -1,4 +1,4 @@
-// Lanes of a kernel. A kernel of a device is a struct in kernels/, with the name of its file:
+// Lanes of a kernel. A kernel of a device is a struct in internal/kernels/, with the name of its file:
 //   struct combine {
 //     static constexpr const char* name = "combine";
 //     struct arguments { ... };                                        plain numbers and pointers
@@ -11,8 +11,8 @@
 //
 //   lane.index(), lane.count()    number of this lane in its block, and number of lanes
 //   lane.block(), lane.blocks()   number of its block, and number of blocks
-//   lane.shared()                 memory of the block, as many numbers as the launch asks for, of undefined
-//   value lane.wait()                   waits for all lanes of the block
+//   lane.shared()                 memory of the block, as many numbers as the launch asks for, undefined
+//   lane.wait()                   waits for all lanes of the block
 //
 // Kernels consist of formulas (exec/number.hpp) on doubles, and are compiled for the host as well, where the
 // tests run them (backends/teams.cpp). They include no header of the standard library.

@@ -1,7 +1,7 @@
 #pragma once
 
-#include <apsis/device/sweep.hpp>
-#include <apsis/device/weno_edge.hpp>
+#include <apsis/device/internal/sweep.hpp>
+#include <apsis/device/internal/weno_edge.hpp>
 #include <apsis/scheme/formulas/teno5.hpp>
 
 namespace apsis::kernels {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <apsis/device/lane.hpp>
+#include <apsis/device/internal/lane.hpp>
 
 namespace apsis::kernels {
 

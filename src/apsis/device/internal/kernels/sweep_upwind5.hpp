@@ -1,6 +1,6 @@
 #pragma once
 
-#include <apsis/device/sweep.hpp>
+#include <apsis/device/internal/sweep.hpp>
 #include <apsis/scheme/formulas/upwind.hpp>
 
 namespace apsis::kernels {

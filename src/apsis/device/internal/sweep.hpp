@@ -1,6 +1,6 @@
 #pragma once
 
-#include <apsis/device/lane.hpp>
+#include <apsis/device/internal/lane.hpp>
 #include <apsis/semidiscrete/formulas/upwind.hpp>
 
 namespace apsis::kernels {

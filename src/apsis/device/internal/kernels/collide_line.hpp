@@ -1,7 +1,7 @@
 #pragma once
 
 #include <apsis/core/relaxation_weights.hpp>
-#include <apsis/device/lane_group.hpp>
+#include <apsis/device/internal/lane_group.hpp>
 #include <apsis/model/formulas/relaxation.hpp>
 #include <apsis/model/formulas/velocity_line.hpp>
 

@@ -21,9 +21,10 @@ TEST(cut_rows, are_the_formulas_of_single_numbers) {
     const auto n = static_cast<std::size_t>(1 + k % 19);
     const rows u(2, n, random, any_size), v(2, n, random, any_sign);
     rows slopes(2, n, random, any_sign), beyond(2, n, random, any_sign);
-    std::vector<double> size(n), outflow(n), increase(n), share(n), values(n, 7.0), alone(n), to_row(n, 0.5),
-        to_line(n, 0.5);
-    const std::vector<double> x = slopes.all;
+    std::vector<double> plain(2 * n), share(n), values(n, 7.0), alone(n), to_row(n, 0.5), to_line(n, 0.5);
+    const rows around(2, n, random, any_size);
+    const std::array<cut_rows::neighbour, 2> neighbours = {
+        {{around.at[0], {0.7, -0.1, 0.0}}, {around.at[1], {-0.2, 0.4, 0.0}}}};
     const bool limited = k % 2 == 0;
     const std::array<std::array<double, 3>, 2> to = {{{0.3, -0.2, 0.0}, {-0.4, 0.1, 0.0}}};
     const auto way_at = [&](std::size_t face) {
@@ -34,13 +35,12 @@ TEST(cut_rows, are_the_formulas_of_single_numbers) {
     };
     const cut_rows::line other{
         u.at[1], {beyond.all.data(), beyond.all.data() + n, nullptr}, {0.2, 0.7, 0.0}, limited};
-    const cut_rows::demand_rows demand{size.data(), outflow.data(), increase.data()};
     const cut_rows::extent of{2, static_cast<int>(n)};
     constexpr double step = 0.01;
     const auto kept = drawn(n, random, [](random_source& r) { return r.uniform(0.8, 1.0); });
-    for (std::size_t face = 0; face < 2; ++face)
-      cut_rows::add_demand(way_at(face), step, line_to(face), of, demand);
-    cut_rows::limit(u.at[0], demand, kept.data(), of, line_to(0).slopes);
+    const std::array<cut_rows::outlet, 2> outlets = {{{way_at(0), to[0]}, {way_at(1), to[1]}}};
+    cut_rows::fit(u.at[0], neighbours, of, {plain.data(), plain.data() + n, nullptr});
+    cut_rows::fit(u.at[0], neighbours, {outlets, step, kept.data()}, of, line_to(0).slopes);
     cut_rows::project(way_at(0), of, share.data());
     cut_rows::leave(share.data(), line_to(0), of, values.data());
     cut_rows::leave_alone(way_at(0), line_to(0), of, alone.data());
@@ -55,14 +55,20 @@ TEST(cut_rows, are_the_formulas_of_single_numbers) {
         return limited ? scalar::nonnegative_leaving_value(here, correction)
                        : scalar::leaving_value(here, correction);
       };
+      const auto slope = [&](std::size_t d) {
+        const double first = neighbours[0].weight[d] * (around.at[0][j] - u.at[0][j]);
+        return scalar::fma(neighbours[1].weight[d], around.at[1][j] - u.at[0][j], first);
+      };
+      ASSERT_EQ(plain[j], slope(0));
+      ASSERT_EQ(plain[n + j], slope(1));
       scalar::cut_demand<double> sums{0.0, 0.0, 0.0};
       for (std::size_t face = 0; face < 2; ++face) {
-        const double first = x[j] * to[face][0], second = x[n + j] * to[face][1];
+        const double first = slope(0) * to[face][0], second = slope(1) * to[face][1];
         sums.add(step * outward(face), first + second, std::abs(first) + std::abs(second));
       }
       const double factor = sums.factor(u.at[0][j], kept[j]);
-      ASSERT_EQ(slopes.all[j], factor * x[j]);
-      ASSERT_EQ(slopes.all[n + j], factor * x[n + j]);
+      ASSERT_EQ(slopes.all[j], factor * slope(0));
+      ASSERT_EQ(slopes.all[n + j], factor * slope(1));
       ASSERT_EQ(share[j], outward(0));
       const double leaving = value(u.at[0][j], slopes.all[j], slopes.all[n + j], to[0]),
                    entering = value(u.at[1][j], beyond.all[j], beyond.all[n + j], other.vector);

@@ -27,6 +27,8 @@ const char* kernel_name(kernel which) {
       return "halo";
     case kernel::walls:
       return "walls";
+    case kernel::cut_cells:
+      return "cut cells";
     case kernel::forces:
       return "forces";
     case kernel::points:

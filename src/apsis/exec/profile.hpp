@@ -15,6 +15,7 @@ enum class kernel {
   multiples,    ///< adding multiples of u alone to the accumulators
   halo,         ///< packing rows for other processes, and waiting for theirs
   walls,        ///< rows beyond surfaces, and what enters through them
+  cut_cells,    ///< lines in cells that bodies cut, and T(u) there
   forces,       ///< forces and sources
   points,       ///< values at Gauss points from cell averages
   equilibria,   ///< moments and equilibria

@@ -6,12 +6,18 @@
 
 #include <apsis/semidiscrete/formulas/cut_cell.hpp>
 
+#include <array>
+#include <cstddef>
+#include <span>
+#include <type_traits>
+
 HWY_BEFORE_NAMESPACE();
 namespace apsis::HWY_NAMESPACE {
 
-using cut_rows::demand_rows;
 using cut_rows::gradient;
+using cut_rows::line_bounds;
 using cut_rows::neighbour;
+using cut_rows::outlet;
 
 using cut_rows::extent;
 using cut_rows::line;
@@ -36,11 +42,6 @@ HWY_INLINE N value_at(const line& of, int directions, int k) {
   return of.limited ? nonnegative_leaving_value(here, correction) : leaving_value(here, correction);
 }
 
-template <class N>
-HWY_INLINE cut_demand<N> demand_at(const demand_rows& demand, int k) {
-  return {N::load(demand.size + k), N::load(demand.outflow + k), N::load(demand.increase + k)};
-}
-
 void project(const way_out& way, const extent& of, double* outward) {
   for_packs(of.components, [&](auto lanes, int k) APSIS_PACKED {
     using N = pack<decltype(lanes)>;
@@ -48,44 +49,64 @@ void project(const way_out& way, const extent& of, double* outward) {
   });
 }
 
+/// The gradient of some components.
+template <std::size_t Directions, class N>
+HWY_INLINE std::array<N, Directions> gradient_at(N here, std::span<const neighbour> around, int k) {
+  std::array<N, Directions> sum;
+  sum.fill(N(0.0));
+  for (const neighbour& one : around) {
+    const N difference = N::load(one.row + k) - here;
+    for (std::size_t d = 0; d < Directions; ++d) sum[d] = fma(N(one.weight[d]), difference, sum[d]);
+  }
+  return sum;
+}
+
+/// Calls loop(direction count) with a constant.
+template <class Loop>
+HWY_INLINE void with_directions(int directions, const Loop& loop) {
+  if (directions == 1) return loop(std::integral_constant<std::size_t, 1>());
+  if (directions == 2) return loop(std::integral_constant<std::size_t, 2>());
+  loop(std::integral_constant<std::size_t, 3>());
+}
+
 void fit(const double* u, std::span<const neighbour> around, const extent& of, const gradient& slopes) {
-  for_packs(of.components, [&](auto lanes, int k) APSIS_PACKED {
-    using N = pack<decltype(lanes)>;
-    const N here = N::load(u + k);
-    std::array<N, 3> sum = {N(0.0), N(0.0), N(0.0)};
-    for (const neighbour& one : around) {
-      const N difference = N::load(one.row + k) - here;
-      for (std::size_t d = 0; d < 3; ++d) sum[d] = fma(N(one.weight[d]), difference, sum[d]);
-    }
-    for (std::size_t d = 0; d < static_cast<std::size_t>(of.directions); ++d) sum[d].store(slopes[d] + k);
+  with_directions(of.directions, [&](auto count) APSIS_PACKED {
+    constexpr std::size_t directions = count;
+    for_packs(of.components, [&](auto lanes, int k) APSIS_PACKED {
+      using N = pack<decltype(lanes)>;
+      const auto sum = gradient_at<directions>(N::load(u + k), around, k);
+      for (std::size_t d = 0; d < directions; ++d) sum[d].store(slopes[d] + k);
+    });
   });
 }
 
-void add_demand(const way_out& way, double step, const line& here, const extent& of,
-                const demand_rows& demand) {
-  for_packs(of.components, [&](auto lanes, int k) APSIS_PACKED {
-    using N = pack<decltype(lanes)>;
-    cut_demand<N> sums = demand_at<N>(demand, k);
+/// The factor of the limiter of some components.
+template <std::size_t Directions, class N>
+HWY_INLINE N factor_at(N here, const std::array<N, Directions>& slopes, const line_bounds& within, int k) {
+  cut_demand<N> sums{N(0.0), N(0.0), N(0.0)};
+  for (const outlet& one : within.outlets) {
     N sum(0.0), size(0.0);
-    for (std::size_t d = 0; d < static_cast<std::size_t>(of.directions); ++d) {
-      const N term = N::load(here.slopes[d] + k) * N(here.vector[d]);
+    for (std::size_t d = 0; d < Directions; ++d) {
+      const N term = slopes[d] * N(one.vector[d]);
       sum = sum + term;
       size = size + absolute(term);
     }
-    sums.add(N(step) * leaving_share<N>(way, of.directions, k), sum, size);
-    sums.size.store(demand.size + k);
-    sums.outflow.store(demand.outflow + k);
-    sums.increase.store(demand.increase + k);
-  });
+    sums.add(N(within.step) * leaving_share<N>(one.way, static_cast<int>(Directions), k), sum, size);
+  }
+  return sums.factor(here, N::load(within.kept + k));
 }
 
-void limit(const double* u, const demand_rows& demand, const double* kept, const extent& of,
-           const gradient& slopes) {
-  for_packs(of.components, [&](auto lanes, int k) APSIS_PACKED {
-    using N = pack<decltype(lanes)>;
-    const N factor = demand_at<N>(demand, k).factor(N::load(u + k), N::load(kept + k));
-    for (std::size_t d = 0; d < static_cast<std::size_t>(of.directions); ++d)
-      (factor * N::load(slopes[d] + k)).store(slopes[d] + k);
+void fit_within(const double* u, std::span<const neighbour> around, const line_bounds& within,
+                const extent& of, const gradient& slopes) {
+  with_directions(of.directions, [&](auto count) APSIS_PACKED {
+    constexpr std::size_t directions = count;
+    for_packs(of.components, [&](auto lanes, int k) APSIS_PACKED {
+      using N = pack<decltype(lanes)>;
+      const N here = N::load(u + k);
+      const auto sum = gradient_at<directions>(here, around, k);
+      const N factor = factor_at<directions>(here, sum, within, k);
+      for (std::size_t d = 0; d < directions; ++d) (factor * sum[d]).store(slopes[d] + k);
+    });
   });
 }
 
@@ -154,8 +175,7 @@ namespace apsis {
 namespace {
 HWY_EXPORT(project);
 HWY_EXPORT(fit);
-HWY_EXPORT(add_demand);
-HWY_EXPORT(limit);
+HWY_EXPORT(fit_within);
 HWY_EXPORT(leave);
 HWY_EXPORT(leave_alone);
 HWY_EXPORT(pass_to_row);
@@ -174,14 +194,9 @@ void fit(const double* u, std::span<const neighbour> around, const extent& of, c
   HWY_DYNAMIC_DISPATCH(fit)(u, around, of, slopes);
 }
 
-void add_demand(const way_out& way, double step, const line& here, const extent& of,
-                const demand_rows& demand) {
-  HWY_DYNAMIC_DISPATCH(add_demand)(way, step, here, of, demand);
-}
-
-void limit(const double* u, const demand_rows& demand, const double* kept, const extent& of,
-           const gradient& slopes) {
-  HWY_DYNAMIC_DISPATCH(limit)(u, demand, kept, of, slopes);
+void fit(const double* u, std::span<const neighbour> around, const line_bounds& within, const extent& of,
+         const gradient& slopes) {
+  HWY_DYNAMIC_DISPATCH(fit_within)(u, around, within, of, slopes);
 }
 
 void leave(const double* outward, const line& here, const extent& of, double* values) {

@@ -46,21 +46,22 @@ struct neighbour {
 /// slopes[d] ← Σ weight[d] (row − u) over the neighbours.
 void fit(const double* u, std::span<const neighbour> around, const extent& of, const gradient& slopes);
 
-/// Sums over the faces and walls of a cell for its limiter, a row each.
-struct demand_rows {
-  double *size,   ///< largest sum of the sizes of terms of a correction
-      *outflow,   ///< of a step, as a share of the gas
-      *increase;  ///< of the outflow by corrections
+/// A face or wall of a cell, and the vector to its middle from the centroid of the gas.
+struct outlet {
+  way_out way;
+  std::array<double, 3> vector;
 };
 
-/// Adds a face or wall where a line leaves, for a step of length `step`.
-void add_demand(const way_out& way, double step, const line& here, const extent& of,
-                const demand_rows& demand);
+/// Bounds of a line where it leaves.
+struct line_bounds {
+  std::span<const outlet> outlets;  ///< all faces and walls
+  double step;                      ///< length of a step
+  const double* kept;               ///< shares of u that transport may take in a step, of every component
+};
 
-/// Multiplies the slopes by the factor of the limiter. `kept`: the shares of u that transport may take,
-/// a row.
-void limit(const double* u, const demand_rows& demand, const double* kept, const extent& of,
-           const gradient& slopes);
+/// The same with a limiter: slopes[d] ← ϑ Σ weight[d] (row − u).
+void fit(const double* u, std::span<const neighbour> around, const line_bounds& within, const extent& of,
+         const gradient& slopes);
 
 /// values ← the line where `outward` > 0, and 0 of a negligible value; elsewhere they stay as they are.
 void leave(const double* outward, const line& here, const extent& of, double* values);

@@ -12,17 +12,7 @@ namespace apsis {
 namespace {
 
 /// Rows of scratch memory, by their use.
-enum scratch_row : int {
-  outward_row,
-  values_row,
-  rate_row,
-  inward_row,
-  made_row,
-  size_row,
-  outflow_row,
-  increase_row,
-  ghost_rows
-};
+enum scratch_row : int { outward_row, values_row, rate_row, inward_row, made_row, ghost_rows };
 
 constexpr int groups_of_task = 4;
 
@@ -58,26 +48,21 @@ void cut_transport::prepare(const field& u) {
   here_.exchange(u);
   if (flat_) return;
   parallel_blocks(static_cast<int>(groups_.size()), groups_of_task, [&](int begin, int end) {
-    const profile::section timed(kernel::edges, static_cast<double>(end - begin) * u.stride(), {});
+    const profile::section timed(kernel::cut_cells, static_cast<double>(end - begin) * u.stride(), {});
     for (int number = begin; number < end; ++number) fit_group(u, number, scratch_.here());
   });
 }
 
 void cut_transport::fit_group(const field& u, int number, scratch& own) {
   const group& of = groups_[at(number)];
-  const int n = equation_.components();
   const double* here = here_.row(u, of.place);
   const cut_rows::gradient slopes = slopes_of(number);
   own.around.clear();
   for (const neighbour& one : of.around) own.around.push_back({here_.row(u, one.place), one.weight});
-  cut_rows::fit(here, own.around, size(), slopes);
-  if (!limited_) return;
-  const cut_rows::demand_rows demand{own.rows.row(size_row), own.rows.row(outflow_row),
-                                     own.rows.row(increase_row)};
-  for (double* row : {demand.size, demand.outflow, demand.increase}) std::fill_n(row, n, 0.0);
-  for (const way& one : of.ways)
-    cut_rows::add_demand(out_by(one), step_, line_of(u, number, one.from_centre), size(), demand);
-  cut_rows::limit(here, demand, kept_.data(), size(), slopes);
+  if (!limited_) return cut_rows::fit(here, own.around, size(), slopes);
+  own.outlets.clear();
+  for (const way& one : of.ways) own.outlets.push_back({out_by(one), one.from_centre});
+  cut_rows::fit(here, own.around, {own.outlets, step_, kept_.data()}, size(), slopes);
 }
 
 void cut_transport::complete(int surface, int place, const field& u,
@@ -108,21 +93,27 @@ void cut_transport::add(double t, const field& u, std::span<const target<field, 
   make_scratch();
   here_.exchange_at_faces(equation_.components(), [&](int f) { return recorded_at(f); });
   parallel_blocks(static_cast<int>(groups_.size()), groups_of_task, [&](int begin, int end) {
-    const profile::section timed(kernel::walls, static_cast<double>(end - begin) * u.stride(),
-                                 traffic(targets));
-    for (int number = begin; number < end; ++number) {
-      if (groups_[at(number)].cells.empty()) continue;
-      scratch& own = scratch_.here();
-      double* rate = own.rows.row(rate_row);
-      add_group(t, u, number, rate, own);
-      for (const int cell : groups_[at(number)].cells) {
-        for (const auto& to : targets)
-          cut_rows::add(u.row(cell), rate, to.alpha, to.beta, to.fresh, equation_.components(),
-                        to.acc->row(cell));
-        if (then) then(cell, cell + 1);
-      }
-    }
+    add_groups(t, u, targets, begin, end);
+    if (!then) return;
+    for (int number = begin; number < end; ++number)
+      for (const int cell : groups_[at(number)].cells) then(cell, cell + 1);
   });
+}
+
+void cut_transport::add_groups(double t, const field& u, std::span<const target<field, double>> targets,
+                               int begin, int end) {
+  const profile::section timed(kernel::cut_cells, static_cast<double>(end - begin) * u.stride(),
+                               traffic(targets));
+  scratch& own = scratch_.here();
+  double* rate = own.rows.row(rate_row);
+  for (int number = begin; number < end; ++number) {
+    if (groups_[at(number)].cells.empty()) continue;
+    add_group(t, u, number, rate, own);
+    for (const int cell : groups_[at(number)].cells)
+      for (const auto& to : targets)
+        cut_rows::add(u.row(cell), rate, to.alpha, to.beta, to.fresh, equation_.components(),
+                      to.acc->row(cell));
+  }
 }
 
 void cut_transport::add_group(double t, const field& u, int number, double* rate, scratch& own) {

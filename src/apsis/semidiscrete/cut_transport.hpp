@@ -81,6 +81,7 @@ class cut_transport {
   struct scratch {
     field rows;
     std::vector<cut_rows::neighbour> around;
+    std::vector<cut_rows::outlet> outlets;
     std::vector<double*> ghosts;      ///< rows beyond a face of the domain
     std::vector<const double*> seen;  ///< constant pointers to these rows
   };
@@ -96,6 +97,8 @@ class cut_transport {
   cut_rows::way_out out_by(const way& one) const { return {one.normal, one.rate, speeds_}; }
   cut_rows::extent size() const { return {directions(), equation_.components()}; }
   void fit_group(const field& u, int number, scratch& own);
+  void add_groups(double t, const field& u, std::span<const target<field, double>> targets, int begin,
+                  int end);
   void add_group(double t, const field& u, int number, double* rate, scratch& own);
   void pass_end(double t, const way& one, const cut_rows::line& here, double* rate, scratch& own);
   void domain_values(double t, const way& one, double* values, scratch& own);

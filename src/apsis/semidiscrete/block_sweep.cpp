@@ -58,23 +58,63 @@ void line_speeds::limit_for_steps(std::vector<line_speeds>& speeds, double share
   for (auto& line : speeds) line.inverse_cfl = rates;
 }
 
-void block_sweep::reserve(const context& of, int cells, int width, std::size_t targets) {
+void block_sweep::reserve(const context& of, int cells, int cells_of_box, int width, std::size_t targets) {
   of_ = &of;
   halo_ = of.edges.halo();
   reach_ = of.edges.reach();
-  const auto rows = static_cast<std::size_t>(cells) + 2 * static_cast<std::size_t>(halo_ + reach_);
-  rows_.reserve(rows);
-  joined_.reserve(rows);
+  const int beyond = 2 * (halo_ + reach_);
+  rows_.reserve(static_cast<std::size_t>(cells + beyond));
   targets_.reserve(targets);
+  // Stretches have one cell at least.
+  const auto most =
+      static_cast<std::size_t>(of.space.mesh().dimensions()) * static_cast<std::size_t>(cells_of_box);
+  visited_.reserve(most);
+  visited_rows_.reserve(most * static_cast<std::size_t>(1 + beyond));
+  if (cells_of_a_row(field::padded(of.equation.components())) > 1)
+    visited_joined_.reserve(visited_rows_.capacity());
   make_room(cells, width);
   // Also for threads that come to the end of a segment in a later step.
   const auto longest = static_cast<std::size_t>(width) * static_cast<std::size_t>(cells_of_a_row(width));
   for (auto* row : {&vacuum_, &in_, &out_}) row->resize(std::max(row->size(), longest));
 }
 
-void block_sweep::run(const context& of, const field& u, const place& at, targets_view targets) {
-  if (at.begin == at.end) return;
-  prepare(of, u, at);
+void block_sweep::start(const context& of, const field& u) {
+  of_ = &of;
+  u_ = &u;
+  halo_ = of.edges.halo();
+  reach_ = of.edges.reach();
+  visited_.clear();
+  visited_rows_.clear();
+  visited_joined_.clear();
+}
+
+void block_sweep::visit(const stretch& cells) {
+  if (cells.begin == cells.end) return;
+  segment_ = &of_->space.segment_at(cells.direction, cells.segment);
+  const visited one = {cells, {seen_beyond(false, cells), seen_beyond(true, cells)}, visited_rows_.size()};
+  visited_.push_back(one);
+  const auto count = static_cast<std::size_t>(rows_of(cells));
+  visited_rows_.resize(one.first_row + count, nullptr);
+  // Nothing reads more rows behind a surface than edges before it need.
+  const int first = cells.begin - one.seen[0] - reach_, last = cells.end + one.seen[1] + reach_;
+  of_->space.segment_rows(*u_, cells.direction, cells.segment, first, last,
+                          visited_rows_.data() + one.first_row + (halo_ - one.seen[0]));
+  const int stride = u_->stride();
+  if (cells_of_a_row(stride) == 1) return;
+  visited_joined_.resize(one.first_row + count, 1);
+  const double* const* rows = visited_rows_.data() + one.first_row;
+  int* joined = visited_joined_.data() + one.first_row;
+  for (std::size_t j = count - 1; j-- > 0;)
+    if (rows[j] != nullptr && rows[j] + stride == rows[j + 1]) joined[j] = joined[j + 1] + 1;
+}
+
+void block_sweep::run(int first, int last, targets_view targets) {
+  for (const visited& one : visited_) sweep(one, first, last, targets);
+}
+
+void block_sweep::sweep(const visited& one, int first_component, int last_component, targets_view targets) {
+  const place at{one.cells, first_component, last_component};
+  prepare(one, at);
   const int cells = at.end - at.begin;
   const double numbers = static_cast<double>(cells) * width_;
   const auto [below, above] = seen_;
@@ -82,7 +122,7 @@ void block_sweep::run(const context& of, const field& u, const place& at, target
     // Edges of the halo are those of another block too.
     const double repeated = 1.0 + static_cast<double>(below + above) / cells;
     const profile::section timed(kernel::edges, numbers,
-                                 {repeated * of.edges.scheme->operations(both_edges()), sizeof(double)});
+                                 {repeated * of_->edges.scheme->operations(both_edges()), sizeof(double)});
     for (int i = at.begin - below; i < at.end + above;) {
       const run_of_cells run = run_from(i, at.end + above - i);
       make_edges(i, run);
@@ -114,7 +154,7 @@ const segment_end* block_sweep::surface_at(bool upper, const place& at) const {
 /// Returns the number of cells of the halo that are before a surface which prescribes the incoming
 /// components. The surface may lie cells away from the block, also across periodic faces and behind cells of
 /// other processes: all sweeps that compute the same flux see the same.
-int block_sweep::seen_beyond(bool upper, const place& at) const {
+int block_sweep::seen_beyond(bool upper, const stretch& at) const {
   const std::size_t side = upper ? 1 : 0;
   int distance = (upper ? segment_->cells - at.end : at.begin) + segment_->beyond[side];
   for (const segment* one = segment_; distance < halo_;) {
@@ -154,30 +194,20 @@ kernel_work block_sweep::work_of(targets_view targets, int cells) const {
   return each;
 }
 
-void block_sweep::prepare(const context& of, const field& u, const place& at) {
-  of_ = &of;
-  line_ = &of.speeds[static_cast<std::size_t>(at.direction)];
-  segment_ = &of.space.segment_at(at.direction, at.segment);
+void block_sweep::prepare(const visited& one, const place& at) {
+  line_ = &of_->speeds[static_cast<std::size_t>(at.direction)];
+  segment_ = &of_->space.segment_at(at.direction, at.segment);
   width_ = at.last - at.first;
   first_component_ = at.first;
-  whole_rows_ = width_ == u.stride();
-  halo_ = of.edges.halo();
-  reach_ = of.edges.reach();
+  whole_rows_ = width_ == u_->stride();
   first_edge_ = at.begin - halo_;
-  const int beyond = halo_ + reach_;
-  first_row_ = at.begin - beyond;
-  seen_ = {seen_beyond(false, at), seen_beyond(true, at)};
-  // Nothing reads more rows behind a surface than edges before it need.
-  const int first = at.begin - seen_[0] - reach_, last = at.end + seen_[1] + reach_;
-  const int all = at.end - at.begin + 2 * beyond;
-  rows_.assign(static_cast<std::size_t>(all), vacuum_.data());
-  const double** read = rows_.data() + (first - first_row_);
-  of.space.segment_rows(u, at.direction, at.segment, first, last, read);
-  joined_.assign(rows_.size(), 1);
-  if (cells_of_a_row(u.stride()) > 1)
-    for (std::size_t j = rows_.size() - 1; j-- > 0;)
-      if (rows_[j] + width_ == rows_[j + 1]) joined_[j] = joined_[j + 1] + 1;
-  for (int k = 0; k < last - first; ++k) read[k] += at.first;
+  first_row_ = first_edge_ - reach_;
+  seen_ = one.seen;
+  rows_.clear();
+  const double* const* rows = visited_rows_.data() + one.first_row;
+  for (int k = 0; k < rows_of(at); ++k)
+    rows_.push_back(rows[k] == nullptr ? vacuum_.data() : rows[k] + at.first);
+  joined_ = visited_joined_.empty() ? nullptr : visited_joined_.data() + one.first_row;
   make_room(at.end - at.begin, width_);
 }
 
@@ -193,7 +223,7 @@ void block_sweep::make_room(int cells, int width) {
 block_sweep::run_of_cells block_sweep::run_from(int i, int most) const {
   const int long_enough = cells_of_a_row(width_);
   if (!whole_rows_ || long_enough == 1) return {most, 1};
-  const int together = joined_[static_cast<std::size_t>(i - reach_ - first_row_)] - 2 * reach_;
+  const int together = joined_[i - reach_ - first_row_] - 2 * reach_;
   return {1, std::max(1, std::min({long_enough, most, together}))};
 }
 

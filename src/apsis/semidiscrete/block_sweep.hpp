@@ -31,7 +31,8 @@ struct line_speeds {
                               double kappa);
 };
 
-/// T along one direction for some components of some cells of a segment. A workspace of one thread.
+/// T along one direction after the other, for some cells and some of their components. The rows of the cells
+/// are looked up once for all components. A workspace of one thread.
 class block_sweep {
  public:
   /// The objects that all sweeps of a transport share.
@@ -42,24 +43,38 @@ class block_sweep {
     const std::vector<line_speeds>& speeds;  ///< of each direction
     face_fluxes& faces;                      ///< takes the fluxes at surfaces
   };
-  /// The part of the phase space that a sweep changes.
-  struct place {
+  /// Cells of a segment, along which a sweep goes.
+  struct stretch {
     int direction;  ///< of the sweep
     int segment;    ///< number of the segment
     int begin;      ///< first cell of the segment
     int end;        ///< one past its last cell
-    int first;      ///< first component
-    int last;       ///< one past the last component
   };
   /// Targets of a sweep: acc ← (fresh ? 0 : acc) + α u + β T, α u with the first direction alone.
   using targets_view = std::span<const target<field, double>>;
 
-  /// Allocates buffers for `cells` cells of at most `width` components.
-  void reserve(const context& of, int cells, int width, std::size_t targets);
-  /// Adds T along a direction to the targets. Surfaces at the ends get their upwind values.
-  void run(const context& of, const field& u, const place& at, targets_view targets);
+  /// Allocates buffers for stretches of `cells` cells and at most `width` components, in boxes of so many
+  /// cells.
+  void reserve(const context& of, int cells, int cells_of_box, int width, std::size_t targets);
+  /// Forgets all stretches. `of` and `u` must outlive the sweeps that follow.
+  void start(const context& of, const field& u);
+  /// Looks up the rows of a stretch.
+  void visit(const stretch& cells);
+  /// Adds T of the components first … last − 1 to the targets, along each stretch in the order of the visits.
+  /// Surfaces at the ends get their upwind values.
+  void run(int first, int last, targets_view targets);
 
  private:
+  /// A stretch, and the first of its rows.
+  struct visited {
+    stretch cells;
+    std::array<int, 2> seen;  ///< cells of the halo before a surface that prescribes what enters
+    std::size_t first_row;
+  };
+  /// The part of the phase space that a sweep changes.
+  struct place : stretch {
+    int first, last;  ///< components
+  };
   /// Either separate cells, or cells that are contiguous in memory, as are their neighbours, and form a
   /// single "cell" for the kernels.
   struct run_of_cells {
@@ -67,12 +82,14 @@ class block_sweep {
   };
 
   const segment_end* surface_at(bool upper, const place& at) const;
-  int seen_beyond(bool upper, const place& at) const;
+  int seen_beyond(bool upper, const stretch& at) const;
+  int rows_of(const stretch& cells) const { return cells.end - cells.begin + 2 * (halo_ + reach_); }
+  void sweep(const visited& one, int first, int last, targets_view targets);
   void empty(int cell);
   void record(const segment_end& end, bool upper, int joined);
   bool both_edges() const;
   kernel_work work_of(targets_view targets, int cells) const;
-  void prepare(const context& of, const field& u, const place& at);
+  void prepare(const visited& one, const place& at);
   void make_room(int cells, int width);
   const double* const* row(int i) const { return rows_.data() + (i - first_row_); }
   std::size_t offset(int i) const {
@@ -84,15 +101,19 @@ class block_sweep {
   void add(int i, const run_of_cells& run, const place& at, targets_view targets, bool at_surface);
 
   const context* of_ = nullptr;
+  const field* u_ = nullptr;
+  std::vector<visited> visited_;
+  std::vector<const double*> visited_rows_;  ///< of all stretches; null where nothing is read
+  std::vector<int> visited_joined_;          ///< rows from each on that are contiguous in memory
   const segment* segment_ = nullptr;
   const line_speeds* line_ = nullptr;
-  std::vector<const double*> rows_;
-  std::vector<int> joined_;
+  std::vector<const double*> rows_;  ///< of some components
+  const int* joined_ = nullptr;      ///< of each row; null where rows are not joined
   std::vector<upwind::row_target> targets_;
   aligned_vector<double> left_, right_, source_, vacuum_, in_, out_;
   int width_ = 0, first_component_ = 0, halo_ = 0, reach_ = 0, first_row_ = 0, first_edge_ = 0;
   bool whole_rows_ = false;
-  std::array<int, 2> seen_ = {};  ///< cells of the halo before a surface that prescribes what enters
+  std::array<int, 2> seen_ = {};
 };
 
 /// Returns the memory traffic of the accumulators per number: a write, and a read unless they are fresh.

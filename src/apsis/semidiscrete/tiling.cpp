@@ -1,5 +1,6 @@
 #include <apsis/semidiscrete/tiling.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 
@@ -24,11 +25,17 @@ tiling::tiling(const grid& mesh, int longest, int parts) : cuts_{{{0, 1}, {0, 1}
     const part_blocks blocks(mesh.cells(0), longest, parts);
     cuts_[0] = {0};
     for (int k = 0; k < blocks.count(); ++k) cuts_[0].push_back(blocks.end(k));
-    return;
+  } else {
+    const double side = std::floor(std::pow(cells_of_a_box, 1.0 / mesh.dimensions()) + 1e-9);
+    for (int k = 0; k < mesh.dimensions(); ++k)
+      cuts_[static_cast<std::size_t>(k)] = equal_parts(mesh.cells(k), side);
   }
-  const double side = std::floor(std::pow(cells_of_a_box, 1.0 / mesh.dimensions()) + 1e-9);
-  for (int k = 0; k < mesh.dimensions(); ++k)
-    cuts_[static_cast<std::size_t>(k)] = equal_parts(mesh.cells(k), side);
+  for (const auto& cuts : cuts_) {
+    int longest_part = 0;
+    for (std::size_t k = 1; k < cuts.size(); ++k)
+      longest_part = std::max(longest_part, cuts[k] - cuts[k - 1]);
+    most_cells_ *= longest_part;
+  }
 }
 
 int tiling::count() const {

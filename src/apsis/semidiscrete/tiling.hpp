@@ -18,11 +18,14 @@ class tiling {
 
   /// Returns the number of boxes.
   int count() const;
+  /// Returns the number of cells of the largest box.
+  int most_cells() const { return most_cells_; }
   /// Returns box 0 … count() − 1, the last direction fastest; on a line it may be empty.
   cell_box box(int number) const;
 
  private:
   std::array<std::vector<int>, 3> cuts_;  ///< first cells of the boxes of each direction, and its end
+  int most_cells_ = 1;
 };
 
 }  // namespace apsis

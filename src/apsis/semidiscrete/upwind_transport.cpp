@@ -248,13 +248,15 @@ void upwind_transport::for_segments(int direction, const cell_box& box, const Bo
       }
 }
 
-void upwind_transport::sweep_box(const field& u, targets_view targets, const cell_box& box, int first,
-                                 int last) const {
-  const block_sweep::context all{equation_, *space_, edges_, speeds_, *faces_};
+/// Looks up the rows of a box. Sweeps go along all directions, and `all` and `u` must outlive them.
+block_sweep& upwind_transport::sweep_of_box(const block_sweep::context& all, const field& u,
+                                            const cell_box& box) const {
+  block_sweep& sweep = scratch_->sweeps.here();
+  sweep.start(all, u);
   for (int direction = 0; direction < mesh().dimensions(); ++direction)
-    for_segments(direction, box, [&](int segment, int begin, int end) {
-      scratch_->sweeps.here().run(all, u, {direction, segment, begin, end, first, last}, targets);
-    });
+    for_segments(direction, box,
+                 [&](int segment, int begin, int end) { sweep.visit({direction, segment, begin, end}); });
+  return sweep;
 }
 
 /// Adds what enters through surfaces at the cells of a box.
@@ -303,7 +305,7 @@ bool upwind_transport::sweep(double t, const field& u, targets_view targets, con
   const block_sweep::context all{equation_, *space_, edges_, speeds_, *faces_};
   scratch_->sweeps.prepare([&](auto& sweep) {
     sweep.reserve(all, std::min(std::max({mesh().cells(0), mesh().cells(1), mesh().cells(2)}), longest),
-                  std::min(width, widest + width % packet_length), targets.size());
+                  boxes.most_cells(), std::min(width, widest + width % packet_length), targets.size());
   });
   const sweep_plan plan{boxes, columns, by_boxes};
   if (cut_) cut_->prepare(u);
@@ -325,6 +327,7 @@ void upwind_transport::sweep_boxes(double t, const field& u, targets_view target
                                    const std::vector<int>& numbers, const cells_job& then) const {
   const int count = static_cast<int>(numbers.size()), columns = plan.columns;
   const auto component = [&](int column) { return first_component(u.stride(), columns, column); };
+  const block_sweep::context all{equation_, *space_, edges_, speeds_, *faces_};
   const auto box = [&](int k) { return plan.boxes.box(numbers[static_cast<std::size_t>(k)]); };
   const auto after_box = [&] {
     if (thread_number() == 0) space_->advance_ghosts();
@@ -332,15 +335,16 @@ void upwind_transport::sweep_boxes(double t, const field& u, targets_view target
   if (plan.by_boxes)
     return parallel_for(count, [&](int k) {
       const cell_box here = box(k);
+      block_sweep& sweep = sweep_of_box(all, u, here);
       for (int column = 0; column < columns; ++column)
-        sweep_box(u, targets, here, component(column), component(column + 1));
+        sweep.run(component(column), component(column + 1), targets);
       complete_box(t, u, targets, here);
       if (then) finish_box(here, then);
       after_box();
     });
   parallel_for(count * columns, [&](int task) {
     const int column = task % columns;
-    sweep_box(u, targets, box(task / columns), component(column), component(column + 1));
+    sweep_of_box(all, u, box(task / columns)).run(component(column), component(column + 1), targets);
     after_box();
   });
   parallel_for(count, [&](int k) { complete_box(t, u, targets, box(k)); });

@@ -58,8 +58,7 @@ class upwind_transport final : public transport {
   struct sweep_plan;
   void sweep_boxes(double t, const field& u, std::span<const target<field, double>> targets,
                    const sweep_plan& plan, const std::vector<int>& numbers, const cells_job& then) const;
-  void sweep_box(const field& u, std::span<const target<field, double>> targets, const cell_box& box,
-                 int first, int last) const;
+  block_sweep& sweep_of_box(const block_sweep::context& all, const field& u, const cell_box& box) const;
   void complete_box(double t, const field& u, std::span<const target<field, double>> targets,
                     const cell_box& box) const;
   void finish_box(const cell_box& box, const cells_job& then) const;

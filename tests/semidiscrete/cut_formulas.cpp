@@ -21,7 +21,7 @@ TEST(cut_rows, are_the_formulas_of_single_numbers) {
     const auto n = static_cast<std::size_t>(1 + k % 19);
     const rows u(2, n, random, any_size), v(2, n, random, any_sign);
     rows slopes(2, n, random, any_sign), beyond(2, n, random, any_sign);
-    std::vector<double> plain(2 * n), share(n), values(n, 7.0), alone(n), to_row(n, 0.5), to_line(n, 0.5);
+    std::vector<double> plain(2 * n), share(n), values(n, 7.0), alone(n), to_row(n, 0.5), to_both(n, 0.5);
     const rows around(2, n, random, any_size);
     const std::array<cut_rows::neighbour, 2> neighbours = {
         {{around.at[0], {0.7, -0.1, 0.0}}, {around.at[1], {-0.2, 0.4, 0.0}}}};
@@ -44,8 +44,10 @@ TEST(cut_rows, are_the_formulas_of_single_numbers) {
     cut_rows::project(way_at(0), of, share.data());
     cut_rows::leave(share.data(), line_to(0), of, values.data());
     cut_rows::leave_alone(way_at(0), line_to(0), of, alone.data());
-    cut_rows::pass(way_at(0), line_to(0), u.at[1], of, to_row.data());
-    cut_rows::pass(way_at(0), line_to(0), other, of, to_line.data());
+    const cut_rows::crossing row{way_at(0), to[0], {u.at[1], {}, {}, limited}};
+    const cut_rows::crossing lines[] = {{way_at(0), to[0], other}, row};
+    cut_rows::pass({&row, 1}, line_to(1), of, to_row.data());
+    cut_rows::pass(lines, line_to(1), of, to_both.data());
     for (std::size_t j = 0; j < n; ++j) {
       const auto outward = [&](std::size_t face) {
         return 1.5 * scalar::fma(v.at[1][j], way_at(face).normal[1], v.at[0][j] * 0.6);
@@ -76,7 +78,8 @@ TEST(cut_rows, are_the_formulas_of_single_numbers) {
       ASSERT_EQ(values[j], leaves ? leaving : 7.0);
       ASSERT_EQ(alone[j], leaves ? leaving : 0.0);
       ASSERT_EQ(to_row[j], scalar::negative_fma(outward(0), leaves ? leaving : u.at[1][j], 0.5));
-      ASSERT_EQ(to_line[j], scalar::negative_fma(outward(0), leaves ? leaving : entering, 0.5));
+      const double first = scalar::negative_fma(outward(0), leaves ? leaving : entering, 0.5);
+      ASSERT_EQ(to_both[j], scalar::negative_fma(outward(0), leaves ? leaving : u.at[1][j], first));
     }
   }
 }

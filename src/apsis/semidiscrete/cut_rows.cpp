@@ -14,6 +14,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace apsis::HWY_NAMESPACE {
 
+using cut_rows::crossing;
 using cut_rows::gradient;
 using cut_rows::line_bounds;
 using cut_rows::neighbour;
@@ -126,30 +127,30 @@ void leave_alone(const way_out& way, const line& here, const extent& of, double*
   });
 }
 
-/// rate ← rate − outward f, f being the line where it leaves, and beyond(lanes, k) elsewhere.
-template <class Beyond>
-HWY_INLINE void pass_to(const way_out& way, const line& here, const Beyond& beyond, const extent& of,
-                        double* rate) {
-  for_packs(of.components, [&](auto lanes, int k) APSIS_PACKED {
-    using N = pack<decltype(lanes)>;
-    const N outward = leaving_share<N>(way, of.directions, k);
-    const N f = select(outward > N(0.0), value_at<N>(here, of.directions, k), beyond(lanes, k));
-    negative_fma(outward, f, N::load(rate + k)).store(rate + k);
+/// What passes through a face.
+template <std::size_t Directions, class N>
+HWY_INLINE N passing(const crossing& face, const line& here, N outward, int k) {
+  constexpr auto directions = static_cast<int>(Directions);
+  const line own{here.value, here.slopes, face.vector, here.limited};
+  const N inner = value_at<N>(own, directions, k), outer = face.beyond.slopes[0] == nullptr
+                                                               ? N::load(face.beyond.value + k)
+                                                               : value_at<N>(face.beyond, directions, k);
+  return select(outward > N(0.0), inner, outer);
+}
+
+void pass(std::span<const crossing> faces, const line& here, const extent& of, double* rate) {
+  with_directions(of.directions, [&](auto count) APSIS_PACKED {
+    constexpr std::size_t directions = count;
+    for_packs(of.components, [&](auto lanes, int k) APSIS_PACKED {
+      using N = pack<decltype(lanes)>;
+      N sum = N::load(rate + k);
+      for (const crossing& face : faces) {
+        const N outward = leaving_share<N>(face.way, static_cast<int>(directions), k);
+        sum = negative_fma(outward, passing<directions>(face, here, outward, k), sum);
+      }
+      sum.store(rate + k);
+    });
   });
-}
-
-void pass_to_row(const way_out& way, const line& here, const double* beyond, const extent& of, double* rate) {
-  pass_to(
-      way, here, [&](auto lanes, int k) APSIS_PACKED { return pack<decltype(lanes)>::load(beyond + k); }, of,
-      rate);
-}
-
-void pass_to_line(const way_out& way, const line& here, const line& beyond, const extent& of, double* rate) {
-  pass_to(
-      way, here,
-      [&](auto lanes, int k)
-          APSIS_PACKED { return value_at<pack<decltype(lanes)>>(beyond, of.directions, k); },
-      of, rate);
 }
 
 void take(const double* outward, const double* values, int n, double* rate) {
@@ -178,8 +179,7 @@ HWY_EXPORT(fit);
 HWY_EXPORT(fit_within);
 HWY_EXPORT(leave);
 HWY_EXPORT(leave_alone);
-HWY_EXPORT(pass_to_row);
-HWY_EXPORT(pass_to_line);
+HWY_EXPORT(pass);
 HWY_EXPORT(take);
 HWY_EXPORT(add);
 }  // namespace
@@ -207,12 +207,8 @@ void leave_alone(const way_out& way, const line& here, const extent& of, double*
   HWY_DYNAMIC_DISPATCH(leave_alone)(way, here, of, values);
 }
 
-void pass(const way_out& way, const line& here, const double* beyond, const extent& of, double* rate) {
-  HWY_DYNAMIC_DISPATCH(pass_to_row)(way, here, beyond, of, rate);
-}
-
-void pass(const way_out& way, const line& here, const line& beyond, const extent& of, double* rate) {
-  HWY_DYNAMIC_DISPATCH(pass_to_line)(way, here, beyond, of, rate);
+void pass(std::span<const crossing> faces, const line& here, const extent& of, double* rate) {
+  HWY_DYNAMIC_DISPATCH(pass)(faces, here, of, rate);
 }
 
 void take(const double* outward, const double* values, int n, double* rate) {

@@ -69,10 +69,16 @@ void leave(const double* outward, const line& here, const extent& of, double* va
 /// values ← the line where it leaves, and 0 elsewhere.
 void leave_alone(const way_out& way, const line& here, const extent& of, double* values);
 
-/// rate ← rate − outward f through a face: f is the line where it leaves, and `beyond` elsewhere.
-void pass(const way_out& way, const line& here, const double* beyond, const extent& of, double* rate);
-/// The same to a cell with a line: f is this line where it leaves.
-void pass(const way_out& way, const line& here, const line& beyond, const extent& of, double* rate);
+/// A face to another cell.
+struct crossing {
+  way_out way;
+  std::array<double, 3> vector;  ///< to its middle from the centroid of the gas
+  line beyond;                   ///< of the other cell; without slopes, its value at the face
+};
+
+/// rate ← rate − Σ outward f over faces, one after the other: f is the line `here` where it leaves, and that
+/// beyond the face elsewhere. The vector of `here` is not used.
+void pass(std::span<const crossing> faces, const line& here, const extent& of, double* rate);
 
 /// rate ← rate − outward values.
 void take(const double* outward, const double* values, int n, double* rate);

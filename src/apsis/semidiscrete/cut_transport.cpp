@@ -118,22 +118,29 @@ void cut_transport::add_groups(double t, const field& u, std::span<const target<
 
 void cut_transport::add_group(double t, const field& u, int number, double* rate, scratch& own) {
   std::fill_n(rate, equation_.components(), 0.0);
+  own.crossings.clear();
+  const auto pass_crossings = [&] {
+    if (!own.crossings.empty()) cut_rows::pass(own.crossings, line_of(u, number, {}), size(), rate);
+    own.crossings.clear();
+  };
   for (const way& one : groups_[at(number)].ways) {
-    const cut_rows::line here = line_of(u, number, one.from_centre);
-    switch (one.to) {
-      case way::kind::whole:
-        cut_rows::pass(
-            out_by(one), here,
-            one.surface >= 0 ? faces_.recorded(one.surface, one.number) : here_.values_at_face(one.number),
-            size(), rate);
-        break;
-      case way::kind::group:
-        cut_rows::pass(out_by(one), here, line_of(u, one.number, one.from_other), size(), rate);
-        break;
-      default:
-        pass_end(t, one, here, rate, own);
+    if (one.to == way::kind::whole || one.to == way::kind::group) {
+      own.crossings.push_back({out_by(one), one.from_centre, beyond(u, one)});
+    } else {
+      pass_crossings();
+      pass_end(t, one, line_of(u, number, one.from_centre), rate, own);
     }
   }
+  pass_crossings();
+}
+
+/// Returns the line of the other group, or the value at the face of a whole cell.
+cut_rows::line cut_transport::beyond(const field& u, const way& one) {
+  if (one.to == way::kind::group) return line_of(u, one.number, one.from_other);
+  return {one.surface >= 0 ? faces_.recorded(one.surface, one.number) : here_.values_at_face(one.number),
+          {},
+          {},
+          limited_};
 }
 
 /// Adds what passes through a face of the domain or a wall, and tells the boundary budget.

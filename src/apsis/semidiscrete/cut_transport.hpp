@@ -82,6 +82,7 @@ class cut_transport {
     field rows;
     std::vector<cut_rows::neighbour> around;
     std::vector<cut_rows::outlet> outlets;
+    std::vector<cut_rows::crossing> crossings;
     std::vector<double*> ghosts;      ///< rows beyond a face of the domain
     std::vector<const double*> seen;  ///< constant pointers to these rows
   };
@@ -94,6 +95,7 @@ class cut_transport {
   void add_neighbours(int number);
   cut_rows::gradient slopes_of(int group);
   cut_rows::line line_of(const field& u, int group, const std::array<double, 3>& vector);
+  cut_rows::line beyond(const field& u, const way& one);
   cut_rows::way_out out_by(const way& one) const { return {one.normal, one.rate, speeds_}; }
   cut_rows::extent size() const { return {directions(), equation_.components()}; }
   void fit_group(const field& u, int number, scratch& own);

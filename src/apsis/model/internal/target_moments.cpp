@@ -24,7 +24,19 @@ moments_of_product::moments_of_product(const line_moments& lines, int dimensions
 }
 
 bool moments_of_product::correct(target_shape& shape) const {
-  target_defect found = defect_of(shape);
+  switch (d_) {
+    case 1:
+      return correct_in<1>(shape);
+    case 2:
+      return correct_in<2>(shape);
+    default:
+      return correct_in<3>(shape);
+  }
+}
+
+template <std::size_t D>
+bool moments_of_product::correct_in(target_shape& shape) const {
+  target_defect found = defect_of<D>(shape);
   double best = 1e300;
   for (int iteration = 0; iteration < 12; ++iteration) {
     const double size = found.size();
@@ -39,40 +51,43 @@ bool moments_of_product::correct(target_shape& shape) const {
 }
 
 /// ⟨Π c_k^p_k⟩.
+template <std::size_t D>
 double moments_of_product::mean(const powers& p) const {
   double product = 1.0;
-  for (std::size_t k = 0; k < d_; ++k) product *= lines_.of[k][p[k]];
+  for (std::size_t k = 0; k < D; ++k) product *= lines_.of[k][p[k]];
   return product;
 }
 
 /// ⟨P Π c_k^p_k⟩.
+template <std::size_t D>
 double moments_of_product::mean(const target_polynomial& polynomial, const powers& p) const {
-  double sum = polynomial.k * mean(p);
-  for (std::size_t k = 0; k < d_; ++k) {
+  double sum = polynomial.k * mean<D>(p);
+  for (std::size_t k = 0; k < D; ++k) {
     powers with = p;
     ++with[k];
-    sum += polynomial.l[k] * mean(with);
-    for (std::size_t l = 0; l < d_; ++l) {
+    sum += polynomial.l[k] * mean<D>(with);
+    for (std::size_t l = 0; l < D; ++l) {
       powers pair = with;
       ++pair[l];
-      sum += polynomial.a[k][l] * mean(pair);
+      sum += polynomial.a[k][l] * mean<D>(pair);
       ++pair[l];
-      sum += polynomial.w[k] * mean(pair);
+      sum += polynomial.w[k] * mean<D>(pair);
     }
   }
   return sum;
 }
 
+template <std::size_t D>
 target_defect moments_of_product::defect_of(const target_shape& shape) const {
   target_defect found;
-  found.mass = mean(shape.of_g, {}) - 1.0;
-  double energy = lines_.others > 0.0 ? lines_.others * (mean(shape.of_h, {}) - 1.0) : 0.0;
-  for (std::size_t k = 0; k < d_; ++k) {
+  found.mass = mean<D>(shape.of_g, {}) - 1.0;
+  double energy = lines_.others > 0.0 ? lines_.others * (mean<D>(shape.of_h, {}) - 1.0) : 0.0;
+  for (std::size_t k = 0; k < D; ++k) {
     powers p{};
     p[k] = 1;
-    found.momentum[k] = mean(shape.of_g, p) / std::sqrt(shape.variance);
+    found.momentum[k] = mean<D>(shape.of_g, p) / std::sqrt(shape.variance);
     p[k] = 2;
-    energy += mean(shape.of_g, p) - mean(p);
+    energy += mean<D>(shape.of_g, p) - mean<D>(p);
   }
   found.energy = 0.5 * energy / shape.variance;
   return found;
@@ -96,16 +111,14 @@ void moments_of_product::add(const target_correction& by, double variance, targe
   found.energy += 0.5 * energy / variance;
 }
 
-double moments_of_row::mean(const target_polynomial& polynomial,
-                            std::initializer_list<std::size_t> directions) const {
-  central_sums::exponents p{};
-  for (const std::size_t k : directions) ++p[k];
+template <std::size_t D>
+double moments_of_row::mean(const target_polynomial& polynomial, const central_sums::exponents& p) const {
   double sum = polynomial.k * sums_[p];
-  for (std::size_t k = 0; k < d_; ++k) {
+  for (std::size_t k = 0; k < D; ++k) {
     central_sums::exponents with = p;
     ++with[k];
     sum += polynomial.l[k] * sums_[with];
-    for (std::size_t l = 0; l < d_; ++l) {
+    for (std::size_t l = 0; l < D; ++l) {
       central_sums::exponents pair = with;
       ++pair[l];
       sum += polynomial.a[k][l] * sums_[pair];
@@ -114,13 +127,17 @@ double moments_of_row::mean(const target_polynomial& polynomial,
   return sum / contents_.rho;
 }
 
+template <std::size_t D>
 target_defect moments_of_row::defect_of(const target_shape& shape) const {
   target_defect found;
-  found.mass = mean(shape.of_g, {}) - 1.0;
-  double energy = contents_.others * mean(shape.of_h, {}) - contents_.energy;
-  for (std::size_t k = 0; k < d_; ++k) {
-    found.momentum[k] = mean(shape.of_g, {k}) / std::sqrt(shape.variance);
-    energy += mean(shape.of_g, {k, k});
+  found.mass = mean<D>(shape.of_g, {}) - 1.0;
+  double energy = contents_.others * mean<D>(shape.of_h, {}) - contents_.energy;
+  for (std::size_t k = 0; k < D; ++k) {
+    central_sums::exponents p{};
+    p[k] = 1;
+    found.momentum[k] = mean<D>(shape.of_g, p) / std::sqrt(shape.variance);
+    p[k] = 2;
+    energy += mean<D>(shape.of_g, p);
   }
   found.energy = 0.5 * energy / shape.variance;
   return found;
@@ -163,10 +180,10 @@ template <int size>
 bool moments_of_row::correct_by(target_shape& shape) const {
   constexpr double small = 1e-2;
   for (int iteration = 0; iteration < 4; ++iteration) {
-    const target_defect found = defect_of(shape);
+    const target_defect found = defect_of<size - 2>(shape);
     if (found.size() <= target_rounding) return true;
     correction_of_row<size>(found, shape.variance).add_to(shape.of_g, static_cast<int>(d_));
-    if (found.size() < small) return defect_of(shape).size() <= target_accuracy;
+    if (found.size() < small) return defect_of<size - 2>(shape).size() <= target_accuracy;
   }
   return false;
 }

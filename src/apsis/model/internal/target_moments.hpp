@@ -8,7 +8,6 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <initializer_list>
 
 namespace apsis {
 
@@ -56,8 +55,13 @@ class moments_of_product {
 
  private:
   using powers = std::array<std::size_t, 3>;
+  template <std::size_t D>
+  bool correct_in(target_shape& shape) const;
+  template <std::size_t D>
   double mean(const powers& p) const;
+  template <std::size_t D>
   double mean(const target_polynomial& polynomial, const powers& p) const;
+  template <std::size_t D>
   target_defect defect_of(const target_shape& shape) const;
   void add(const target_correction& by, double variance, target_defect& found) const;
 
@@ -89,8 +93,10 @@ class moments_of_row {
   bool correct_by(target_shape& shape) const;
   template <int size>
   target_correction correction_of_row(const target_defect& found, double variance) const;
-  /// ⟨P Π c_k⟩ for some directions k.
-  double mean(const target_polynomial& polynomial, std::initializer_list<std::size_t> directions) const;
+  /// ⟨P Π c_k^p_k⟩.
+  template <std::size_t D>
+  double mean(const target_polynomial& polynomial, const central_sums::exponents& p) const;
+  template <std::size_t D>
   target_defect defect_of(const target_shape& shape) const;
 
   const central_sums& sums_;

@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <type_traits>
 
 namespace apsis {
 namespace {
@@ -15,82 +14,80 @@ namespace {
 /// Lines that a loop passes together.
 constexpr int together = 16;
 
-/// The components of c = v − u that are constant on some of the last lines, 0 from d − 1 on.
-struct line_batch {
-  int first, count;  ///< lines
-  std::array<std::array<double, 2>, together> c;
-};
-
-/// Calls body(line_batch) for all last lines.
-template <class Body>
-void for_lines(const velocity_grid& grid, const fluid_state& state, const Body& body) {
-  const int d = grid.dimensions();
-  line_batch some{};
-  for (some.first = 0; some.first < grid.lines(); some.first += together) {
-    some.count = std::min(together, grid.lines() - some.first);
-    for (int k = 0; k + 1 < d; ++k)
-      for (int i = 0; i < some.count; ++i)
-        some.c[static_cast<std::size_t>(i)][static_cast<std::size_t>(k)] =
-            grid.component_of_lines(k)[some.first + i] - state.u[grid.component_across(k)];
-    body(some);
-  }
-}
-
 /// Whether P has no term of third degree.
 bool is_quadratic(const target_polynomial& p) {
   return p.w[0] == 0.0 && p.w[1] == 0.0 && p.w[2] == 0.0;
 }
 
-/// P along the last line of a grid of d dimensions, the other components of c given. `Cubic`: P has terms of
-/// third degree.
+/// P along the last lines of a grid of d dimensions. `Cubic`: P has terms of third degree.
 template <std::size_t d, bool Cubic>
-target_rows::cubic along_last(const velocity_grid& grid, const target_polynomial& p,
-                              const std::array<double, 2>& c) {
-  const auto last = static_cast<std::size_t>(grid.last_component());
-  double square = 0.0, along = 0.0;
-  target_rows::cubic of_line{p.k, p.l[last], p.a[last][last], p.w[last]};
-  for (std::size_t k = 0; k + 1 < d; ++k) {
-    const auto i = static_cast<std::size_t>(grid.component_across(static_cast<int>(k)));
-    if constexpr (Cubic) {
-      square += c[k] * c[k];
-      along += p.w[i] * c[k];
+class polynomial_on_lines {
+ public:
+  polynomial_on_lines(const velocity_grid& grid, const fluid_state& state, const target_polynomial& p)
+      : last_(static_cast<std::size_t>(grid.last_component())), p_(p) {
+    for (std::size_t k = 0; k + 1 < d; ++k) {
+      const int across = grid.component_across(static_cast<int>(k));
+      across_[k] = static_cast<std::size_t>(across);
+      v_[k] = grid.component_of_lines(static_cast<int>(k));
+      u_[k] = state.u[across];
     }
-    of_line.k0 += p.l[i] * c[k];
-    of_line.k1 += 2.0 * p.a[i][last] * c[k];
-    for (std::size_t l = 0; l + 1 < d; ++l)
-      of_line.k0 +=
-          p.a[i][static_cast<std::size_t>(grid.component_across(static_cast<int>(l)))] * c[k] * c[l];
   }
-  if constexpr (Cubic) {
-    of_line.k0 += along * square;
-    of_line.k1 += p.w[last] * square;
-    of_line.k2 += along;
+
+  target_rows::cubic operator[](int line) const {
+    double square = 0.0, along = 0.0;
+    std::array<double, d> c{};
+    for (std::size_t k = 0; k + 1 < d; ++k) c[k] = v_[k][line] - u_[k];
+    target_rows::cubic of_line{p_.k, p_.l[last_], p_.a[last_][last_], p_.w[last_]};
+    for (std::size_t k = 0; k + 1 < d; ++k) {
+      const std::size_t i = across_[k];
+      if constexpr (Cubic) {
+        square += c[k] * c[k];
+        along += p_.w[i] * c[k];
+      }
+      of_line.k0 += p_.l[i] * c[k];
+      of_line.k1 += 2.0 * p_.a[i][last_] * c[k];
+      for (std::size_t l = 0; l + 1 < d; ++l) of_line.k0 += p_.a[i][across_[l]] * c[k] * c[l];
+    }
+    if constexpr (Cubic) {
+      of_line.k0 += along * square;
+      of_line.k1 += p_.w[last_] * square;
+      of_line.k2 += along;
+    }
+    return of_line;
   }
-  return of_line;
-}
+
+ private:
+  std::size_t last_;
+  target_polynomial p_;
+  std::array<std::size_t, d> across_{};
+  std::array<const double*, d> v_{};
+  std::array<double, d> u_{};
+};
 
 /// e ← max(base · P, −keep f) for one set of components. Returns whether a value was raised to its bound.
+template <std::size_t d, bool Cubic>
+bool weigh_lines(const velocity_grid& grid, const fluid_state& state, const target_polynomial& p,
+                 const double* base, const double* f, double keep, double* e) {
+  const polynomial_on_lines<d, Cubic> polynomial(grid, state, p);
+  const int n = grid.last_line().points();
+  const double* v = grid.last_line().v().data();
+  const double u = state.u[grid.last_component()];
+  std::array<target_rows::cubic, together> of_lines;  // NOLINT(cppcoreguidelines-pro-type-member-init)
+  bool raised = false;
+  for (int line = 0; line < grid.lines(); line += together) {
+    const int count = std::min(together, grid.lines() - line);
+    for (int i = 0; i < count; ++i) of_lines[static_cast<std::size_t>(i)] = polynomial[line + i];
+    const std::ptrdiff_t first = static_cast<std::ptrdiff_t>(line) * n;
+    raised |= target_rows::weigh(base + first, v, u, of_lines.data(), count, f + first, keep, n, e + first);
+  }
+  return raised;
+}
+
 template <std::size_t d>
 bool weigh_lines(const velocity_grid& grid, const fluid_state& state, const target_polynomial& p,
                  const double* base, const double* f, double keep, double* e) {
-  const int n = grid.last_line().points();
-  bool raised = false;
-  for_lines(grid, state, [&](const line_batch& some) {
-    std::array<target_rows::cubic, together> of_lines;  // NOLINT(cppcoreguidelines-pro-type-member-init)
-    const auto find = [&](auto cubic) {
-      for (int i = 0; i < some.count; ++i)
-        of_lines[static_cast<std::size_t>(i)] =
-            along_last<d, cubic>(grid, p, some.c[static_cast<std::size_t>(i)]);
-    };
-    if (is_quadratic(p))
-      find(std::false_type());
-    else
-      find(std::true_type());
-    const std::ptrdiff_t first = static_cast<std::ptrdiff_t>(some.first) * n;
-    raised |= target_rows::weigh(base + first, grid.last_line().v().data(), state.u[grid.last_component()],
-                                 of_lines.data(), some.count, f + first, keep, n, e + first);
-  });
-  return raised;
+  return is_quadratic(p) ? weigh_lines<d, false>(grid, state, p, base, f, keep, e)
+                         : weigh_lines<d, true>(grid, state, p, base, f, keep, e);
 }
 
 bool weigh(const velocity_grid& grid, const fluid_state& state, const target_polynomial& p,

@@ -59,7 +59,7 @@ device_transport::device_transport(device& on, const model& equation, std::share
                                    limited_reconstruction edges, const cell_unknown& unknown,
                                    std::string kernel)
     : device_(on),
-      equation_(equation),
+
       space_(std::move(space)),
       edges_(std::move(edges)),
       kernel_(std::move(kernel)),

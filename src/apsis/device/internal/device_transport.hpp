@@ -55,7 +55,6 @@ class device_transport final : public transport {
   void sweep(int direction, const field& u, std::span<const target<field, double>> targets) const;
 
   device& device_;
-  const model& equation_;
   std::shared_ptr<domain> space_;
   limited_reconstruction edges_;
   std::string kernel_;

@@ -59,7 +59,6 @@ device_transport::device_transport(device& on, const model& equation, std::share
                                    limited_reconstruction edges, const cell_unknown& unknown,
                                    std::string kernel)
     : device_(on),
-
       space_(std::move(space)),
       edges_(std::move(edges)),
       kernel_(std::move(kernel)),

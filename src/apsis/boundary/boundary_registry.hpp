@@ -19,7 +19,7 @@ namespace apsis {
 /// Where a case gives a quantity at a face. Messages name it.
 struct quantity_origin {
   source_place place = {};   ///< of its key
-  std::string surface = "";  ///< "[boundary.left]", "body 'disc'"
+  std::string surface = {};  ///< "[boundary.left]", "body 'disc'"
   int dimensions = 0;        ///< of space
 };
 

@@ -41,7 +41,7 @@ class worst_maxwellian {
     if (!(fit_.missed > velocity_limits::good)) return std::nullopt;
     if (refused_ && fit_.missed > velocity_limits::bad) refuse_state(config, path);
     const velocity_words words = words_of(config, fmt::format("the gas of [{}] at t = {:.4g}", path, t_));
-    const std::string problem = velocity_problem(support_.molecules(), state_, fit_, words).problem;
+    std::string problem = velocity_problem(support_.molecules(), state_, fit_, words).problem;
     if (fit_.missed > velocity_limits::bad) throw input_error(place_of_emitter(config, path), problem);
     return problem;
   }

@@ -13,7 +13,7 @@ WHOLE := -DAPSIS_PCH=ON -DCMAKE_UNITY_BUILD=ON
 FORMATTED = $(shell find src app paper validation tests bench examples python -name '*.[ch]pp' 2>/dev/null)
 
 .DEFAULT_GOAL := help
-.PHONY: help run validate reproduce study program figures test test-all test-slow clang asan tsan bench packages format format-check tidy docs docs-links clean
+.PHONY: help run validate reproduce study program figures test test-all test-slow device-check clang asan tsan bench packages format format-check tidy docs docs-links clean
 
 help: ## this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-13s %s\n", $$1, $$2 }' Makefile
@@ -60,6 +60,12 @@ test-slow:
 test-all: test ## test, slow tests, clang, sanitizers, clang-tidy, format
 	@scripts/install-packages.sh dev
 	$(MAKE) --no-print-directory test-slow format-check clang tidy asan tsan
+
+device-check: ## compare kernels, methods and runs on a graphics processor with the host, bit for bit (77: no device)
+	@scripts/install-packages.sh test
+	cmake --preset release -DAPSIS_TESTS=ON $(WHOLE) >/dev/null
+	cmake --build build/release --target tests/test_device tests/test_device_runs
+	tests/device/check.sh build/release
 
 clang: ## build everything with clang-19 without warnings
 	cmake --preset clang $(WHOLE) >/dev/null

@@ -11,7 +11,6 @@ namespace device_collision_test {
 
 using apsis::equilibrium_choice;
 using apsis::field;
-using apsis::lane_order;
 using apsis::stage_solution;
 
 struct variant {
@@ -57,8 +56,7 @@ TEST(device_collision, has_the_bits_of_the_host_in_every_order_of_lanes) {
     for (int i = 0; i < cells; ++i) epsilon.push_back(i % 5 == 0 ? 0.0 : std::pow(10.0, 2 - i % 9));
     const field u = beams(*equation, cells);
     const apsis::grid mesh = apsis::grid::line(cells, 0.0, 1.0);
-    for (const lane_order order : {lane_order::forward, lane_order::backward, lane_order::random}) {
-      const auto on = apsis::make_team_device(order);
+    for (const auto& on : tested_devices()) {
       const auto host = apsis::make_pointwise_collision(*equation, epsilon);
       apsis::device_collision there(*on, *equation, epsilon, false, {}, stage_solution::implicit);
       for (const std::array<double, 2> step :
@@ -68,7 +66,8 @@ TEST(device_collision, has_the_bits_of_the_host_in_every_order_of_lanes) {
         host->solve(0.0, step[0], step[1], here);
         there.solve(0.0, step[0], step[1], away);
         back.copy_rows(away);
-        EXPECT_EQ(different_numbers(mesh, here, back), 0) << of.points << " velocities, a = " << step[0];
+        EXPECT_EQ(different_numbers(mesh, here, back), 0)
+            << of.points << " velocities, a = " << step[0] << ", b = " << step[1];
       }
     }
   }
@@ -78,7 +77,7 @@ TEST(device_collision, rates_and_times_are_those_of_the_host) {
   const auto equation = gas(variants[1]);
   const std::vector<double> epsilon(6, 0.3);
   const field u = beams(*equation, 3);
-  const auto on = apsis::make_team_device(lane_order::random);
+  const auto& on = tested_device();
   const std::vector<double> three(3, 0.3);
   const auto host = apsis::make_pointwise_collision(*equation, three);
   apsis::device_collision there(*on, *equation, three, false, {}, stage_solution::implicit);
@@ -101,7 +100,7 @@ TEST(device_collision, fails_like_the_host_where_there_is_no_equilibrium) {
   const auto equation = gas(variants[0]);
   field u = beams(*equation, 5);
   for (int k = 0; k < u.components(); ++k) u.row(3)[k] = -1.0;
-  const auto on = apsis::make_team_device(lane_order::forward);
+  const auto& on = tested_device();
   apsis::device_collision there(*on, *equation, std::vector<double>(5, 0.1), false, {},
                                 stage_solution::implicit);
   field away(5, u.components(), on->memory());
@@ -115,7 +114,7 @@ TEST(device_collision, fails_like_the_host_where_there_is_no_equilibrium) {
 }
 
 TEST(device_collision, refuses_what_it_has_no_kernel_for) {
-  const auto on = apsis::make_team_device(lane_order::forward);
+  const auto& on = tested_device();
   const auto make = [&](const apsis::model& equation, stage_solution stages) {
     apsis::device_collision(*on, equation, {0.1}, false, {}, stages);
   };

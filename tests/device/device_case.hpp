@@ -1,7 +1,6 @@
 #pragma once
 
 #include <apsis/boundary/boundary_registry.hpp>
-#include <apsis/device/teams.hpp>
 #include <apsis/model/model_registry.hpp>
 #include <apsis/scheme/reconstruction_registry.hpp>
 #include <apsis/semidiscrete/upwind_transport.hpp>
@@ -10,10 +9,13 @@
 #include <cstring>
 #include <map>
 #include <memory>
+#include <ostream>
 #include <string>
 #include <vector>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <support/tested_device.hpp>
 
 /// A flow on a mesh of some dimensions, whose operators a test makes on the host and on a device.
 struct device_case {
@@ -52,14 +54,38 @@ inline apsis::field varied_rows(const apsis::grid& mesh, const apsis::model& equ
   return u;
 }
 
-/// How many numbers have other bits in one of two fields of the host, in the cells of the gas.
-inline int different_numbers(const apsis::grid& mesh, const apsis::field& a, const apsis::field& b) {
+/// Numbers that have other bits on a device than on the host. It equals its count.
+struct bit_differences {
+  int count = 0;
+  std::string first = {};  ///< the first one: its place, and both numbers
+
+  bool operator==(int expected) const { return count == expected; }
+  bit_differences& operator+=(const bit_differences& more) {
+    if (count == 0) first = more.first;
+    count += more.count;
+    return *this;
+  }
+  /// Compares two numbers, and describes the first pair that differs with a place.
+  template <class Place>
+  void compare(double host, double device, const Place& place) {
+    if (std::memcmp(&host, &device, sizeof host) == 0) return;
+    if (count++ == 0) first = fmt::format("{}: {:a} on the host, {:a} on the device", place(), host, device);
+  }
+  friend std::ostream& operator<<(std::ostream& to, const bit_differences& of) {
+    return to << of.count << " numbers differ" << (of.count > 0 ? ", the first one in " + of.first : "");
+  }
+};
+
+/// The numbers with other bits in a field of the host and a copy from a device, in the cells of the gas.
+inline bit_differences different_numbers(const apsis::grid& mesh, const apsis::field& host,
+                                         const apsis::field& copy) {
   auto cells = mesh.fluid();
   if (cells.empty()) cells.push_back({0, mesh.size()});
-  int count = 0;
+  bit_differences found;
   for (const auto& [begin, end] : cells)
     for (int i = begin; i < end; ++i)
-      for (int k = 0; k < a.components(); ++k)
-        count += std::memcmp(a.row(i) + k, b.row(i) + k, 8) != 0 ? 1 : 0;
-  return count;
+      for (int k = 0; k < host.components(); ++k)
+        found.compare(host.row(i)[k], copy.row(i)[k],
+                      [&] { return fmt::format("cell {}, component {}", i, k); });
+  return found;
 }

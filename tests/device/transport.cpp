@@ -3,6 +3,7 @@
 #include <apsis/core/errors.hpp>
 #include <apsis/device/internal/device_transport.hpp>
 
+#include <algorithm>
 #include <array>
 #include <span>
 
@@ -12,11 +13,8 @@ namespace device_transport_test {
 
 using apsis::field;
 using apsis::grid;
-using apsis::lane_order;
 using apsis::target;
 using limits = apsis::limited_reconstruction::limits;
-
-constexpr lane_order orders[] = {lane_order::forward, lane_order::backward, lane_order::random};
 
 std::unique_ptr<apsis::model> gas(const std::string& name, int dimensions, int points) {
   apsis::model_config config = apsis::default_config(apsis::find_model(name));
@@ -61,21 +59,21 @@ device_case flow(int dimensions, const apsis::boundary_entry& kind, bool with_bo
   return made;
 }
 
-/// Two evaluations with several targets, on the host and on a device; how many numbers and rates differ.
-int differences(const device_case& of, const std::string& scheme, limits limited, lane_order order) {
+/// The numbers and rates that differ in two evaluations with several targets, on the host and on a device.
+bit_differences differences(const device_case& of, const std::string& scheme, limits limited,
+                            apsis::device& on) {
   const apsis::limited_reconstruction edges{apsis::find_reconstruction(scheme).make(), limited};
-  const auto on = apsis::make_team_device(order);
   apsis::upwind_transport host(*of.equation, of.space(), edges, apsis::point_values());
-  apsis::device_transport there(*on, *of.equation, of.space(), edges, apsis::point_values(),
+  apsis::device_transport there(on, *of.equation, of.space(), edges, apsis::point_values(),
                                 apsis::kernel_of_reconstruction(scheme));
   const int components = of.equation->components();
   const field u = varied_rows(of.mesh, *of.equation, of.label.starts_with("periodic"));
-  field a(of.mesh.size(), components), b = a, sent(of.mesh.size(), components, on->memory()), c = sent,
+  field a(of.mesh.size(), components), b = a, sent(of.mesh.size(), components, on.memory()), c = sent,
                                        d = sent;
   for (auto* one : {&c, &d}) one->copy_rows(b);
   sent.copy_rows(u);
   const double step = 0.5 * host.forward_euler_step();
-  int different = 0;
+  bit_differences different;
   for (const double share : {1.0, 0.3}) {
     host.limit_for_steps(share);
     there.limit_for_steps(share);
@@ -92,7 +90,8 @@ int differences(const device_case& of, const std::string& scheme, limits limited
     different += different_numbers(of.mesh, b, back);
     const auto rates = host.budget_rates(), others = there.budget_rates();
     EXPECT_EQ(rates.size(), others.size());
-    for (std::size_t k = 0; k < rates.size(); ++k) different += rates[k] == others[k] ? 0 : 1;
+    for (std::size_t k = 0; k < std::min(rates.size(), others.size()); ++k)
+      different.compare(rates[k], others[k], [&] { return fmt::format("rate {} at surfaces", k); });
   }
   return different;
 }
@@ -101,9 +100,10 @@ TEST(device_transport, has_the_bits_of_the_host_with_every_scheme_and_order_of_l
   for (const auto* scheme : apsis::reconstruction_entries())
     for (const limits limited : {limits::nothing, limits::fluxes}) {
       if (limited == limits::fluxes && scheme->make()->order() == 1) continue;
-      for (const lane_order order : orders) {
+      for (const auto& on : tested_devices()) {
         const device_case line = flow(1, apsis::find_boundary("periodic"), false);
-        EXPECT_EQ(differences(line, scheme->name, limited, order), 0) << scheme->name;
+        EXPECT_EQ(differences(line, scheme->name, limited, *on), 0)
+            << scheme->name << (limited == limits::fluxes ? " with limited fluxes" : "");
       }
     }
 }
@@ -117,8 +117,9 @@ TEST(device_transport, has_the_bits_of_the_host_with_every_boundary_in_one_to_th
         if (with_box && dimensions == 1) continue;
         const device_case of = flow(dimensions, *kind, with_box);
         for (const limits limited : {limits::nothing, limits::fluxes})
-          EXPECT_EQ(differences(of, "weno5-z", limited, lane_order::random), 0)
-              << of.label << " " << with_box;
+          EXPECT_EQ(differences(of, "weno5-z", limited, *tested_device()), 0)
+              << of.label << (with_box ? " with a box" : "")
+              << (limited == limits::fluxes ? " with limited fluxes" : "");
       }
   }
 }
@@ -126,7 +127,7 @@ TEST(device_transport, has_the_bits_of_the_host_with_every_boundary_in_one_to_th
 TEST(device_transport, combines_states_like_the_host) {
   const device_case of = flow(2, apsis::find_boundary("diffuse"), true);
   const apsis::limited_reconstruction edges{apsis::find_reconstruction("upwind5").make(), limits::nothing};
-  const auto on = apsis::make_team_device(lane_order::random);
+  const auto& on = tested_device();
   const apsis::upwind_transport host(*of.equation, of.space(), edges, apsis::point_values());
   const apsis::device_transport there(*on, *of.equation, of.space(), edges, apsis::point_values(),
                                       apsis::kernel_of_reconstruction("upwind5"));
@@ -153,7 +154,7 @@ TEST(device_transport, combines_states_like_the_host) {
 
 TEST(device_transport, refuses_what_it_does_not_have) {
   const device_case of = flow(1, apsis::find_boundary("periodic"), false);
-  const auto on = apsis::make_team_device(lane_order::forward);
+  const auto& on = tested_device();
   const auto make = [&](limits limited) {
     return apsis::device_transport(*on, *of.equation, of.space(),
                                    {apsis::find_reconstruction("weno5-z").make(), limited},

@@ -1,7 +1,7 @@
 // A library with the functions of the CUDA driver that Apsis calls. Its device is memory of the host, and its
 // kernels are those of the host, run by teams of lanes. The variable FAKE_DEVICE makes it fail: "old" for a
 // device of compute capability 6.1, "old-driver", "small" for a device with 1 MB, "lost" for one that fails
-// after ten launches.
+// after ten launches, "wrong" for one with a wrong last bit in the first number of every result.
 #include <apsis/device/internal/kernel_table.hpp>
 #include <apsis/device/lane_team.hpp>
 
@@ -119,6 +119,7 @@ int cuMemcpyHtoD_v2(std::uint64_t to, const void* from, std::size_t bytes) {
 }
 int cuMemcpyDtoH_v2(void* to, std::uint64_t from, std::size_t bytes) {
   std::memcpy(to, at<void>(from), bytes);
+  if (behaves("wrong") && bytes > 0) *static_cast<unsigned char*>(to) ^= 1;
   return 0;
 }
 int cuLaunchKernel(void* function, unsigned blocks, unsigned, unsigned, unsigned lanes, unsigned, unsigned,

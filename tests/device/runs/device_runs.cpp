@@ -1,6 +1,4 @@
-// Runs on a device have the bits of the host. Lanes on the host take the part of the device.
-#include "same_results.hpp"
-
+// Runs on a device have the bits of the host.
 #include <apsis/config/case.hpp>
 #include <apsis/core/errors.hpp>
 #include <apsis/device/find_device.hpp>
@@ -12,7 +10,9 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <run/same_results.hpp>
 #include <support/folder.hpp>
+#include <support/tested_device.hpp>
 
 namespace device_runs_test {
 
@@ -39,7 +39,7 @@ std::string small_gas(bool between_walls, const std::string& time) {
 outcome run(const std::string& text, bool on_device, const std::string& folder = "", long steps = -1,
             std::optional<std::string> restart = {}) {
   session_options how;
-  if (on_device) how.on = open_device("teams");
+  if (on_device) how.on = tested_device();
   if (!folder.empty()) how.out = folder;
   how.restart = std::move(restart);
   long done = 0;

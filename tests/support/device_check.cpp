@@ -1,0 +1,112 @@
+// The devices of tests, and the main function of their programs, which `make device-check` runs on a real
+// device (tests/device/check.sh). Exit code 77 and "no device" if APSIS_DEVICE is set and there is no device.
+#include "tested_device.hpp"
+
+#include <apsis/core/errors.hpp>
+#include <apsis/device/find_device.hpp>
+#include <apsis/device/teams.hpp>
+
+#include <cstdio>
+#include <cstdlib>
+#include <utility>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace device_check {
+
+using apsis::device;
+
+namespace {
+
+std::set<std::string>& names_of_kernels() {
+  static std::set<std::string> names;
+  return names;
+}
+
+/// A device that records the names of its kernels.
+class recording_device final : public device {
+ public:
+  explicit recording_device(std::shared_ptr<device> real) : real_(std::move(real)) {}
+
+  std::string name() const override { return real_->name(); }
+  const apsis::memory_space& memory() const override { return real_->memory(); }
+  std::size_t bytes() const override { return real_->bytes(); }
+  std::size_t free_bytes() const override { return real_->free_bytes(); }
+  void start(std::string_view kernel, const apsis::launch_size& size, const void* arguments,
+             std::size_t bytes_of_arguments) override {
+    names_of_kernels().emplace(kernel);
+    real_->start(kernel, size, arguments, bytes_of_arguments);
+  }
+  void finish() override { real_->finish(); }
+
+ private:
+  std::shared_ptr<device> real_;
+};
+
+const char* wanted() {
+  return std::getenv("APSIS_DEVICE");
+}
+
+std::shared_ptr<device> open_wanted() {
+  const std::string name = wanted();
+  return apsis::open_device(name == "first" ? "" : name);
+}
+
+std::vector<std::shared_ptr<device>> open_all() {
+  std::vector<std::shared_ptr<device>> real;
+  if (wanted() != nullptr) {
+    real.push_back(open_wanted());
+  } else {
+    for (const auto order :
+         {apsis::lane_order::forward, apsis::lane_order::backward, apsis::lane_order::random})
+      real.push_back(apsis::make_team_device(order));
+  }
+  std::vector<std::shared_ptr<device>> all;
+  for (auto& one : real) all.push_back(std::make_shared<recording_device>(std::move(one)));
+  return all;
+}
+
+/// Opens the device. Returns the exit code of a program that cannot use it, 0 if it can.
+int prepare() {
+  constexpr int skipped = 77;
+  const std::string name = wanted();
+  if (name != "teams" && apsis::found_devices().empty()) {
+    std::puts("no device");
+    return skipped;
+  }
+  try {
+    std::printf("device: %s\n", tested_device()->name().c_str());
+    return 0;
+  } catch (const apsis::error& failure) {
+    std::printf("error: %s\n", failure.what());
+    return 1;
+  }
+}
+
+/// A program in which no test is left proves nothing.
+int run_tests() {
+  const int result = RUN_ALL_TESTS();
+  if (testing::UnitTest::GetInstance()->test_to_run_count() > 0) return result;
+  std::puts("no test was selected");
+  return 1;
+}
+
+}  // namespace
+}  // namespace device_check
+
+const std::vector<std::shared_ptr<apsis::device>>& tested_devices() {
+  static const auto all = device_check::open_all();
+  return all;
+}
+
+const std::set<std::string>& kernels_that_ran() {
+  return device_check::names_of_kernels();
+}
+
+int main(int argc, char** argv) {
+  testing::InitGoogleMock(&argc, argv);
+  if (device_check::wanted() == nullptr) return RUN_ALL_TESTS();
+  if (const int code = device_check::prepare(); code != 0) return code;
+  return device_check::run_tests();
+}

@@ -4,7 +4,7 @@
     bench/report.py [--results results/bench/speed.json] [--docs docs] [--readme README.md]
 
 Copies the results, if there are any, to DOCS/data/speed/PROCESSOR.json.gz. Writes the tables of the newest file there between the
-marks <!-- NAME --> and <!-- end --> of DOCS/speed.md, DOCS/bodies.md, DOCS/scaling.md and DOCS/steady.md, draws DOCS/images/speed-*.png, and writes the table that compares processors
+marks <!-- NAME --> and <!-- end --> of DOCS/speed.md, DOCS/bodies.md, DOCS/device.md, DOCS/scaling.md and DOCS/steady.md, draws DOCS/images/speed-*.png, and writes the table that compares processors
 there and its most important rows into the README.
 """
 import argparse
@@ -20,7 +20,7 @@ import scaling_model  # noqa: E402
 from plot.style import COLOURS, MARKERS, plt  # noqa: E402  (one style for all pictures)
 
 
-PAGES = {"bodies": "bodies.md", "processes": "scaling.md", "steady": "steady.md"}  # of tables that are not in speed.md
+PAGES = {"bodies": "bodies.md", "device": "device.md", "processes": "scaling.md", "steady": "steady.md"}  # of tables that are not in speed.md
 
 
 class ReportError(Exception):
@@ -314,9 +314,13 @@ DRAWN = ("contestant", "ours", "epsilon", "error", "seconds", "smallest")
 
 
 def compact(results):
-    """Keeps only what tables and pictures show, which is the Pareto front of each contestant or group."""
+    """Keeps only what tables and pictures show, which is the Pareto front of each contestant or group.
+
+    Figures of lanes on the host that took the part of a device are left out."""
     kept = {}
     for name, result in results.items():
+        if not result["data"].get("is_device", True):
+            continue
         points = grouped(result["data"].get("points", []))
         groups = {}
         for point in points:
@@ -401,7 +405,8 @@ def main():
     given = parser.parse_args()
     folder = given.docs / "data" / "speed"
     if given.results.exists():
-        keep(compact(read(given.results)), folder)
+        if kept := compact(read(given.results)):
+            keep(kept, folder)
     machines = newest_first(folder)
     forget_superseded(machines, folder)
     results = newest_tables(machines)

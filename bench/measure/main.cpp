@@ -4,6 +4,7 @@
 #include <apsis/core/errors.hpp>
 #include <apsis/core/log.hpp>
 #include <apsis/core/suggest.hpp>
+#include <apsis/device/find_device.hpp>
 #include <apsis/exec/memory.hpp>
 #include <apsis/exec/processes.hpp>
 
@@ -66,6 +67,12 @@ int measure(const std::vector<std::string>& names, const std::string& path,
             const apsis::bench::settings& options) {
   const bool writes = options.processes->is_root();
   for (const auto& one : chosen(names, !options.processes->is_single())) {
+    if (one.needs_device && options.device.empty() && apsis::found_devices().empty()) {
+      fmt::print("no device\n");
+      constexpr int skipped = 77;
+      if (!names.empty()) return skipped;
+      continue;
+    }
     if (writes) fmt::print(stderr, "measuring {}: {}\n", one.name, one.description);
     const auto table = one.measure(options);
     if (!writes) continue;
@@ -94,6 +101,8 @@ int main(int argc, char** argv) {
   program.add_option("--out", path, "JSON file to which results are added");
   program.add_option("--repeats", options.repeats, "number of turns; results are medians")
       ->check(CLI::Range(1, 1000));
+  program.add_option("--device", options.device,
+                     "device of the measurement 'device'; default: the first one; teams: lanes on the host");
   program.add_flag("--quick", options.quick, "smoke test on small problems, without meaningful results");
   program.add_flag("--list", list, "list the measurements");
   CLI11_PARSE(program, argc, argv);

@@ -2,6 +2,7 @@
 #include "mixed_step.hpp"
 
 #include <apsis/config/discretization_of_case.hpp>
+#include <apsis/mesh/on_host.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -24,11 +25,12 @@ mixed_step::mixed_step(const std::string& discretization, const std::string& met
                        std::vector<std::string> overrides)
     : mixed_step(mixed_case(discretization, method, cells, std::move(overrides))) {}
 
-mixed_step::mixed_step(const case_config& config)
-    : setup_(config),
+mixed_step::mixed_step(const case_config& config, std::shared_ptr<device> on)
+    : on_(std::move(on)),
+      setup_(config, single_process(), on_),
       problem_(setup_.make_problem()),
       stepper_(setup_.integrator().starter(), *problem_),
-      u_(setup_.initial_state()),
+      u_(moved_to(setup_.memory(), setup_.initial_state())),
       fuses_solves_(setup_.builder().collisions().cellwise),
       dt_(0.9 * stepper_.r() * problem_->forward_euler_step(0.0, u_)) {
   take(1);  // allocates the buffers

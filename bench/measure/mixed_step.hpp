@@ -23,11 +23,12 @@ class mixed_step {
   /// `overrides` are additional keys of the case, "key=value".
   mixed_step(const std::string& discretization, const std::string& method, int cells,
              std::vector<std::string> overrides = {});
-  /// Steps of another case.
-  explicit mixed_step(const case_config& config);
+  /// Steps of another case, on a device unless `on` is null.
+  explicit mixed_step(const case_config& config, std::shared_ptr<device> on = nullptr);
 
   void take(int steps) {
     for (int k = 0; k < steps; ++k) stepper_.step(0.0, dt_, u_);
+    if (on_) on_->finish();
   }
   /// Counts the operations and bytes of a step by taking one.
   kernel_work count_work();
@@ -47,6 +48,7 @@ class mixed_step {
   int steps_in(double seconds);
 
  private:
+  std::shared_ptr<device> on_;  ///< null: the host
   run_setup setup_;
   std::unique_ptr<semidiscrete_problem> problem_;
   stepper<semidiscrete_problem> stepper_;

@@ -14,6 +14,7 @@ namespace apsis::bench {
 struct settings {
   int repeats = 5;
   bool quick = false;
+  std::string device;                                          ///< as for open_device()
   std::shared_ptr<communicator> processes = single_process();  ///< that were started together
 };
 
@@ -32,6 +33,7 @@ struct entry {
   std::string name, description;
   result_table (*measure)(const settings&);
   bool on_several_processes = false;  ///< measured when several processes are started, and then alone
+  bool needs_device = false;          ///< measured where there is a device, or one was given
 };
 
 class registered {

@@ -42,6 +42,12 @@ class SpeedReport(unittest.TestCase):
             self.assertEqual({point["error"] for point in after["peers-kaps"]["data"]["points"]}, {1e-3})
             self.assertIn("runs", module.records.read(next(folder.glob("*.json.gz")))["peers-kaps"]["data"]["points"][0])
 
+    def test_lanes_on_the_host_have_no_figures_of_a_device(self):
+        module, lanes, card = report(), result([["a"]]), result([["b"]])
+        lanes["data"]["is_device"], card["data"]["is_device"] = False, True
+        self.assertEqual(module.compact({"device": lanes, "plain": result([])}).keys(), {"plain"})
+        self.assertEqual(module.compact({"device": card}).keys(), {"device"})
+
     def test_a_table_is_that_of_the_machine_that_measured_it_last(self):
         module = report()
         first, second = result([["old"]], [copy.deepcopy(RUN)]), result([["new"]], [copy.deepcopy(RUN)])

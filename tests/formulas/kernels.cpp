@@ -163,3 +163,11 @@ extern "C" void sweeps(const double* u, double* to) {
   equation.add(u[2], u[3], u[4], u[5], u[6], u[7]);
   to[0] = equation.solution();
 }
+
+extern "C" void checks_of_row(const double* f, const double* v, int n, double* to) {
+  const one_of_eight group{3};
+  const auto sums = scalar::moments_of_row<2>(group, f, v, v, n);
+  const auto squares = scalar::sum_squares(group, f, v, n);
+  to[0] = sums.mass + squares.difference / squares.size;
+  to[1] = scalar::entropy_of_row(group, v, f, to, 0.5, n);
+}

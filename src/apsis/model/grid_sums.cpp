@@ -4,6 +4,7 @@
 
 #include <apsis/model/grid_sums.hpp>
 
+#include <apsis/exec/octet-inl.hpp>
 #include <apsis/model/formulas/grid_sums.hpp>
 #include <apsis/model/formulas/line.hpp>
 
@@ -208,17 +209,7 @@ void multiply(const double* a, int lines, const double* g, int n, double* m) {
 }
 
 double entropy(const double* w, const double* g, const double* h, double degrees, int n) {
-  N sum[vectors];
-  for (N& one : sum) one = N(0.0);
-  for (int j = 0; j < n; j += sum_chains)
-    for (int i = 0; i < vectors && j + i * lanes < n; ++i) {
-      const int k = j + i * lanes, count = n - k;
-      const N of_g = load_some(g + k, count), of_w = w == nullptr ? N(1.0) : load_some(w + k, count);
-      const N of_mass =
-          h == nullptr ? log_of_normal(of_g) : entropy_per_mass(of_g, load_some(h + k, count), N(degrees));
-      sum[i] = fma(of_w * of_g, of_mass, sum[i]);
-    }
-  return total_of_chains(sum);
+  return entropy_of_row(octet_group(), w, g, h, degrees, n);
 }
 
 }  // namespace apsis::HWY_NAMESPACE

@@ -4,6 +4,7 @@
 
 #include <apsis/scheme/row_check.hpp>
 
+#include <apsis/exec/octet-inl.hpp>
 #include <apsis/scheme/formulas/row.hpp>
 
 #include <cmath>
@@ -29,20 +30,9 @@ row_extremes extremes(const double* row, int n) {
 }
 
 row_squares squares(const double* u, const double* v, int n) {
-  constexpr int lanes = static_cast<int>(hn::MaxLanes(wide()));
-  using N = pack<wide>;
-  sums_of_squares<N> sums[vectors_of_chains];
-  for (int k = 0; k < n; k += sum_chains)
-    for (int i = 0; i < vectors_of_chains && k + i * lanes < n; ++i) {
-      const int at = k + i * lanes;
-      sums[i].add(load_some(u + at, n - at), load_some(v + at, n - at));
-    }
-  N difference[vectors_of_chains], size[vectors_of_chains];
-  for (int i = 0; i < vectors_of_chains; ++i) {
-    difference[i] = sums[i].difference;
-    size[i] = sums[i].size;
-  }
-  return {total_of_chains(difference), total_of_chains(size)};
+  const octet_group eight;
+  const auto sums = sum_squares(eight, u, v, n);
+  return {eight.total(sums.difference), eight.total(sums.size)};
 }
 
 }  // namespace apsis::HWY_NAMESPACE

@@ -40,6 +40,22 @@ APSIS_FORMULA N entropy_per_mass(N g, N h, N degrees) {
   return fma(degrees, log_of_g - log_of_normal(h), log_of_g);
 }
 
+/// grid_sums::entropy(), by eight numbers together (exec/octet-inl.hpp).
+template <class Group, class N = typename Group::number>
+APSIS_FORMULA double entropy_of_row(const Group& group, const double* w, const double* g, const double* h,
+                                    double degrees, int n) {
+  constexpr int together = 8;
+  N sum(0.0);
+  for (int j = 0; j < n; j += together) {
+    const int count = n - j;
+    const N of_g = group.load(g + j, count), of_w = w == nullptr ? N(1.0) : group.load(w + j, count);
+    const N of_mass =
+        h == nullptr ? log_of_normal(of_g) : entropy_per_mass(of_g, group.load(h + j, count), N(degrees));
+    sum = fma(of_w * of_g, of_mass, sum);
+  }
+  return group.total(sum);
+}
+
 }  // namespace apsis::APSIS_NUMBERS
 APSIS_AFTER_FORMULAS();
 

@@ -43,6 +43,28 @@ APSIS_FORMULA void sum_moments(const Group& group, const double* f, long pitch, 
                   group.total(sums[r][0].energy + sums[r][1].energy)};
 }
 
+/// Largest number of velocities whose sums are chains of additions; more are halved. The error of a sum grows
+/// with the additions in a chain.
+inline constexpr int longest_chain_of_line = 256;
+
+/// The sums over n velocities of a row, as velocity_rows::moments(): halves of halves, at whole cache lines,
+/// of up to 2^Halvings chains.
+template <int Halvings, class Group>
+APSIS_FORMULA moments_of_line moments_of_row(const Group& group, const double* f, const double* v,
+                                             const double* half_square, int n) {
+  if constexpr (Halvings > 0)
+    if (n > longest_chain_of_line) {
+      const int half = (n / 2 + octet_length - 1) / octet_length * octet_length;
+      const auto before = moments_of_row<Halvings - 1>(group, f, v, half_square, half),
+                 behind =
+                     moments_of_row<Halvings - 1>(group, f + half, v + half, half_square + half, n - half);
+      return {before.mass + behind.mass, before.momentum + behind.momentum, before.energy + behind.energy};
+    }
+  moments_of_line sums;
+  sum_moments<1>(group, f, 0, v, half_square, n, &sums);
+  return sums;
+}
+
 /// Evenly spaced velocities.
 struct spaced_line {
   int n;           ///< how many

@@ -41,6 +41,15 @@ struct sums_of_squares {
   }
 };
 
+/// The sums of squares of two rows of n numbers, by eight numbers together (exec/octet-inl.hpp).
+template <class Group, class N = typename Group::number>
+APSIS_FORMULA sums_of_squares<N> sum_squares(const Group& group, const double* u, const double* v, int n) {
+  constexpr int together = 8;
+  sums_of_squares<N> sums;
+  for (int k = 0; k < n; k += together) sums.add(group.load(u + k, n - k), group.load(v + k, n - k));
+  return sums;
+}
+
 }  // namespace apsis::APSIS_NUMBERS
 APSIS_AFTER_FORMULAS();
 

@@ -24,13 +24,39 @@ std::set<std::string>& names_of_kernels() {
   return names;
 }
 
+std::size_t copied_to_host = 0;
+
+/// The memory of a device, which counts what it copies to the host.
+class counting_memory final : public apsis::memory_space {
+ public:
+  explicit counting_memory(const apsis::memory_space& real) : real_(real) {}
+
+  std::string_view name() const override { return real_.name(); }
+  bool on_host() const override { return real_.on_host(); }
+  double* allocate(std::size_t count) const override { return real_.allocate(count); }
+  void release(double* numbers, std::size_t count) const noexcept override { real_.release(numbers, count); }
+  void clear(double* numbers, std::size_t count) const override { real_.clear(numbers, count); }
+  void copy(const double* from, std::size_t count, double* to) const override { real_.copy(from, count, to); }
+  void copy_from_host(const double* host, std::size_t count, double* to) const override {
+    real_.copy_from_host(host, count, to);
+  }
+  void copy_to_host(const double* from, std::size_t count, double* host) const override {
+    copied_to_host += count;
+    real_.copy_to_host(from, count, host);
+  }
+
+ private:
+  const apsis::memory_space& real_;
+};
+
 /// A device that records the names of its kernels.
 class recording_device final : public device {
  public:
-  explicit recording_device(std::shared_ptr<device> real) : real_(std::move(real)) {}
+  explicit recording_device(std::shared_ptr<device> real)
+      : real_(std::move(real)), memory_(real_->memory()) {}
 
   std::string name() const override { return real_->name(); }
-  const apsis::memory_space& memory() const override { return real_->memory(); }
+  const apsis::memory_space& memory() const override { return memory_; }
   std::size_t bytes() const override { return real_->bytes(); }
   std::size_t free_bytes() const override { return real_->free_bytes(); }
   void start(std::string_view kernel, const apsis::launch_size& size, const void* arguments,
@@ -42,6 +68,7 @@ class recording_device final : public device {
 
  private:
   std::shared_ptr<device> real_;
+  counting_memory memory_;
 };
 
 const char* wanted() {
@@ -98,6 +125,10 @@ int run_tests() {
 const std::vector<std::shared_ptr<apsis::device>>& tested_devices() {
   static const auto all = device_check::open_all();
   return all;
+}
+
+std::size_t numbers_copied_to_host() {
+  return device_check::copied_to_host;
 }
 
 const std::set<std::string>& kernels_that_ran() {

@@ -2,6 +2,7 @@
 
 #include <apsis/device/device.hpp>
 
+#include <cstddef>
 #include <memory>
 #include <set>
 #include <string>
@@ -16,6 +17,9 @@ const std::vector<std::shared_ptr<apsis::device>>& tested_devices();
 inline const std::shared_ptr<apsis::device>& tested_device() {
   return tested_devices().back();
 }
+
+/// Returns how many numbers these devices have copied to the host so far.
+std::size_t numbers_copied_to_host();
 
 /// Returns the names of the kernels that these devices have run so far.
 const std::set<std::string>& kernels_that_ran();

@@ -2,7 +2,10 @@
 
 #include <apsis/mesh/field.hpp>
 
+#include <cstddef>
+#include <span>
 #include <utility>
+#include <vector>
 
 namespace apsis {
 
@@ -13,6 +16,15 @@ inline const field& on_host(const field& u, field& room) {
   if (room.cells() != u.cells() || room.components() != u.components() || !room.memory().on_host())
     room = field(u.cells(), u.components());
   room.copy_rows(u);
+  return room;
+}
+
+/// Returns a row of the field where the host can read it: the row itself, or a copy in `room`.
+inline std::span<const double> row_on_host(const field& u, int cell, std::vector<double>& room) {
+  const auto width = static_cast<std::size_t>(u.components());
+  if (u.memory().on_host()) return {u.row(cell), width};
+  room.resize(width);
+  u.memory().copy_to_host(u.row(cell), width, room.data());
   return room;
 }
 

@@ -47,7 +47,7 @@ std::optional<loss_watch::loss> loss_watch::estimate(double t, const field& u, d
   semidiscrete_problem& p = implicit_ ? *implicit_ : problem_;
   const auto distance = [&](const field& a, const field& b) {
     p.throw_late_errors();
-    return relative_distance(a, b, setup_.processes());
+    return relative_distance(a, b, setup_.processes(), setup_.runs_on());
   };
   return compute_rate_loss(p, t, u, dt, of, distance, layer);
 }

@@ -32,6 +32,9 @@ monitor::monitor(const run_setup& setup)
     : setup_(setup),
       equation_(*setup.equation),
       of_rows_(dynamic_cast<const checks_of_rows*>(setup.equation.get())),
+      on_device_(setup.runs_on() == nullptr
+                     ? nullptr
+                     : device_row_checks::make(*setup.runs_on(), equation_, setup.mesh())),
       entropy_(equation_.entropy()),
       volume_(setup.cell_volume()),
       ends_(setup.open_ends()),
@@ -84,11 +87,24 @@ int monitor::cells_with_condition(const field& u, int begin, int end) const {
   return fit - begin;
 }
 
+/// The extremes, densities and entropy of a row; the latter only where it counts.
+device_row_checks::row monitor::look_at(const field& u, int cell, double* densities) const {
+  if (on_device_) {
+    const auto found = on_device_->of(cell);
+    std::copy_n(found.densities, equation_.invariants().size(), densities);
+    return found;
+  }
+  const double* row = u.row(cell);
+  const row_extremes extremes = compute_extremes(row, u.components());
+  equation_.invariant_densities(row, densities);
+  const bool counts = entropy_ && extremes.negative == 0 && !std::isnan(extremes.lowest);
+  return {extremes, densities, counts ? entropy_->density(row) : 0.0};
+}
+
 /// Takes the extremes, densities and entropy of a row. Returns whether it is finite.
 bool monitor::check_row(const field& u, int cell, double* densities, partial& own) const {
-  const double* row = u.row(cell);
-  const auto [low, below] = compute_extremes(row, u.components());
-  equation_.invariant_densities(row, densities);
+  const device_row_checks::row found = look_at(u, cell, densities);
+  const auto [low, below] = found.extremes;
   if (std::isnan(low)) {
     if (cell < own.not_finite) own.value = low;
     own.not_finite = std::min(own.not_finite, cell);
@@ -98,7 +114,7 @@ bool monitor::check_row(const field& u, int cell, double* densities, partial& ow
   own.negative += below;
   if (velocities_.active()) velocities_.look(densities, cell, own.velocities);
   if (entropy_ && below == 0)
-    own.sums.back().add(setup_.mesh().gas_share(cell) * entropy_of(row, cell, densities[0]));
+    own.sums.back().add(setup_.mesh().gas_share(cell) * entropy_of(found.entropy, cell, densities[0]));
   return true;
 }
 
@@ -116,12 +132,16 @@ void monitor::add_densities(int cell, std::span<const double> densities, const d
   own.sums[2 * count + 1].add(share * turn);
 }
 
-/// The entropy of a cell, with the density ρ of its row. About an axis the row is r f, and r η(f) = η(r f) −
-/// r ρ log r of a gas.
-double monitor::entropy_of(const double* row, int cell, double density) const {
-  const double entropy = entropy_->density(row);
+/// The entropy of a cell, from that of its row and the density ρ of its row. About an axis the row is r f,
+/// and r η(f) = η(r f) − r ρ log r of a gas.
+double monitor::entropy_of(double entropy, int cell, double density) const {
   if (!setup_.mesh().has_axis()) return entropy;
   return entropy - density * std::log(setup_.mesh().radius(setup_.mesh().centre(cell)));
+}
+
+/// The state where its rows are checked: a copy on the host, unless it may stay on the device.
+const field& monitor::checkable(const field& u, field& room) const {
+  return on_device_ ? u : on_host(u, room);
 }
 
 /// The parts of all threads.
@@ -132,6 +152,7 @@ monitor::partial monitor::check_block(const field& u) const {
   empty.densities.resize(cells_of_block * count);
   empty.scales.resize(cells_of_block * count);
   std::vector<partial*> parts;
+  if (on_device_) on_device_->evaluate(u);
   const loops_over numbers(u.size());
   parts_->prepare([&](partial& own) {
     own = empty;
@@ -191,7 +212,7 @@ monitor::totals monitor::sum(const field& u) const {
 
 step_record monitor::start(const field& state) {
   field room;
-  const field& u = on_host(state, room);
+  const field& u = checkable(state, room);
   totals t = sum(u);
   invariants_ = t.invariants;
   scales_ = t.scales;
@@ -220,9 +241,7 @@ void monitor::keep_velocities(const totals& t) {
   margins_ = t.margins;
 }
 
-void monitor::watch_velocities(const field& state, const step_record& last, run_summary& summary) {
-  field room;
-  const field& u = on_host(state, room);
+void monitor::watch_velocities(const field& u, const step_record& last, run_summary& summary) {
   if (last.step == 0) return velocities_.start(extremes_, margins_, u, summary);
   if (!losses_.empty() && losses_[force_losses::held] > 0.0)
     velocities_.add_held(losses_[force_losses::held] / last.total.front(), u, last, summary);
@@ -232,7 +251,7 @@ void monitor::watch_velocities(const field& state, const step_record& last, run_
 
 step_record monitor::check(const budgeted_state& after, double dt, const step_record& previous, double cut) {
   field room;
-  const field& u = on_host(after.unknowns, room);
+  const field& u = checkable(after.unknowns, room);
   if (velocities_.active()) velocities_.set_mass(previous.total.front());
   const totals t = sum(u);
   keep_velocities(t);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <apsis/device/row_checks.hpp>
 #include <apsis/exec/parallel.hpp>
 #include <apsis/mesh/field.hpp>
 #include <apsis/model/checks_of_rows.hpp>
@@ -54,12 +55,14 @@ class monitor {
     velocity_margins margins;  ///< of all processes
   };
   struct partial;
-  double entropy_of(const double* row, int cell, double density) const;
+  device_row_checks::row look_at(const field& u, int cell, double* densities) const;
+  double entropy_of(double entropy, int cell, double density) const;
   void check_cells(const field& u, int begin, int end, partial& own) const;
   void find_scales(int cells, partial& own) const;
   int cells_with_condition(const field& u, int begin, int end) const;
   bool check_row(const field& u, int cell, double* densities, partial& own) const;
   void add_densities(int cell, std::span<const double> densities, const double* scales, partial& own) const;
+  const field& checkable(const field& u, field& room) const;
   partial check_block(const field& u) const;
   totals sum(const field& u) const;
   std::optional<condition_violation> violation_in(const field& u, const totals& t) const;
@@ -71,7 +74,8 @@ class monitor {
 
   const run_setup& setup_;
   const model& equation_;
-  const checks_of_rows* of_rows_;  ///< null where the model has none
+  const checks_of_rows* of_rows_;                 ///< null where the model has none
+  std::unique_ptr<device_row_checks> on_device_;  ///< null: rows are checked on the host
   std::optional<convex_entropy> entropy_;
   double volume_;                       ///< of a cell; 1 for an ordinary differential equation
   std::vector<std::size_t> ends_;       ///< number at each face

@@ -63,7 +63,7 @@ class run_setup : public construction_count<run_setup> {
   /// Returns the memory of the states of a run.
   const memory_space& memory() const;
   /// Returns the device; null for the host.
-  const device* runs_on() const { return device_.get(); }
+  device* runs_on() const { return device_.get(); }
   /// Returns the builder of the problem, which samples functions of position on the mesh.
   const problem_builder& builder() const { return builder_; }
   /// Returns the exact solution at time t in the same form; nothing if no formula is known.

@@ -2,6 +2,7 @@
 
 #include <apsis/core/errors.hpp>
 #include <apsis/exec/thread_clock.hpp>
+#include <apsis/mesh/on_host.hpp>
 #include <apsis/run/compute_fields.hpp>
 #include <apsis/run/compute_surfaces.hpp>
 #include <apsis/run/progression.hpp>
@@ -200,12 +201,7 @@ std::vector<double> simulation::whole_state() const {
 }
 
 std::span<const double> simulation::row(int cell) const {
-  const field& u = impl_->run.state;
-  const auto width = static_cast<std::size_t>(u.components());
-  if (u.memory().on_host()) return {u.row(cell), width};
-  impl_->row.resize(width);
-  u.memory().copy_to_host(u.row(cell), width, impl_->row.data());
-  return impl_->row;
+  return row_on_host(impl_->run.state, cell, impl_->row);
 }
 
 std::vector<double> simulation::densities_in(int cell) const {

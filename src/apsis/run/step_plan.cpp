@@ -111,7 +111,7 @@ void warn_of_layer(const run_setup& setup, semidiscrete_problem& problem, const 
   problem.add_transport(0.0, u, {&add, 1});
   problem.add_transport(0.0, equilibrium, {&subtract, 1});
   problem.throw_late_errors();
-  const double error = relative_distance(u, changed, setup.processes());
+  const double error = relative_distance(u, changed, setup.processes(), setup.runs_on());
   if (!(error > *setup.config().time.tolerance)) return;
   log::warning(
       fmt::format("method '{}' does not resolve the initial layer of data off equilibrium in a first step of "

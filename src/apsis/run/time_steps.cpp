@@ -65,7 +65,7 @@ void time_steps::warn_before_steps(double relaxation) {
 auto time_steps::distance() {
   return [this](const auto& u, const auto& v) {
     run_.problem->throw_late_errors();
-    return relative_distance(unknowns_of(u), unknowns_of(v), run_.setup.processes());
+    return relative_distance(unknowns_of(u), unknowns_of(v), run_.setup.processes(), run_.setup.runs_on());
   };
 }
 

@@ -4,6 +4,7 @@
 #include <apsis/config/force_reader.hpp>
 #include <apsis/core/errors.hpp>
 #include <apsis/core/log.hpp>
+#include <apsis/mesh/on_host.hpp>
 
 #include <algorithm>
 #include <array>
@@ -87,9 +88,10 @@ void velocity_watch::look(const double* omega, int cell, velocity_extremes& own)
 std::optional<velocity_watch::candidate> velocity_watch::shared(int cell, const field& u) const {
   const bool mine = cell != velocity_extremes::none;
   const gas& molecules = support_->molecules();
-  std::vector<double> omega(static_cast<std::size_t>(molecules.moment_count()));
-  if (mine) molecules.moments(u.row(cell), 0, 1, omega.data());
-  omega.push_back(mine ? negative_mass(molecules, u.row(cell)) : 0.0);
+  std::vector<double> omega(static_cast<std::size_t>(molecules.moment_count())), room;
+  const double* row = mine ? row_on_host(u, cell, room).data() : nullptr;
+  if (mine) molecules.moments(row, 0, 1, omega.data());
+  omega.push_back(mine ? negative_mass(molecules, row) : 0.0);
   const auto worst =
       worst_of_all(setup_.processes(), 1.0, mine ? setup_.number_in_whole_mesh(cell) : -1, omega);
   candidate found{worst ? worst->cell : -1, {}, {}};
@@ -201,7 +203,9 @@ std::string velocity_watch::larger_velocities(double needed) const {
 
 /// The largest velocity that the gas needs now, and where its streams come to rest: relative to walls, or
 /// without walls relative to the mean velocity, where a force may also accelerate it until the end.
-double velocity_watch::velocity_that_would_do(const field& u, const step_record& at) const {
+double velocity_watch::velocity_that_would_do(const field& state, const step_record& at) const {
+  field room;
+  const field& u = on_host(state, room);
   const gas& molecules = support_->molecules();
   const auto d = static_cast<std::size_t>(molecules.dimensions());
   std::array<double, 3> rest{}, speed{};

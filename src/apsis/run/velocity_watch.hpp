@@ -30,6 +30,7 @@ struct velocity_extremes {
 /// Watches whether the velocities of a gas represent the Maxwellian of every cell in a run
 /// (docs/velocities.md). Cells with less than a thousandth of the mean density are not watched, nor those
 /// whose molecules collide less than a tenth of a time until time.end: there the Maxwellian has no effect.
+/// States may live on a device; rows that are needed are copied.
 class velocity_watch {
  public:
   /// `setup` must outlive the object.
@@ -68,7 +69,7 @@ class velocity_watch {
                                       const field& u, run_summary& totals) const;
   std::optional<candidate> shared(int cell, const field& u) const;
   void judge(const candidate& worst, const field& u, const step_record& at);
-  double velocity_that_would_do(const field& u, const step_record& at) const;
+  double velocity_that_would_do(const field& state, const step_record& at) const;
   std::string larger_velocities(double needed) const;
   bool& warned(const velocity_fit& fit) { return fit.ends ? warned_of_ends_ : warned_of_spacing_; }
 

@@ -6,6 +6,7 @@
 
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -61,6 +62,30 @@ TEST(device_runs, have_the_bits_of_the_host) {
       const std::string text = small_gas(between_walls, time);
       expect_same(run(text, true), run(text, false), text);
     }
+}
+
+/// Seven numbers of a cell for its checks, two for the change of a step, and one for each solve that may have
+/// been left to the host: far less than the state, which has 100 numbers of a cell. The velocities are so
+/// many that no solve is left.
+TEST(device_runs, a_step_does_not_copy_the_state_to_the_host) {
+  constexpr int cells = 60, velocities = 100, steps = 5;
+  std::string text = small_gas(false, "method = \"md-imex-6-3\"\nsafety = 1\nend = 0.1\nsteady = 1e-9\n");
+  for (const auto& [from, to] : {std::pair{"every = 0.011", "every = 0"},
+                                 {"cells = 20", "cells = 60"},
+                                 {"max = 9.0", "max = 15.0"},
+                                 {"points = 36", "points = 100"}})
+    text.replace(text.find(from), std::string(from).size(), to);
+  session_options how;
+  how.on = tested_device();
+  std::size_t first = 0, last = 0;
+  long done = 0;
+  how.watch = [&](const simulation& now) {
+    done = now.step();
+    (done == 1 ? first : last) = numbers_copied_to_host();
+  };
+  how.stop = [&] { return done > steps; };
+  run_session(parse_case(text, "gas.toml"), how).run();
+  EXPECT_LT(static_cast<double>(last - first), 0.25 * steps * cells * velocities);
 }
 
 TEST(device_runs, are_continued_on_the_host_and_on_a_device) {

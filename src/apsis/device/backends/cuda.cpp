@@ -101,7 +101,7 @@ class cuda_driver : public driver_calls<cuda_functions> {
     constexpr int out_of_memory = 2;
     const int result = call_.allocate(&place, bytes);
     if (result != out_of_memory) require(result, "memory was allocated");
-    memory = reinterpret_cast<void*>(place);
+    memory = reinterpret_cast<void*>(place);  // NOLINT(performance-no-int-to-ptr): addresses are integers
   }
   void release(void* memory) const noexcept { call_.release(place(memory)); }
   void clear(void* memory, std::size_t bytes) const {

@@ -72,7 +72,8 @@ result_table measure(const settings& options) {
       "Unknowns are those in the gas; the third column is the share in cut cells. The ratio compares "
       "point·stages per second with the flow without its bodies, in the same turns. The last columns are the "
       "time of an unknown in a cut cell, where an unknown of the flow without bodies takes 1: by the kernels "
-      "of cut cells, and with all the additional time, most of which bodies cost elsewhere.";
+      "of cut cells, and with all the additional time. Bodies "
+      "cost most of it elsewhere.";
   result.columns = {"case", "unknowns", "cut", "point·stages/s", "ratio", "cut cell", "additional"};
   set_threads(1);
   const std::vector<std::string> names = {"gas/cylinder", "gas/ellipse", "gas/wing",

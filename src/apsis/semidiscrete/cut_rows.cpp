@@ -127,7 +127,7 @@ void leave_alone(const way_out& way, const line& here, const extent& of, double*
   });
 }
 
-/// What passes through a face.
+/// The values that pass through a face.
 template <std::size_t Directions, class N>
 HWY_INLINE N passing(const crossing& face, const line& here, N outward, int k) {
   constexpr auto directions = static_cast<int>(Directions);

@@ -48,8 +48,8 @@ void fit(const double* u, std::span<const neighbour> around, const extent& of, c
 
 /// A face or wall of a cell, and the vector to its middle from the centroid of the gas.
 struct outlet {
-  way_out way;
-  std::array<double, 3> vector;
+  way_out way;                   ///< the face or wall
+  std::array<double, 3> vector;  ///< to its middle
 };
 
 /// Bounds of a line where it leaves.
@@ -71,7 +71,7 @@ void leave_alone(const way_out& way, const line& here, const extent& of, double*
 
 /// A face to another cell.
 struct crossing {
-  way_out way;
+  way_out way;                   ///< the face
   std::array<double, 3> vector;  ///< to its middle from the centroid of the gas
   line beyond;                   ///< of the other cell; without slopes, its value at the face
 };

@@ -7,6 +7,7 @@
 #include <apsis/model/formulas/relaxation.hpp>
 #include <apsis/model/formulas/target.hpp>
 #include <apsis/model/formulas/velocity.hpp>
+#include <apsis/model/formulas/velocity_grid.hpp>
 #include <apsis/model/formulas/velocity_line.hpp>
 #include <apsis/scheme/formulas/quartic.hpp>
 #include <apsis/scheme/formulas/row.hpp>
@@ -47,6 +48,7 @@ struct one_of_eight {
   double load(const double* from) const { return from[place]; }
   double load_once(const double* from) const { return from[place]; }
   double load(const double* from, int count) const { return place < count ? from[place] : 0.0; }
+  double first(double mine, int count) const { return place < count ? mine : 0.0; }
   double numbers() const { return place; }
   double total(double mine) const { return mine; }
 };
@@ -64,6 +66,15 @@ extern "C" void line(const double* f, const double* v, int n, double* to) {
     scalar::walk_outwards(scalar::gaussian_outwards<double>{f[0], f[1], f[2], f[3]}, 1, line, of, put);
   else
     scalar::gaussian_by_octets(group, line, of, put);
+}
+
+extern "C" void grid(const double* f, const double* v, int n, int lines, double* to) {
+  const one_of_eight group{3};
+  scalar::sums_of_powers<double> powers[4];
+  scalar::sum_powers<4, 12>(group, {f, n, lines, v}, v, v, v[0], powers);
+  scalar::multiply_across_lines({3, {n, n, n}, {v, v, v}}, powers[1].of[0],
+                                [&](int line, double product) { to[line] = product; });
+  to[0] = scalar::energy_of_grid(powers[0].of[2], powers[3].of[0]);
 }
 
 extern "C" void transport_z(const double* u, double* acc) {

@@ -151,6 +151,17 @@ struct octet_group {
   /// All eight numbers, read once.
   HWY_INLINE octet load(const double* from) const { return octet::load(from); }
   HWY_INLINE octet load_once(const double* from) const { return octet::load(from).loaded_once(); }
+  /// The first `count` ≥ 1 numbers of x, all if there are more than eight; zeros behind them.
+  HWY_INLINE octet first(const octet& x, int count) const {
+    octet some;
+    constexpr int length = most_lanes / vectors_of_chains;
+    for (int i = 0; i < vectors_of_chains; ++i) {
+      const int left = count - i * length, here = left < 0 ? 0 : left < length ? left : length;
+      const auto inside = hn::FirstN(wide(), static_cast<std::size_t>(here));
+      vectors_of(some)[i] = pack<wide>(hn::IfThenElseZero(inside, vectors_of(x)[i].v));
+    }
+    return some;
+  }
   /// Stores the first `count` ≥ 1 numbers, all if there are more.
   HWY_INLINE void store(const octet& x, int count, double* to) const {
     constexpr int length = most_lanes / vectors_of_chains;

@@ -1,7 +1,7 @@
 #include <apsis/model/maxwellian.hpp>
 
 #include <apsis/core/errors.hpp>
-#include <apsis/model/formulas/velocity_line.hpp>
+#include <apsis/model/formulas/velocity_grid.hpp>
 #include <apsis/model/grid_sums.hpp>
 #include <apsis/model/polar_maxwellian.hpp>
 #include <apsis/model/tensor_product.hpp>
@@ -10,7 +10,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <utility>
 
 #include <fmt/format.h>
@@ -58,7 +57,8 @@ void kinetic_moments(const velocity_grid& grid, const double* f, double* omega) 
   for (int k = 0; k + 1 < d; ++k)
     omega[1 + grid.component_across(k)] = grid.weight() * sums[static_cast<std::size_t>(k) + 1][0];
   omega[1 + grid.last_component()] = grid.weight() * sums[0][1];
-  omega[d + 1] = grid.weight() * (0.5 * sums[0][2] + (d > 1 ? sums[static_cast<std::size_t>(d)][0] : 0.0));
+  omega[d + 1] =
+      grid.weight() * scalar::energy_of_grid(sums[0][2], d > 1 ? sums[static_cast<std::size_t>(d)][0] : 0.0);
 }
 
 double kinetic_mass(const velocity_grid& grid, const double* f) {
@@ -81,31 +81,20 @@ void gaussian_on(const velocity_line& line, const velocity_rows::gaussian& of, d
   gaussians_on(line, &of, 1, m, 0);
 }
 
-/// ρ (2πT)^{−d/2}.
-double height(const fluid_state& state, int dimensions) {
-  const double of_one_direction = 1.0 / std::sqrt(2.0 * std::numbers::pi * state.T);
-  double factor = state.rho;
-  for (int k = 0; k < dimensions; ++k) factor *= of_one_direction;
-  return factor;
-}
-
 }  // namespace
 
 void tensor_product(const velocity_grid& grid, double factor, const std::array<const double*, 3>& g,
                     double* m) {
-  const std::size_t outer = static_cast<std::size_t>(grid.dimensions()) - 1;
-  thread_local aligned_vector<double> of_lines;
-  of_lines.assign(1, factor);
-  for (std::size_t k = 0; k < outer; ++k) {
-    const std::size_t n = static_cast<std::size_t>(grid.line(static_cast<int>(k)).points()),
-                      before = of_lines.size();
-    of_lines.resize(before * n);
-    for (std::size_t l = before; l-- > 0;) {
-      const double factor_of_line = of_lines[l];  // behind those that it is replaced by
-      for (std::size_t j = 0; j < n; ++j) of_lines[l * n + j] = factor_of_line * g[k][j];
-    }
+  scalar::functions_of_directions of{grid.dimensions(), {}, {}};
+  for (int k = 0; k < of.dimensions; ++k) {
+    of.n[k] = grid.line(k).points();
+    of.g[k] = g[static_cast<std::size_t>(k)];
   }
-  grid_sums::multiply(of_lines.data(), grid.lines(), g[outer], grid.last_line().points(), m);
+  thread_local aligned_vector<double> of_lines;
+  of_lines.resize(static_cast<std::size_t>(grid.lines()));
+  double* const to = of_lines.data();
+  scalar::multiply_across_lines(of, factor, [to](int line, double product) { to[line] = product; });
+  grid_sums::multiply(to, grid.lines(), of.g[of.dimensions - 1], of.n[of.dimensions - 1], m);
 }
 
 void gaussians_on(const velocity_line& line, const velocity_rows::gaussian* of_rows, int rows, double* m,
@@ -118,7 +107,7 @@ void gaussians_on(const velocity_line& line, const velocity_rows::gaussian* of_r
 
 void formula_maxwellian(const velocity_grid& grid, const fluid_state& state, double* m) {
   if (grid.is_polar()) return formula_maxwellian_on_rings(grid, state, m);
-  const double factor = height(state, grid.dimensions());
+  const double factor = state.height(grid.dimensions());
   if (grid.dimensions() == 1) return gaussian_on(grid.line(0), {factor, state.u[0], state.T}, m);
   auto& lines = line_buffers(grid);
   std::array<const double*, 3> g{};

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <apsis/exec/aligned.hpp>
+#include <apsis/model/fluid_state.hpp>
 #include <apsis/model/grid_sums.hpp>
 #include <apsis/model/line_moments.hpp>
 #include <apsis/model/velocity_rows.hpp>
@@ -13,31 +14,6 @@
 #include <vector>
 
 namespace apsis {
-
-/// Primitive variables of the moments ω = (ρ, ρu_1 … ρu_d, 𝓔) with 𝓔 = ½ρ|u|² + (d/2)ρT. Dimensionless.
-struct fluid_state {
-  double rho = 0.0;               ///< density ρ
-  double u[3] = {0.0, 0.0, 0.0};  ///< bulk velocity; 0 from component d on
-  double T = 0.0;                 ///< temperature, in units in which the pressure is ρT
-  /// Whether all values are finite, ρ > 0 and T > 0.
-  bool admissible() const {
-    return std::isfinite(rho) && std::isfinite(u[0] + u[1] + u[2]) && std::isfinite(T) && rho > 0.0 &&
-           T > 0.0;
-  }
-};
-/// Returns the primitive variables of d + 2 moments ω without checking that they are admissible: ρ = 0 gives
-/// NaN or ±∞.
-inline fluid_state to_fluid_state(const double* omega, int dimensions) {
-  fluid_state s;
-  s.rho = omega[0];
-  double square = 0.0;
-  for (int k = 0; k < dimensions; ++k) {
-    s.u[k] = omega[1 + k] / s.rho;
-    square += s.u[k] * s.u[k];
-  }
-  s.T = (2.0 * omega[1 + dimensions] / s.rho - square) / dimensions;
-  return s;
-}
 
 /// omega ← the d + 2 midpoint-rule moments (ρ, ρu, 𝓔) of a row of grid.size() values.
 void kinetic_moments(const velocity_grid& grid, const double* f, double* omega);

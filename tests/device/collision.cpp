@@ -14,38 +14,60 @@ using apsis::field;
 using apsis::stage_solution;
 
 struct variant {
-  int points;
+  std::vector<int> points;  ///< of every direction
   double max;
   bool by_viscosity;
   equilibrium_choice choice;
+
+  std::string label() const {
+    std::string text = by_viscosity ? "viscosity" : "constant";
+    for (const int n : points) text += " " + std::to_string(n);
+    return text;
+  }
 };
 
 std::unique_ptr<apsis::model> gas(const variant& of, const std::string& name = "bgk") {
   apsis::model_config config = apsis::default_config(apsis::find_model(name));
   config.velocity = {of.max, of.points, of.choice};
+  config.parameters["velocity_dimensions"] = static_cast<double>(of.points.size());
   if (of.by_viscosity) config.options["collision_rate"] = "viscosity";
   return apsis::find_model(name).make(config);
 }
 
-/// Two beams of changing density, velocity and temperature; some cells are cold, nearly empty, or near the
-/// ends of the velocities, where the equilibrium is not a formula.
+/// Two beams of changing density, velocity and temperature, with components of all directions; some cells are
+/// cold, nearly empty, or near the ends of the velocities, where the equilibrium is not a formula.
 field beams(const apsis::model& equation, int cells) {
   field u(cells, equation.components());
-  const auto v = equation.speeds(0);
+  const int d = equation.as_gas()->molecules().dimensions();
   for (int i = 0; i < cells; ++i)
-    for (std::size_t k = 0; k < v.size(); ++k) {
-      const double T = i % 7 == 3 ? 0.01 : 0.5 + 0.04 * i, centre = i % 11 == 5 ? 6.0 : 0.1 * i - 1.0;
+    for (int k = 0; k < equation.components(); ++k) {
+      const double T = i % 7 == 3 ? 0.01 : 0.5 + 0.04 * i;
+      double of_first = 0.0, of_second = 0.0;
+      for (int axis = 0; axis < d; ++axis) {
+        const double v = equation.speeds(axis)[static_cast<std::size_t>(k)];
+        const double centre = i % 11 == 5 ? 6.0 : (0.1 * i - 1.0) / (1.0 + axis);
+        of_first += (v - centre) * (v - centre);
+        of_second += (v + 0.5) * (v + 0.5);
+      }
       const double rho = i % 13 == 6 ? 1e-290 : 1.0 + 0.1 * i;
-      u.row(i)[k] = rho * (std::exp(-(v[k] - centre) * (v[k] - centre) / (2.0 * T)) +
-                           0.3 * std::exp(-(v[k] + 0.5) * (v[k] + 0.5) / T));
+      u.row(i)[k] = rho * (std::exp(-of_first / (2.0 * T)) + 0.3 * std::exp(-of_second / T));
     }
   return u;
 }
 
-constexpr variant variants[] = {
-    {40, 8.0, false, equilibrium_choice::automatic},   {45, 8.0, true, equilibrium_choice::automatic},
-    {150, 15.0, false, equilibrium_choice::automatic}, {150, 15.0, true, equilibrium_choice::formula},
-    {21, 5.0, false, equilibrium_choice::formula},     {700, 12.0, false, equilibrium_choice::automatic},
+const std::vector<variant> variants = {
+    {{40}, 8.0, false, equilibrium_choice::automatic},
+    {{45}, 8.0, true, equilibrium_choice::automatic},
+    {{150}, 15.0, false, equilibrium_choice::automatic},
+    {{150}, 15.0, true, equilibrium_choice::formula},
+    {{21}, 5.0, false, equilibrium_choice::formula},
+    {{700}, 12.0, false, equilibrium_choice::automatic},
+    // Less and more lines than a chain has, and columns before, at and behind the end of an octet.
+    {{40, 37}, 9.0, true, equilibrium_choice::automatic},
+    {{13, 24}, 5.0, false, equilibrium_choice::formula},
+    {{70, 5}, 5.0, true, equilibrium_choice::formula},
+    {{9, 7, 10}, 5.0, true, equilibrium_choice::formula},
+    {{24, 21, 26}, 8.0, false, equilibrium_choice::automatic},
 };
 
 TEST(device_collision, has_the_bits_of_the_host_in_every_order_of_lanes) {
@@ -67,10 +89,57 @@ TEST(device_collision, has_the_bits_of_the_host_in_every_order_of_lanes) {
         there.solve(0.0, step[0], step[1], away);
         back.copy_rows(away);
         EXPECT_EQ(different_numbers(mesh, here, back), 0)
-            << of.points << " velocities, a = " << step[0] << ", b = " << step[1];
+            << of.label() << ", a = " << step[0] << ", b = " << step[1];
       }
     }
   }
+}
+
+TEST(device_collision, leaves_no_cells_to_the_host_but_those_without_a_closed_form) {
+  constexpr int cells = 29;
+  for (const variant& of : {variant{{80}, 16.0, false, equilibrium_choice::automatic},
+                            variant{{72, 70}, 16.0, true, equilibrium_choice::automatic},
+                            variant{{44, 42, 40}, 13.0, false, equilibrium_choice::automatic}}) {
+    const auto equation = gas(of);
+    const apsis::gas& molecules = equation->as_gas()->molecules();
+    const field u = beams(*equation, cells);
+    int without = 0;
+    for (int i = 0; i < cells; ++i) {
+      std::array<double, 5> omega{};
+      molecules.moments(u.row(i), 0, 1, omega.data());
+      without += apsis::formula_has_exact_moments(molecules.grid(), molecules.state(omega.data())) ? 0 : 1;
+    }
+    ASSERT_GT(without, 0);
+    ASSERT_LT(without, cells - 10);
+    const auto& on = tested_device();
+    apsis::device_collision there(*on, *equation, std::vector<double>(cells, 0.1), false, {},
+                                  stage_solution::implicit);
+    field away(cells, equation->components(), on->memory());
+    away.copy_rows(u);
+    there.solve(0.0, 0.1, 0.0, away);
+    EXPECT_EQ(there.solved_on_host(), without) << of.label();
+  }
+}
+
+/// A block has the cells of two ranges only if it mixes them up.
+TEST(device_collision, leaves_cells_outside_of_the_gas_as_they_are) {
+  const auto equation = gas({{13, 24}, 5.0, false, equilibrium_choice::formula});
+  constexpr int cells = 21;
+  const std::vector<double> epsilon(cells, 0.1);
+  const std::vector<apsis::cell_range> fluid = {{1, 3}, {7, 20}};
+  const field u = beams(*equation, cells);
+  const auto& on = tested_device();
+  apsis::device_collision there(*on, *equation, epsilon, false, fluid, stage_solution::implicit);
+  const auto host = apsis::make_pointwise_collision(*equation, epsilon, false, fluid);
+  field here = u, away(cells, u.components(), on->memory()), back(cells, u.components());
+  away.copy_rows(u);
+  host->solve(0.0, 0.1, 0.0, here);
+  there.solve(0.0, 0.1, 0.0, away);
+  back.copy_rows(away);
+  const apsis::grid mesh = apsis::grid::line(cells, 0.0, 1.0);
+  EXPECT_EQ(different_numbers(mesh, here, back), 0);
+  EXPECT_EQ(there.solved_on_host(), 0);
+  EXPECT_GT(different_numbers(mesh, u, back).count, 0);
 }
 
 TEST(device_collision, rates_and_times_are_those_of_the_host) {
@@ -119,6 +188,20 @@ TEST(device_collision, refuses_what_it_has_no_kernel_for) {
     apsis::device_collision(*on, equation, {0.1}, false, {}, stages);
   };
   const auto bgk = gas(variants[0]), shakhov = gas(variants[0], "shakhov");
+  const auto refused = [&](auto change, const std::string& reason) {
+    apsis::model_config config = apsis::default_config(apsis::find_model("bgk"));
+    config.velocity = {5.0, 16, equilibrium_choice::automatic};
+    config.parameters["velocity_dimensions"] = 2;
+    change(config);
+    const auto equation = apsis::find_model("bgk").make(config);
+    EXPECT_THAT([&] { make(*equation, stage_solution::implicit); },
+                testing::ThrowsMessage<apsis::input_error>(testing::HasSubstr(reason)));
+  };
+  refused([](auto& config) { config.velocity.set = {"graded"}; }, "evenly spaced velocities alone");
+  refused([](auto& config) { config.velocity.equilibrium = equilibrium_choice::discrete; },
+          "equilibria in closed form alone");
+  refused([](auto& config) { config.parameters["degrees_of_freedom"] = 3; }, "no degrees of freedom");
+  refused([](auto& config) { config.velocity.points = std::vector<int>{6200, 4}; }, "too many velocities");
   EXPECT_THAT(
       [&] { make(*shakhov, stage_solution::implicit); },
       testing::ThrowsMessage<apsis::input_error>(testing::HasSubstr("kernel of its collisions is missing")));

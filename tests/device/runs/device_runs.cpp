@@ -36,6 +36,83 @@ std::string small_gas(bool between_walls, const std::string& time) {
   return text;
 }
 
+/// A few steps of a gas between walls, the upper one moving, and openings, with a solid box in it.
+constexpr const char* flow_in_a_plane = R"case(
+[model]
+name = "bgk"
+epsilon = "0.01 + 0.1*x"
+collision_rate = "viscosity"
+[initial]
+rho = "1 + 0.2*cos(3*x + 2*y)"
+u = [0.1, "0.2*x"]
+T = "1.1 + 0.1*sin(5*x)"
+[space]
+cells = [6, 5]
+domain = [[0, 0.75], [0, 0.625]]
+formulation = "finite-difference"
+boundary = "diffuse"
+[[space.solid]]
+name = "box"
+from = [0.25, 0.25]
+to = [0.5, 0.375]
+[boundary.top]
+velocity = [0.3, 0]
+[boundary.left]
+kind = "inflow"
+rho = 1
+u = [0.1, 0]
+T = 1.1
+[boundary.right]
+kind = "outflow"
+[velocity]
+max = 10.5
+points = [32, 30]
+[output]
+every = 0.004
+[time]
+method = "md-imex-8-3-mixed"
+safety = 1
+end = 0.004
+)case";
+/// The same in space, with as many velocities as a quick test allows, all of whose equilibria are formulas.
+constexpr const char* flow_in_space = R"case(
+[model]
+name = "bgk"
+epsilon = "0.01 + 0.1*x"
+[initial]
+rho = "1 + 0.2*cos(3*x + 2*y)"
+u = [0.1, "0.2*x", "0.1*y"]
+T = "1.1 + 0.1*sin(5*z)"
+[space]
+cells = [6, 5, 5]
+domain = [[0, 1.2], [0, 1], [0, 1]]
+formulation = "finite-difference"
+boundary = "diffuse"
+[[space.solid]]
+name = "box"
+from = [0.4, 0.4, 0.2]
+to = [0.8, 0.6, 0.6]
+[boundary.top]
+velocity = [0.3, 0, 0]
+[boundary.left]
+kind = "inflow"
+rho = 1
+u = [0.1, 0, 0]
+T = 1.1
+[boundary.right]
+kind = "outflow"
+[velocity]
+max = 4.5
+points = [6, 7, 9]
+equilibrium = "formula"
+[output]
+every = 0.004
+[time]
+method = "md-imex-6-3"
+safety = 1
+end = 0.004
+)case";
+
 /// The end of a run and its history; stops after `steps`, and continues a checkpoint if there is one.
 outcome run(const std::string& text, bool on_device, const std::string& folder = "", long steps = -1,
             std::optional<std::string> restart = {}) {
@@ -88,6 +165,11 @@ TEST(device_runs, a_step_does_not_copy_the_state_to_the_host) {
   EXPECT_LT(static_cast<double>(last - first), 0.25 * steps * cells * velocities);
 }
 
+TEST(device_runs, in_a_plane_and_in_space_have_the_bits_of_the_host) {
+  for (const std::string text : {flow_in_a_plane, flow_in_space})
+    expect_same(run(text, true), run(text, false), text);
+}
+
 TEST(device_runs, are_continued_on_the_host_and_on_a_device) {
   const std::string text = small_gas(true, "method = \"imex-bdf-3\"\ndt = 0.002\nend = 0.02\n");
   const outcome whole = run(text, false);
@@ -110,8 +192,8 @@ TEST(device_runs, are_refused_before_the_first_step_where_a_kernel_is_missing) {
     return text.replace(text.find(from), from.size(), to);
   };
   refused(changed("formulation = \"finite-difference\"", "formulation = \"finite-volume\""), "formulation");
-  refused(changed("name = \"bgk\"", "name = \"bgk\"\nvelocity_dimensions = 2"),
-          "even line of velocities alone");
+  refused(changed("name = \"bgk\"", "name = \"bgk\"\ndegrees_of_freedom = 3"), "no degrees of freedom");
+  refused(changed("points = 36", "points = 36\nset = \"graded\""), "evenly spaced velocities alone");
   refused(gas + "[steady]\ntolerance = 1e-6\n", "a table [steady]");
   refused(gas + "[force]\nacceleration = [0.1]\n", "force");
   refused(

@@ -1,6 +1,7 @@
 #include <apsis/device/internal/device_collision.hpp>
 
 #include <apsis/core/errors.hpp>
+#include <apsis/device/internal/kernels/collide_grid.hpp>
 #include <apsis/device/internal/kernels/collide_line.hpp>
 #include <apsis/exec/aligned.hpp>
 
@@ -22,18 +23,54 @@ const gas_model& gas_of(const model& equation, stage_solution stages) {
   return *equation.as_gas();
 }
 
+/// Lanes that share the work on a cell.
+constexpr int lanes_of_cell = scalar::octet_length;
+
+/// Numbers that a cell needs in the memory of a block: one of each lane, and the Gaussians of all directions
+/// where there are several.
+std::size_t shared_by_cell(const velocity_grid& grid) {
+  std::size_t numbers = lanes_of_cell;
+  for (int k = 0; k < grid.dimensions() && grid.dimensions() > 1; ++k)
+    numbers += static_cast<std::size_t>(grid.line(k).points());
+  return numbers;
+}
+
+/// Memory that blocks have on every device, 48 KiB.
+constexpr std::size_t most_shared = 6144;
+
+/// A launch for so many cells, with as many of them in a block as its memory and 128 lanes allow.
+launch_size launch_of_cells(int cells, const velocity_grid& grid) {
+  const std::size_t of_cell = shared_by_cell(grid);
+  int together = 16;
+  while (static_cast<std::size_t>(together) * of_cell > most_shared) together /= 2;
+  return {(cells + together - 1) / together, together * lanes_of_cell,
+          static_cast<std::size_t>(together) * of_cell};
+}
+
+bool has_too_many_velocities(const velocity_grid& grid) {
+  if (grid.dimensions() == 1) return grid.size() > kernels::collide_line::most_velocities;
+  return grid.lines() > kernels::collide_grid::most_lines || shared_by_cell(grid) > most_shared;
+}
+
+/// Factors in the sums of the kernels: ½v² of a line, functions of all lines otherwise.
+const aligned_vector<double>& factors_of(const velocity_grid& grid) {
+  return grid.dimensions() == 1 ? grid.half_square() : grid.functions_of_lines();
+}
+
 }  // namespace
 
 std::string device_collision::why_not(const model& equation, stage_solution stages) {
   const gas_model* gas = equation.as_gas();
   if (gas == nullptr || gas->relaxing_count() > 0) return "the kernel of its collisions is missing";
   const velocity_grid& grid = gas->molecules().grid();
-  if (gas->molecules().reduced() || grid.dimensions() != 1 || !grid.uniform() ||
-      gas->molecules().choice() == equilibrium_choice::discrete)
-    return "its collisions have a kernel on an even line of velocities alone, with equilibria in closed form";
+  if (gas->molecules().reduced())
+    return "the kernels of its collisions have no degrees of freedom beside the velocities";
+  if (!grid.uniform()) return "the kernels of its collisions have evenly spaced velocities alone";
+  if (gas->molecules().choice() == equilibrium_choice::discrete)
+    return "the kernels of its collisions have equilibria in closed form alone";
   if (gas->rate_exponent() && *gas->rate_exponent() != 0.5)
-    return "the kernel of its collisions has the viscosity of hard spheres alone";
-  if (grid.size() > kernels::collide_line::most_velocities) return "it has too many velocities";
+    return "the kernels of its collisions have the viscosity of hard spheres alone";
+  if (has_too_many_velocities(grid)) return "it has too many velocities";
   if (stages == stage_solution::exact) return "the kernel of exact collisions is missing";
   return "";
 }
@@ -46,7 +83,7 @@ device_collision::device_collision(device& on, const model& equation, std::vecto
       cells_(std::move(cells)),
       host_(make_pointwise_collision(equation, epsilon_, keeps_sign, cells_, stages)),
       v_(gas_.molecules().grid().last_line().v(), device_.memory()),
-      half_square_(gas_.molecules().grid().half_square(), device_.memory()),
+      factors_(factors_of(gas_.molecules().grid()), device_.memory()),
       epsilon_on_device_(epsilon_, device_.memory()),
       marks_(epsilon_.size(), device_.memory()),
       marks_on_host_(epsilon_.size()) {
@@ -55,32 +92,46 @@ device_collision::device_collision(device& on, const model& equation, std::vecto
   rest_ = equation.make_collision({1, row.stride(), keeps_sign, stages});
 }
 
+kernels::collision_stage device_collision::stage(double a, double b, const cell_range& cells, field& u) {
+  return {.u = u.row(0),
+          .marks = marks_.data(),
+          .epsilon = epsilon_on_device_.data(),
+          .stride = u.stride(),
+          .first = cells.begin,
+          .last = cells.end,
+          .any_formula = gas_.molecules().choice() == equilibrium_choice::formula ? 1 : 0,
+          .by_viscosity = gas_.rate_exponent() ? 1 : 0,
+          .prandtl = gas_.prandtl(),
+          .a = a,
+          .b = b};
+}
+
 void device_collision::solve(double, double a, double b, field& u) {
-  using kernel = kernels::collide_line;
   const velocity_grid& grid = gas_.molecules().grid();
   for (const cell_range& some : cells_) {
-    kernel::arguments of{};
-    of.u = u.row(0);
-    of.marks = marks_.data();
-    of.v = v_.data();
-    of.half_square = half_square_.data();
-    of.epsilon = epsilon_on_device_.data();
-    of.stride = u.stride();
-    of.first = some.begin;
-    of.last = some.end;
-    of.n = grid.size();
-    of.any_formula = gas_.molecules().choice() == equilibrium_choice::formula ? 1 : 0;
-    of.by_viscosity = gas_.rate_exponent() ? 1 : 0;
-    of.spacing = grid.last_line().spacing();
-    of.weight = grid.weight();
-    of.max = grid.last_line().max();
-    of.prandtl = gas_.prandtl();
-    of.a = a;
-    of.b = b;
-    device_.launch<kernel>(
-        {(some.end - some.begin + kernel::cells - 1) / kernel::cells, kernel::lanes, kernel::lanes}, of);
+    const launch_size size = launch_of_cells(some.end - some.begin, grid);
+    if (grid.dimensions() == 1)
+      device_.launch<kernels::collide_line>(
+          size, {stage(a, b, some, u), v_.data(), factors_.data(), grid.size(), grid.last_line().spacing(),
+                 grid.weight(), grid.last_line().max()});
+    else
+      device_.launch<kernels::collide_grid>(size, on_grid(stage(a, b, some, u)));
     solve_rest(a, b, some, u);
   }
+}
+
+kernels::collide_grid::arguments device_collision::on_grid(const kernels::collision_stage& stage) const {
+  const velocity_grid& grid = gas_.molecules().grid();
+  kernels::collide_grid::arguments of{
+      stage, v_.data(), factors_.data(), grid.dimensions(), 0, {}, grid.weight(), {}, {}};
+  for (int k = 0; k < grid.dimensions(); ++k) {
+    const velocity_line& line = grid.line(k);
+    of.n[k] = line.points();
+    of.points += of.n[k];
+    of.spacing[k] = line.spacing();
+    of.max[k] = line.max();
+  }
+  return of;
 }
 
 /// Solves the cells that the kernel has left.
@@ -93,6 +144,7 @@ void device_collision::solve_rest(double a, double b, const cell_range& cells, f
   aligned_vector<double> row(width);
   for (int cell = cells.begin; cell < cells.end; ++cell) {
     if (marks_on_host_[static_cast<std::size_t>(cell)] == 0.0) continue;
+    ++solved_on_host_;
     memory.copy_to_host(u.row(cell), width, row.data());
     rest_->solve_stage(
         a, b, {.count = 1, .pitch = u.stride(), .epsilon = epsilon_.data() + cell, .first_cell = cell},

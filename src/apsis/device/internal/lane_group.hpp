@@ -13,14 +13,18 @@ struct lane_group {
   const Lane& lane;  ///< this lane
   double* shared;    ///< of the block
 
-  APSIS_FORMULA int place() const { return lane.index() % 8; }                        ///< 0 … 7
-  APSIS_FORMULA int group() const { return lane.index() / 8; }                        ///< number of the group
+  APSIS_FORMULA int place() const { return lane.index() % 8; }  ///< 0 … 7
+  APSIS_FORMULA int group() const { return lane.index() / 8; }  ///< number of the group
+  /// The number of the group among those of all blocks.
+  APSIS_FORMULA int number_in_launch() const { return lane.block() * (lane.count() / 8) + group(); }
   APSIS_FORMULA double load(const double* from) const { return from[place()]; }       ///< one of eight
   APSIS_FORMULA double load_once(const double* from) const { return from[place()]; }  ///< one of eight
   /// One of `count`, or 0.
   APSIS_FORMULA double load(const double* from, int count) const {
     return place() < count ? from[place()] : 0.0;
   }
+  /// One of the first `count`, or 0.
+  APSIS_FORMULA double first(double mine, int count) const { return place() < count ? mine : 0.0; }
   APSIS_FORMULA double numbers() const { return place(); }  ///< 0 … 7
   /// The sum of the numbers of a group, halves of halves.
   APSIS_FORMULA double total(double mine) const {

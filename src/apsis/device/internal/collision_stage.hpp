@@ -1,0 +1,64 @@
+#pragma once
+
+#include <apsis/core/relaxation_weights.hpp>
+#include <apsis/device/internal/lane_group.hpp>
+#include <apsis/model/formulas/relaxation.hpp>
+#include <apsis/model/formulas/velocity_line.hpp>
+
+namespace apsis::kernels {
+
+/// The part of a stage of the BGK model that does not depend on the kind of velocities: u ← v with
+/// v = u + a Q(v)/ε + b Q̇(v)/ε² in every cell. Cells whose equilibrium is not the formula are left as they
+/// are, and are marked.
+struct collision_stage {
+  double* u;              ///< rows of all cells
+  double* marks;          ///< of every cell: 1 if it is left, else 0
+  const double* epsilon;  ///< ε of every cell
+  long stride;            ///< numbers of a row
+  int first, last;        ///< cells
+  int any_formula;        ///< whether the formula counts also where its moments are not exact
+  int by_viscosity;       ///< whether C = Pr ρ √T instead of 1
+  double prandtl, a, b;   ///< Pr, a ≥ 0, b ≤ 0
+
+  /// The number of the cell that is the turn of a group; groups behind the last cell take part in the sums.
+  template <class Group>
+  APSIS_FORMULA int cell_of(const Group& group) const {
+    const int number = first + group.number_in_launch();
+    return number < last ? number : last - 1;
+  }
+  /// Marks a cell that is the turn of a group. Returns whether the group has to solve it.
+  template <class Group>
+  APSIS_FORMULA bool takes(const Group& group, bool by_formula) const {
+    const int number = first + group.number_in_launch();
+    if (number >= last) return false;
+    if (group.place() == 0) marks[number] = by_formula ? 0.0 : 1.0;
+    return by_formula;
+  }
+
+  /// The weights of a cell with density ρ and temperature T > 0.
+  APSIS_FORMULA relaxation_weights<double> weights(int cell, double rho, double T) const {
+    return relax_weights(a, b, by_viscosity != 0 ? prandtl * rho * __builtin_sqrt(T) : 1.0, epsilon[cell]);
+  }
+  /// The solution from u and the equilibrium e.
+  static APSIS_FORMULA double solution(const relaxation_weights<double>& weights, double u, double e) {
+    return weights.of_e <= weights.of_u ? scalar::moved_towards(u, weights.of_e, e)
+                                        : scalar::moved_towards(e, weights.of_u, u);
+  }
+};
+
+/// Calls put(first velocity, value) for the octets of a Gaussian, as velocity_rows::gaussians().
+template <class Group, class Put>
+APSIS_FORMULA void gaussian_on_line(const Group& group, const scalar::spaced_line& line,
+                                    const scalar::gaussian_of_line& curve, const Put& put) {
+  using namespace scalar;
+  if (!walks_outwards(line, curve)) return gaussian_by_octets(group, line, curve, put);
+  const double per = curve.per();
+  const double centre =
+      gaussian_vector(curve.u, line.spacing, double(line.n), double(octet_length), double(line.octets()));
+  const double x = distances_of_octet(group, line, curve.u, centre);
+  const double right = gaussian_right(x, per, line.jump()), change = gaussian_change(per, line.jump());
+  walk_outwards(gaussian_outwards<double>{gaussian_start(curve.a, x, per), right, change / right, change},
+                static_cast<int>(centre), line, curve, put);
+}
+
+}  // namespace apsis::kernels

@@ -93,6 +93,10 @@ bit_differences differences(const device_case& of, const std::string& scheme, li
     for (std::size_t k = 0; k < std::min(rates.size(), others.size()); ++k)
       different.compare(rates[k], others[k], [&] { return fmt::format("rate {} at surfaces", k); });
   }
+  const auto seen = host.observe_surfaces(0.4, u), others = there.observe_surfaces(0.4, sent);
+  EXPECT_EQ(seen.size(), others.size());
+  for (std::size_t k = 0; k < std::min(seen.size(), others.size()); ++k)
+    different.compare(seen[k], others[k], [&] { return fmt::format("number {} seen at surfaces", k); });
   return different;
 }
 

@@ -86,15 +86,21 @@ bool device_transport::add_transport(double t, const field& u, targets_view targ
     }
     return false;
   }
+  sweep_all(t, u, targets);
+  return false;
+}
+
+void device_transport::sweep_all(double t, const field& u, targets_view targets) const {
   surfaces_.fill(t, u);
   for (int direction = 0; direction < space_->mesh().dimensions(); ++direction) sweep(direction, u, targets);
   surfaces_.complete(t, targets);
-  return false;
 }
 
 void device_transport::sweep(int direction, const field& u, targets_view targets) const {
   constexpr auto most = static_cast<std::size_t>(kernels::sweep_arguments::most_targets);
-  for (std::size_t first = 0; first < targets.size(); first += most) {
+  // Without targets the sweep sets the rows at surfaces alone.
+  std::size_t first = 0;
+  do {
     const auto some = targets.subspan(first, std::min(most, targets.size() - first));
     kernels::sweep_arguments of{};
     of.u = u.row(0);
@@ -107,7 +113,8 @@ void device_transport::sweep(int direction, const field& u, targets_view targets
       of.target[k] = {some[k].acc->row(0), direction == 0 ? some[k].alpha : 0.0, some[k].beta,
                       direction == 0 && some[k].fresh ? 1 : 0};
     along_[static_cast<std::size_t>(direction)].sweep(kernel_, of);
-  }
+    first += most;
+  } while (first < targets.size());
 }
 
 void device_transport::combine(std::span<const linear_term<field, double>> terms, field& sum) const {
@@ -118,9 +125,13 @@ void device_transport::combine(std::span<const linear_term<field, double>> terms
 }
 
 std::vector<double> device_transport::observe_surfaces(double t, const field& u) const {
-  field on_host(u.cells(), u.components());
-  on_host.copy_rows(u);
-  return host_.observe_surfaces(t, on_host);
+  struct observation {
+    surface_rows& of;
+    explicit observation(surface_rows& rows) : of(rows) { of.observe(true); }
+    ~observation() { of.observe(false); }
+  } const watched(surfaces_);
+  sweep_all(t, u, {});
+  return surfaces_.observed();
 }
 
 void device_transport::set_force(acceleration) {

@@ -36,7 +36,6 @@ class device_transport final : public transport {
                      const cells_job& then = {}) const override;
   void combine(std::span<const linear_term<field, double>> terms, field& sum) const override;
   std::span<const double> budget_rates() const override { return surfaces_.rates(); }
-  /// Copies the state to the host.
   std::vector<double> observe_surfaces(double t, const field& u) const override;
 
   /// Throws input_error: forces are not on the device.
@@ -52,6 +51,7 @@ class device_transport final : public transport {
   bool source_depends_on_state() const override { return false; }
 
  private:
+  void sweep_all(double t, const field& u, std::span<const target<field, double>> targets) const;
   void sweep(int direction, const field& u, std::span<const target<field, double>> targets) const;
 
   device& device_;

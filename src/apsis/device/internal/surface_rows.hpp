@@ -40,6 +40,10 @@ class surface_rows {
   /// Adds what enters to the targets, after all sweeps.
   void complete(double t, std::span<const target<field, double>> targets);
 
+  /// As face_fluxes::observe(), for complete().
+  void observe(bool wanted) { faces_.observe(wanted); }
+  /// Returns face_fluxes::observed().
+  const std::vector<double>& observed() const { return faces_.observed(); }
   /// Returns face_fluxes::rates().
   std::span<const double> rates() const { return faces_.rates(); }
 

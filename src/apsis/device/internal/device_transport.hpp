@@ -58,7 +58,7 @@ class device_transport final : public transport {
   std::shared_ptr<domain> space_;
   limited_reconstruction edges_;
   std::string kernel_;
-  upwind_transport host_;  ///< step sizes, and what is rarely needed
+  upwind_transport host_;  ///< its step sizes
   mutable surface_rows surfaces_;
   std::vector<swept_segments> along_;  ///< [direction]
   std::vector<line_speeds> speeds_;

@@ -4,6 +4,7 @@
 #include <apsis/model/formulas/arithmetic.hpp>
 #include <apsis/model/formulas/grid_sums.hpp>
 #include <apsis/model/formulas/line.hpp>
+#include <apsis/model/formulas/nearby.hpp>
 #include <apsis/model/formulas/relaxation.hpp>
 #include <apsis/model/formulas/target.hpp>
 #include <apsis/model/formulas/velocity.hpp>
@@ -49,6 +50,9 @@ struct one_of_eight {
   double load_once(const double* from) const { return from[place]; }
   double load(const double* from, int count) const { return place < count ? from[place] : 0.0; }
   double first(double mine, int count) const { return place < count ? mine : 0.0; }
+  void store(double mine, int count, double* to) const {
+    if (place < count) to[place] = mine;
+  }
   double numbers() const { return place; }
   double total(double mine) const { return mine; }
 };
@@ -75,6 +79,22 @@ extern "C" void grid(const double* f, const double* v, int n, int lines, double*
   scalar::multiply_across_lines({3, {n, n, n}, {v, v, v}}, powers[1].of[0],
                                 [&](int line, double product) { to[line] = product; });
   to[0] = scalar::energy_of_grid(powers[0].of[2], powers[3].of[0]);
+}
+
+extern "C" void weights(const double* v, int n, double* w) {
+  const one_of_eight group{3};
+  auto newton = scalar::nearby_newton::start(1, v[0]);
+  newton.of[0].set_ends(v[0], v[n - 1]);
+  auto sums = scalar::powers_on_line<scalar::sums_of_six_powers<double>>(
+      group, {n, v, v}, 0.0, scalar::row_of_line<one_of_eight>{group, w});
+  for (;;) {
+    for (int p = 0; p < 6; ++p) newton.of[0].sums[p] = sums.of[p];
+    if (!newton.advance()) break;
+    sums = scalar::powers_on_line<scalar::sums_of_six_powers<double>>(
+        group, {n, v, v}, 0.0,
+        scalar::changed_row_of_line<one_of_eight>{group, w, newton.beta[0], newton.gamma});
+  }
+  w[0] = newton.mass();
 }
 
 extern "C" void transport_z(const double* u, double* acc) {

@@ -43,13 +43,8 @@ void sum_functions(const grid_sums::axis& last, int lines, const double* f, doub
 /// sum_functions() of one function and one line.
 template <class Powers>
 void sum_line(const grid_sums::axis& last, const double* f, double u, double a, Powers& sums) {
-  accumulator<Powers> powers;
-  for (int j = 0; j < last.n; j += octet_length) {
-    const int count = last.n - j;
-    const N value = eight.load(f + j, count), c = eight.load(last.v + j, count) - N(u);
-    powers.add(last.w == nullptr ? value : eight.load(last.w + j, count) * value, c);
-  }
-  store_totals(powers, a, sums);
+  const row_of_line<octet_group> row{eight, f};
+  store_totals(powers_on_line<accumulator<Powers>>(eight, {last.n, last.v, last.w}, u, row), a, sums);
 }
 
 /// Calls body(constant) with the number of functions, at most most_functions.

@@ -4,48 +4,30 @@
 
 #include <apsis/model/line_powers.hpp>
 
-#include <apsis/model/formulas/line.hpp>
+#include <apsis/exec/octet-inl.hpp>
+#include <apsis/model/formulas/velocity_line.hpp>
 
-#include <algorithm>
 #include <cstddef>
 
 HWY_BEFORE_NAMESPACE();
 namespace apsis::HWY_NAMESPACE {
 
-using N = pack<wide>;
-constexpr int lanes = static_cast<int>(hn::MaxLanes(wide())), vectors = vectors_of_chains;
+constexpr octet_group eight;
 
-/// Adds the weights next(k, count, c) of vector k; `count` of its numbers belong to the line.
-template <class Next>
-HWY_INLINE line_powers::sums sum_of(const line_powers::points& line, double u, const Next& next) {
-  sums_of_six_powers<N> powers[vectors];
-  for (int j = 0; j < line.n; j += sum_chains)
-    for (int i = 0; i < vectors; ++i) {
-      const int k = j + i * lanes, count = std::max(line.n - k, 0);
-      const N c = load_some(line.v + k, count) - N(u);
-      N w = next(k, count, c);
-      if (line.b != nullptr) w = w * load_some(line.b + k, count);
-      powers[i].add(w, c);
-    }
+template <class Weights>
+HWY_INLINE line_powers::sums sum_of(const line_powers::points& line, double u, const Weights& weights) {
+  const auto powers = powers_on_line<sums_of_six_powers<octet>>(eight, {line.n, line.v, line.b}, u, weights);
   line_powers::sums sums;
-  for (int p = 0; p < static_cast<int>(sums.size()); ++p) {
-    N of_vectors[vectors];
-    for (int i = 0; i < vectors; ++i) of_vectors[i] = powers[i].of[p];
-    sums[static_cast<std::size_t>(p)] = total_of_chains(of_vectors);
-  }
+  for (std::size_t p = 0; p < sums.size(); ++p) sums[p] = eight.total(powers.of[p]);
   return sums;
 }
 
 line_powers::sums sum(const line_powers::points& line, double u, const double* w) {
-  return sum_of(line, u, [&](int k, int count, N) APSIS_PACKED { return load_some(w + k, count); });
+  return sum_of(line, u, row_of_line<octet_group>{eight, w});
 }
 
 line_powers::sums change(const line_powers::points& line, double u, double beta, double gamma, double* w) {
-  return sum_of(line, u, [&](int k, int count, N c) APSIS_PACKED {
-    const N changed = changed_weight(load_some(w + k, count), c, N(beta), N(gamma));
-    store_some(changed, count, w + k);
-    return changed;  // 0 behind the line, as the weights loaded there
-  });
+  return sum_of(line, u, changed_row_of_line<octet_group>{eight, w, beta, gamma});
 }
 
 }  // namespace apsis::HWY_NAMESPACE

@@ -8,6 +8,7 @@
 #endif
 
 #include <apsis/exec/number.hpp>
+#include <apsis/model/formulas/line.hpp>
 #include <apsis/model/formulas/velocity.hpp>
 
 APSIS_BEFORE_FORMULAS();
@@ -64,6 +65,47 @@ APSIS_FORMULA moments_of_line moments_of_row(const Group& group, const double* f
   sum_moments<1>(group, f, 0, v, half_square, n, &sums);
   return sums;
 }
+
+/// Velocities and the weights of their quadrature.
+struct line_points {
+  int n;            ///< how many
+  const double *v,  ///< velocities
+      *b;           ///< weights; nullptr: all are 1
+};
+
+/// Σ_j b_j x_j c_j^p with the numbers x = next(j, count, c) of an octet, c = v − u. The line has `count` more
+/// of them, and those behind it are 0.
+template <class Powers, class Group, class Next, class N = typename Group::number>
+APSIS_FORMULA Powers powers_on_line(const Group& group, const line_points& line, double u, const Next& next) {
+  Powers powers;
+  for (int j = 0; j < line.n; j += octet_length) {
+    const int count = line.n - j;
+    const N c = group.load(line.v + j, count) - N(u), x = next(j, count, c);
+    powers.add(line.b == nullptr ? x : x * group.load(line.b + j, count), c);
+  }
+  return powers;
+}
+
+/// The numbers x of a row, for powers_on_line().
+template <class Group, class N = typename Group::number>
+struct row_of_line {
+  const Group& group;
+  const double* x;
+  APSIS_FORMULA N operator()(int j, int count, N) const { return group.load(x + j, count); }
+};
+
+/// The same, times e^(βc + γc²), which replace those of the row; small exponents.
+template <class Group, class N = typename Group::number>
+struct changed_row_of_line {
+  const Group& group;
+  double* x;
+  double beta, gamma;
+  APSIS_FORMULA N operator()(int j, int count, N c) const {
+    const N changed = changed_weight(group.load(x + j, count), c, N(beta), N(gamma));
+    group.store(changed, count, x + j);
+    return changed;  // 0 behind the line, as the numbers loaded there
+  }
+};
 
 /// Evenly spaced velocities.
 struct spaced_line {

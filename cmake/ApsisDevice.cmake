@@ -62,8 +62,6 @@ set(code_symbols "")
 set(code_rows "")
 set(code_files "")
 if(APSIS_DEVICE_COMPILER)
-  file(GLOB_RECURSE kernel_headers CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/device/*.hpp
-       ${CMAKE_CURRENT_SOURCE_DIR}/*/formulas/*.hpp)
   foreach(processor IN LISTS APSIS_DEVICE_PROCESSORS)
     set(flags -std=c++20 -O3 -ffp-contract=off -fno-exceptions -fno-rtti -nogpulib -nostdinc++
         -Wall -Wextra -Werror -Wno-unused-command-line-argument -I${PROJECT_SOURCE_DIR}/src)
@@ -78,8 +76,8 @@ if(APSIS_DEVICE_COMPILER)
     endif()
     set(code ${generated}/${processor}.${ending})
     add_custom_command(OUTPUT ${code}
-      COMMAND ${APSIS_DEVICE_COMPILER} ${flags} -o ${code} ${generated}/device_kernels.cu.cpp
-      DEPENDS ${generated}/device_kernels.cu.cpp ${kernel_headers} VERBATIM
+      COMMAND ${APSIS_DEVICE_COMPILER} ${flags} -MD -MT ${code} -MF ${code}.d -o ${code} ${generated}/device_kernels.cu.cpp
+      DEPENDS ${generated}/device_kernels.cu.cpp DEPFILE ${code}.d VERBATIM
       COMMENT "Compiling kernels for ${processor}")
     list(APPEND code_files ${code})
     string(APPEND code_objects

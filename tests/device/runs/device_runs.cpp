@@ -193,7 +193,6 @@ TEST(device_runs, are_refused_before_the_first_step_where_a_kernel_is_missing) {
   };
   refused(changed("formulation = \"finite-difference\"", "formulation = \"finite-volume\""), "formulation");
   refused(changed("name = \"bgk\"", "name = \"bgk\"\ndegrees_of_freedom = 3"), "no degrees of freedom");
-  refused(changed("points = 36", "points = 36\nset = \"graded\""), "evenly spaced velocities alone");
   refused(gas + "[steady]\ntolerance = 1e-6\n", "a table [steady]");
   refused(gas + "[force]\nacceleration = [0.1]\n", "force");
   refused(

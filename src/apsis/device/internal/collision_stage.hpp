@@ -8,15 +8,14 @@
 namespace apsis::kernels {
 
 /// The part of a stage of the BGK model that does not depend on the kind of velocities: u ← v with
-/// v = u + a Q(v)/ε + b Q̇(v)/ε² in every cell. Cells whose equilibrium is not the formula are left as they
-/// are, and are marked.
+/// v = u + a Q(v)/ε + b Q̇(v)/ε² in every cell. Cells whose equilibrium the kernel does not find are left as
+/// they are, and are marked.
 struct collision_stage {
   double* u;              ///< rows of all cells
   double* marks;          ///< of every cell: 1 if it is left, else 0
   const double* epsilon;  ///< ε of every cell
   long stride;            ///< numbers of a row
   int first, last;        ///< cells
-  int any_formula;        ///< whether the formula counts also where its moments are not exact
   int by_viscosity;       ///< whether C = Pr ρ √T instead of 1
   double prandtl, a, b;   ///< Pr, a ≥ 0, b ≤ 0
 

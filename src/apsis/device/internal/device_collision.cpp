@@ -1,8 +1,6 @@
 #include <apsis/device/internal/device_collision.hpp>
 
 #include <apsis/core/errors.hpp>
-#include <apsis/device/internal/kernels/collide_grid.hpp>
-#include <apsis/device/internal/kernels/collide_line.hpp>
 #include <apsis/exec/aligned.hpp>
 
 #include <utility>
@@ -26,13 +24,17 @@ const gas_model& gas_of(const model& equation, stage_solution stages) {
 /// Lanes that share the work on a cell.
 constexpr int lanes_of_cell = scalar::octet_length;
 
-/// Numbers that a cell needs in the memory of a block: one of each lane, and the Gaussians of all directions
-/// where there are several.
+/// Points of all directions together.
+int points_of(const velocity_grid& grid) {
+  int points = 0;
+  for (int k = 0; k < grid.dimensions(); ++k) points += grid.line(k).points();
+  return points;
+}
+
+/// Numbers that a cell needs in the memory of a block.
 std::size_t shared_by_cell(const velocity_grid& grid) {
-  std::size_t numbers = lanes_of_cell;
-  for (int k = 0; k < grid.dimensions() && grid.dimensions() > 1; ++k)
-    numbers += static_cast<std::size_t>(grid.line(k).points());
-  return numbers;
+  constexpr int totals = kernels::lane_group<team_lane>::most_totals;
+  return static_cast<std::size_t>(totals * lanes_of_cell + points_of(grid));
 }
 
 /// Memory that blocks have on every device, 48 KiB.
@@ -48,13 +50,31 @@ launch_size launch_of_cells(int cells, const velocity_grid& grid) {
 }
 
 bool has_too_many_velocities(const velocity_grid& grid) {
-  if (grid.dimensions() == 1) return grid.size() > kernels::collide_line::most_velocities;
-  return grid.lines() > kernels::collide_grid::most_lines || shared_by_cell(grid) > most_shared;
+  return (grid.dimensions() == 1 && grid.size() > kernels::collide::most_velocities_of_line) ||
+         grid.lines() > kernels::collide::most_lines || shared_by_cell(grid) > most_shared;
 }
 
-/// Factors in the sums of the kernels: ½v² of a line, functions of all lines otherwise.
-const aligned_vector<double>& factors_of(const velocity_grid& grid) {
-  return grid.dimensions() == 1 ? grid.half_square() : grid.functions_of_lines();
+/// The numbers of all directions, one after the other.
+template <class Numbers>
+std::vector<double> of_directions(const velocity_grid& grid, const Numbers& numbers) {
+  std::vector<double> all;
+  for (int k = 0; k < grid.dimensions(); ++k) {
+    const auto& some = (grid.line(k).*numbers)();
+    all.insert(all.end(), some.begin(), some.end());
+  }
+  return all;
+}
+
+/// Factors in the sums of the kernel: ½v² on an even line, functions of all lines otherwise.
+const aligned_vector<double>& functions_of(const velocity_grid& grid) {
+  return grid.dimensions() == 1 && grid.uniform() ? grid.half_square() : grid.functions_of_lines();
+}
+
+kernels::collide::formulas closed_forms(equilibrium_choice choice) {
+  using kernels::collide;
+  return choice == equilibrium_choice::formula    ? collide::all
+         : choice == equilibrium_choice::discrete ? collide::none
+                                                  : collide::where_exact;
 }
 
 }  // namespace
@@ -64,12 +84,10 @@ std::string device_collision::why_not(const model& equation, stage_solution stag
   if (gas == nullptr || gas->relaxing_count() > 0) return "the kernel of its collisions is missing";
   const velocity_grid& grid = gas->molecules().grid();
   if (gas->molecules().reduced())
-    return "the kernels of its collisions have no degrees of freedom beside the velocities";
-  if (!grid.uniform()) return "the kernels of its collisions have evenly spaced velocities alone";
-  if (gas->molecules().choice() == equilibrium_choice::discrete)
-    return "the kernels of its collisions have equilibria in closed form alone";
+    return "the kernel of its collisions has no degrees of freedom beside the velocities";
+  if (grid.is_polar()) return "the kernel of its collisions has no rings of velocities";
   if (gas->rate_exponent() && *gas->rate_exponent() != 0.5)
-    return "the kernels of its collisions have the viscosity of hard spheres alone";
+    return "the kernel of its collisions has the viscosity of hard spheres alone";
   if (has_too_many_velocities(grid)) return "it has too many velocities";
   if (stages == stage_solution::exact) return "the kernel of exact collisions is missing";
   return "";
@@ -82,8 +100,9 @@ device_collision::device_collision(device& on, const model& equation, std::vecto
       epsilon_(std::move(epsilon)),
       cells_(std::move(cells)),
       host_(make_pointwise_collision(equation, epsilon_, keeps_sign, cells_, stages)),
-      v_(gas_.molecules().grid().last_line().v(), device_.memory()),
-      factors_(factors_of(gas_.molecules().grid()), device_.memory()),
+      v_(of_directions(gas_.molecules().grid(), &velocity_line::v), device_.memory()),
+      quadrature_(of_directions(gas_.molecules().grid(), &velocity_line::weights), device_.memory()),
+      functions_(functions_of(gas_.molecules().grid()), device_.memory()),
       epsilon_on_device_(epsilon_, device_.memory()),
       marks_(epsilon_.size(), device_.memory()),
       marks_on_host_(epsilon_.size()) {
@@ -92,46 +111,48 @@ device_collision::device_collision(device& on, const model& equation, std::vecto
   rest_ = equation.make_collision({1, row.stride(), keeps_sign, stages});
 }
 
-kernels::collision_stage device_collision::stage(double a, double b, const cell_range& cells, field& u) {
-  return {.u = u.row(0),
-          .marks = marks_.data(),
-          .epsilon = epsilon_on_device_.data(),
-          .stride = u.stride(),
-          .first = cells.begin,
-          .last = cells.end,
-          .any_formula = gas_.molecules().choice() == equilibrium_choice::formula ? 1 : 0,
-          .by_viscosity = gas_.rate_exponent() ? 1 : 0,
-          .prandtl = gas_.prandtl(),
-          .a = a,
-          .b = b};
+/// All but the stage.
+kernels::collide::arguments device_collision::arguments() const {
+  const velocity_grid& grid = gas_.molecules().grid();
+  kernels::collide::arguments of{};
+  int before = 0;
+  for (int k = 0; k < grid.dimensions(); ++k) {
+    const velocity_line& line = grid.line(k);
+    of.of[k] = {.v = v_.data() + before,
+                .weights = grid.uniform() ? nullptr : quadrature_.data() + before,
+                .n = line.points(),
+                .even = line.uniform() ? 1 : 0,
+                .spacing = line.spacing(),
+                .max = line.max()};
+    before += line.points();
+  }
+  of.functions = functions_.data();
+  of.dimensions = grid.dimensions();
+  of.points = before;
+  of.uniform = grid.uniform() ? 1 : 0;
+  of.closed_forms = closed_forms(gas_.molecules().choice());
+  of.weight = grid.weight();
+  return of;
 }
 
 void device_collision::solve(double, double a, double b, field& u) {
-  const velocity_grid& grid = gas_.molecules().grid();
+  kernels::collide::arguments of = arguments();
+  of.stage = {.u = u.row(0),
+              .marks = marks_.data(),
+              .epsilon = epsilon_on_device_.data(),
+              .stride = u.stride(),
+              .first = 0,
+              .last = 0,
+              .by_viscosity = gas_.rate_exponent() ? 1 : 0,
+              .prandtl = gas_.prandtl(),
+              .a = a,
+              .b = b};
   for (const cell_range& some : cells_) {
-    const launch_size size = launch_of_cells(some.end - some.begin, grid);
-    if (grid.dimensions() == 1)
-      device_.launch<kernels::collide_line>(
-          size, {stage(a, b, some, u), v_.data(), factors_.data(), grid.size(), grid.last_line().spacing(),
-                 grid.weight(), grid.last_line().max()});
-    else
-      device_.launch<kernels::collide_grid>(size, on_grid(stage(a, b, some, u)));
+    of.stage.first = some.begin;
+    of.stage.last = some.end;
+    device_.launch<kernels::collide>(launch_of_cells(some.end - some.begin, gas_.molecules().grid()), of);
     solve_rest(a, b, some, u);
   }
-}
-
-kernels::collide_grid::arguments device_collision::on_grid(const kernels::collision_stage& stage) const {
-  const velocity_grid& grid = gas_.molecules().grid();
-  kernels::collide_grid::arguments of{
-      stage, v_.data(), factors_.data(), grid.dimensions(), 0, {}, grid.weight(), {}, {}};
-  for (int k = 0; k < grid.dimensions(); ++k) {
-    const velocity_line& line = grid.line(k);
-    of.n[k] = line.points();
-    of.points += of.n[k];
-    of.spacing[k] = line.spacing();
-    of.max[k] = line.max();
-  }
-  return of;
 }
 
 /// Solves the cells that the kernel has left.

@@ -2,7 +2,7 @@
 
 #include <apsis/device/device.hpp>
 #include <apsis/device/internal/device_array.hpp>
-#include <apsis/device/internal/kernels/collide_grid.hpp>
+#include <apsis/device/internal/kernels/collide.hpp>
 #include <apsis/model/gas_model.hpp>
 #include <apsis/semidiscrete/collision.hpp>
 
@@ -13,8 +13,8 @@
 namespace apsis {
 
 /// make_pointwise_collision() on a device, with the same bits: stages of the BGK model whose velocities are
-/// an even line or a product of such lines. Cells whose equilibrium is not a formula are solved on the host,
-/// row by row.
+/// a product of lines. Cells for whose equilibrium Newton's method does not converge from a Gaussian are
+/// solved on the host, row by row.
 ///
 /// Its states live in the memory of the device.
 class device_collision final : public collision {
@@ -39,8 +39,7 @@ class device_collision final : public collision {
   long solved_on_host() const { return solved_on_host_; }
 
  private:
-  kernels::collision_stage stage(double a, double b, const cell_range& cells, field& u);
-  kernels::collide_grid::arguments on_grid(const kernels::collision_stage& stage) const;
+  kernels::collide::arguments arguments() const;
   void solve_rest(double a, double b, const cell_range& cells, field& u);
 
   device& device_;
@@ -49,7 +48,7 @@ class device_collision final : public collision {
   std::vector<cell_range> cells_;
   std::unique_ptr<collision> host_;
   std::unique_ptr<point_collision> rest_;
-  device_array<double> v_, factors_, epsilon_on_device_;
+  device_array<double> v_, quadrature_, functions_, epsilon_on_device_;
   stored_numbers marks_;
   std::vector<double> marks_on_host_;
   long solved_on_host_ = 0;

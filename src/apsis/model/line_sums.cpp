@@ -4,41 +4,33 @@
 
 #include <apsis/model/line_sums.hpp>
 
+#include <apsis/exec/octet-inl.hpp>
 #include <apsis/model/formulas/line.hpp>
-
-#include <algorithm>
-#include <cstddef>
 
 HWY_BEFORE_NAMESPACE();
 namespace apsis::HWY_NAMESPACE {
 
-using N = pack<wide>;
-
-HWY_INLINE double total(N x) {
-  return hn::GetLane(hn::SumOfLanes(wide(), x.v));
-}
+using N = octet;
+constexpr octet_group eight;
 
 line_sums::values weigh(const double* x, const double* c, const double* base, int n, double beta, double tau,
                         double shift, double* w) {
-  const int length = static_cast<int>(hn::Lanes(wide()));
   sums_of_weights<N> sums;
-  for (int j = 0; j < n; j += length) {
+  for (int j = 0; j < n; j += sum_chains) {
     const N at = N::load(x + j), parabola = N::load(c + j);
-    const N weight = line_weight(at, parabola, N(beta), N(tau), N(shift));
-    const auto inside = hn::FirstN(wide(), static_cast<std::size_t>(std::min(n - j, length)));
-    N kept(hn::IfThenElseZero(inside, weight.v));
-    if (base != nullptr) kept = kept * N::load(base + j);
-    kept.store(w + j);
-    sums.add(kept, at, parabola);
+    N weight = eight.first(line_weight(at, parabola, N(beta), N(tau), N(shift)), n - j);
+    if (base != nullptr) weight = weight * N::load(base + j);
+    weight.store(w + j);
+    sums.add(weight, at, parabola);
   }
-  return {total(sums.mass), total(sums.above), total(sums.below), total(sums.energy)};
+  return {eight.total(sums.mass), eight.total(sums.above), eight.total(sums.below), eight.total(sums.energy)};
 }
 
 line_sums::products multiply(const double* x, const double* c, const double* w, int n) {
-  const int length = static_cast<int>(hn::Lanes(wide()));
   sums_of_products<N> sums;
-  for (int j = 0; j < n; j += length) sums.add(N::load(w + j), N::load(x + j), N::load(c + j));
-  return {total(sums.above_x), total(sums.above_c), total(sums.below_x), total(sums.below_c), total(sums.cc)};
+  for (int j = 0; j < n; j += sum_chains) sums.add(N::load(w + j), N::load(x + j), N::load(c + j));
+  return {eight.total(sums.above_x), eight.total(sums.above_c), eight.total(sums.below_x),
+          eight.total(sums.below_c), eight.total(sums.cc)};
 }
 
 }  // namespace apsis::HWY_NAMESPACE

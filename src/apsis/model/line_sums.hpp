@@ -2,8 +2,8 @@
 
 namespace apsis {
 
-/// The loops of line_family over the points of one direction, for the instruction set of this processor. All
-/// arrays are aligned like aligned_vector and padded to whole packets (model/vector_math.hpp).
+/// The loops of line_family over the points of one direction, for the instruction set of this processor. The
+/// order of sums does not depend on it. All arrays are padded to whole packets (model/vector_math.hpp).
 namespace line_sums {
 
 /// Sums of the weights.

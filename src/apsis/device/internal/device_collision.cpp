@@ -33,8 +33,7 @@ int points_of(const velocity_grid& grid) {
 
 /// Numbers that a cell needs in the memory of a block.
 std::size_t shared_by_cell(const velocity_grid& grid) {
-  constexpr int totals = kernels::lane_group<team_lane>::most_totals;
-  return static_cast<std::size_t>(totals * lanes_of_cell + points_of(grid));
+  return static_cast<std::size_t>(kernels::most_totals * lanes_of_cell + points_of(grid));
 }
 
 /// Memory that blocks have on every device, 48 KiB.

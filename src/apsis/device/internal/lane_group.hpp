@@ -4,12 +4,14 @@
 
 namespace apsis::kernels {
 
+/// Sums that a group takes together.
+inline constexpr int most_totals = 6;
+
 /// Eight lanes of a block as the group of formulas (model/formulas/velocity_line.hpp): each of them has one
 /// number. All groups of a block take the sums together, with `shared`, most_totals for each lane.
 template <class Lane>
 struct lane_group {
-  using number = double;                 ///< of a lane
-  static constexpr int most_totals = 6;  ///< sums that are taken together
+  using number = double;  ///< of a lane
 
   const Lane& lane;  ///< this lane
   double* shared;    ///< of the block

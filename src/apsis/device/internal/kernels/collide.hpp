@@ -47,7 +47,7 @@ struct collide {
   };
 
   /// Solves the stage of a cell together with seven other lanes. The memory of the block has
-  /// lane_group::most_totals for each lane, and `points` for each cell.
+  /// most_totals for each lane, and `points` for each cell.
   template <class Lane>
   static APSIS_FORMULA void run(const Lane& lane, const arguments& of) {
     if (of.dimensions == 1) {
@@ -71,7 +71,7 @@ struct collide {
                by_newton = state.admissible() && !by_formula && state.rho >= dense_enough;
     functions_of_directions along{Dimensions, {}, {}};
     double* values[Dimensions];
-    double* free = lane.shared() + lane_group<Lane>::most_totals * lane.count() + group.group() * of.points;
+    double* free = lane.shared() + most_totals * lane.count() + group.group() * of.points;
     const double height = state.height(Dimensions);
     for (int k = 0; k < Dimensions; ++k) {
       along.n[k] = of.of[k].n;

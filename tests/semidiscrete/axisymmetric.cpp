@@ -1,5 +1,5 @@
-// Axisymmetric flow without collisions: uniform gas past a body, conservation, positivity, order and the way through the
-// axis.
+// Axisymmetric flow without collisions: uniform gas past a body, conservation, positivity, order and the way
+// through the axis.
 #include "blocks.hpp"
 #include "polar_gas.hpp"
 

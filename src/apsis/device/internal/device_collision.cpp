@@ -2,11 +2,14 @@
 
 #include <apsis/core/errors.hpp>
 #include <apsis/exec/aligned.hpp>
+#include <apsis/model/velocity_rows.hpp>
 
 #include <utility>
 
 namespace apsis {
 namespace {
+
+static_assert(velocity_rows::longest_chain == scalar::longest_chain_of_line, "host and device halve alike");
 
 /// A copy of a state on the host.
 field on_host(const field& u) {

@@ -53,17 +53,26 @@ inline constexpr int longest_chain_of_line = 256;
 template <int Halvings, class Group>
 APSIS_FORMULA moments_of_line moments_of_row(const Group& group, const double* f, const double* v,
                                              const double* half_square, int n) {
-  if constexpr (Halvings > 0)
-    if (n > longest_chain_of_line) {
+  moments_of_line before[Halvings];  // of the first half
+  int behind[Halvings];              // velocities of the second half; 0: being summed
+  for (int halved = 0, first = 0;;) {
+    while (n > longest_chain_of_line) {
       const int half = (n / 2 + octet_length - 1) / octet_length * octet_length;
-      const auto before = moments_of_row<Halvings - 1>(group, f, v, half_square, half),
-                 behind =
-                     moments_of_row<Halvings - 1>(group, f + half, v + half, half_square + half, n - half);
-      return {before.mass + behind.mass, before.momentum + behind.momentum, before.energy + behind.energy};
+      behind[halved++] = n - half;
+      n = half;
     }
-  moments_of_line sums;
-  sum_moments<1>(group, f, 0, v, half_square, n, &sums);
-  return sums;
+    moments_of_line own;
+    sum_moments<1>(group, f + first, 0, v + first, half_square + first, n, &own);
+    first += n;
+    for (; halved > 0 && behind[halved - 1] == 0; --halved) {
+      const moments_of_line& other = before[halved - 1];
+      own = {other.mass + own.mass, other.momentum + own.momentum, other.energy + own.energy};
+    }
+    if (halved == 0) return own;
+    before[halved - 1] = own;
+    n = behind[halved - 1];
+    behind[halved - 1] = 0;
+  }
 }
 
 /// Velocities and the weights of their quadrature.

@@ -15,8 +15,9 @@ struct collide {
   static constexpr const char* name = "collide";                                 ///< of the kernel
   static constexpr int halvings = 12;                                            ///< of the sums over lines
   static constexpr int most_lines = scalar::longest_chain_of_lines << halvings;  ///< which halves can be
-  static constexpr int halvings_of_line = 4, longest_chain = 256;                ///< of the sums along a line
-  static constexpr int most_velocities_of_line = longest_chain << halvings_of_line;  ///< which halves can be
+  static constexpr int halvings_of_line = 4;                                     ///< of the sums along a line
+  static constexpr int most_velocities_of_line = scalar::longest_chain_of_line
+                                                 << halvings_of_line;  ///< which halves can be
 
   /// Velocities of a direction.
   struct direction {
@@ -99,7 +100,7 @@ struct collide {
     using namespace scalar;
     double omega[Dimensions + 2];
     if (Dimensions == 1 && of.uniform != 0) {
-      const auto sums = moments(group, u, of.of[0].v, of.functions, of.of[0].n);
+      const auto sums = moments_of_row<halvings_of_line>(group, u, of.of[0].v, of.functions, of.of[0].n);
       omega[0] = of.weight * sums.mass;
       omega[1] = of.weight * sums.momentum;
       omega[2] = of.weight * sums.energy;
@@ -132,32 +133,6 @@ struct collide {
     for (int k = 0; k < last; ++k) omega[1 + k] = of.weight * mine[3 + k];
     omega[Dimensions] = of.weight * mine[1];
     omega[Dimensions + 1] = of.weight * energy_of_grid(mine[2], functions > 1 ? mine[functions + 1] : 0.0);
-  }
-
-  /// Halves of halves, at whole cache lines, as velocity_rows::moments().
-  template <class Group>
-  static APSIS_FORMULA scalar::moments_of_line moments(const Group& group, const double* f, const double* v,
-                                                       const double* half_square, int n) {
-    scalar::moments_of_line before[halvings_of_line];  // of the first half
-    int behind[halvings_of_line];                      // velocities of the second half; 0: being summed
-    for (int halved = 0, first = 0;;) {
-      while (n > longest_chain) {
-        const int half = (n / 2 + 7) / 8 * 8;
-        behind[halved++] = n - half;
-        n = half;
-      }
-      scalar::moments_of_line own;
-      scalar::sum_moments<1>(group, f + first, 0, v + first, half_square + first, n, &own);
-      first += n;
-      for (; halved > 0 && behind[halved - 1] == 0; --halved) {
-        const auto& other = before[halved - 1];
-        own = {other.mass + own.mass, other.momentum + own.momentum, other.energy + own.energy};
-      }
-      if (halved == 0) return own;
-      before[halved - 1] = own;
-      n = behind[halved - 1];
-      behind[halved - 1] = 0;
-    }
   }
 
   /// Whether the equilibrium of an admissible state is the formula.

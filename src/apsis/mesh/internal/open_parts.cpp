@@ -344,10 +344,10 @@ open_parts::thin_cell open_parts::thin_in_square(const corner& lowest, const pla
       begin[at(across)] += side;
       count_stretches(lowest, begin, along, sides);
     }
-  const thin_part part = sides.gaps > 1     ? thin_part::gap
-                         : sides.bodies > 1 ? thin_part::body
-                                            : thin_part::none;
-  return {part, sides.bodies > 0};
+  const thin_part found = sides.gaps > 1     ? thin_part::gap
+                          : sides.bodies > 1 ? thin_part::body
+                                             : thin_part::none;
+  return {found, sides.bodies > 0};
 }
 
 /// Whether the middle of a cell differs from all its corners, and no side shows why.

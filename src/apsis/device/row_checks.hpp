@@ -23,7 +23,7 @@ class device_row_checks {
   struct row {
     row_extremes extremes;    ///< compute_extremes()
     const double* densities;  ///< model::invariant_densities()
-    double entropy;           ///< convex_entropy::density(), if the model has one and no number is negative
+    double entropy;           ///< of a row without negative numbers, if the model has an entropy
   };
 
   /// Makes the checks of the cells of the gas in a mesh; null if the model has no kernel for them. `on` and

@@ -18,8 +18,8 @@ using group = apsis::kernels::lane_group<team_lane>;
 
 constexpr int lanes = 32, groups = lanes / 8, questions = 3 * groups;
 
-/// A lane that is ahead asks the next question, which must not change the answer that others still read: of
-/// two questions one is affirmed by a single group, each in turn, and the other by none.
+/// A lane that is ahead asks the next question while others still read the last answer. Of two questions, a
+/// single group affirms the first, and no group the second.
 TEST(lane_group, answers_of_a_block_are_those_of_one_question) {
   for (const lane_order order : {lane_order::forward, lane_order::backward, lane_order::random}) {
     lane_team team(lanes, lanes, order);

@@ -98,8 +98,8 @@ TEST_P(steady_ends, have_the_state_of_the_time_integrator) {
     const apsis::simulation run = found(GetParam(), model);
     EXPECT_LE(run.step(), GetParam().kind == "outflow" ? 100 : 60);
     const apsis::field state = state_of(run);
-    // The residual is 1e-11 of the exchange with the ends in the crossing time of a molecule, a few times
-    // the time of these steps. They change the initial state by 1e-3 and more.
+    // The tolerance of the residual is 1e-11 of what the ends exchange while a molecule crosses the domain.
+    // The steps take less time than that, and change the initial state by 1e-3 and more.
     EXPECT_LT(largest_difference(after_steps(run, state), state), 1e-11);
     const apsis::field start = run.setup().initial_state();
     EXPECT_GT(largest_difference(after_steps(run, start), start), 1e-3);

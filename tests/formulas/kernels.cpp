@@ -2,11 +2,16 @@
 // assembly only (test_formulas.py), without any library.
 #include <apsis/boundary/formulas/continuation.hpp>
 #include <apsis/model/formulas/arithmetic.hpp>
+#include <apsis/model/formulas/correlated.hpp>
+#include <apsis/model/formulas/ellipsoidal.hpp>
 #include <apsis/model/formulas/grid_sums.hpp>
 #include <apsis/model/formulas/line.hpp>
 #include <apsis/model/formulas/nearby.hpp>
+#include <apsis/model/formulas/reduction.hpp>
 #include <apsis/model/formulas/relaxation.hpp>
+#include <apsis/model/formulas/shakhov.hpp>
 #include <apsis/model/formulas/target.hpp>
+#include <apsis/model/formulas/target_moments.hpp>
 #include <apsis/model/formulas/velocity.hpp>
 #include <apsis/model/formulas/velocity_grid.hpp>
 #include <apsis/model/formulas/velocity_line.hpp>
@@ -179,6 +184,51 @@ extern "C" void equilibria(const double* u, double* to) {
   to[3] = moments.energy;
   to[4] = contents.lowest + contents.not_finite;
   to[5] = squares.difference + squares.size;
+}
+
+extern "C" void reductions(const double* omega, const double* v, int n, double* to) {
+  const scalar::reduced_gas gas{2, 3};
+  const auto state = gas.state(omega);
+  const auto parts = gas.parts(omega, state, [&](int k) {
+    return k == 0 ? scalar::variances_at(v, n, state.u[0]) : scalar::variances_at(v, n, v[1], state.u[1]);
+  });
+  to[0] = parts.of_g;
+  to[1] = parts.others;
+  to[2] = scalar::rate_by_viscosity{v[2], v[3]}.of(state.rho, state.T);
+}
+
+extern "C" void targets(const double* u, double* to) {
+  apsis::line_moments lines;
+  lines.set_gaussian(u[0]);
+  scalar::target_shape shape;
+  shape.variance = u[0];
+  for (int k = 0; k < 3; ++k) shape.of_g.w[k] = u[k];
+  to[0] = scalar::moments_of_product<3>(lines).correct(shape) ? 1.0 : 0.0;
+  const int across[] = {0, 1};
+  to[1] = scalar::polynomial_on_line<3, true>(shape.of_g, across, 2, u)(u[3]);
+  to[2] = scalar::polynomial_on_line<3, false>(shape.of_h, across, 2, u)(u[3]);
+}
+
+extern "C" void stresses(const double* u, double* to) {
+  apsis::fluid_state state;
+  state.rho = u[0];
+  state.T = u[1];
+  const scalar::ellipsoidal_model model{u[2]};
+  auto target = scalar::ellipsoidal_target<3>::of(model, state, u, u[3], 1.0, 0);
+  const int across[] = {0, 1};
+  const auto of = scalar::conditional_gaussian<3>::of(u[0], target.covariance, target.inverse, 2, across);
+  const auto tables = scalar::correlated_tables::from(of, state.u);
+  to[0] = tables.fit(u) ? tables.across(u[0]).a : tables.along(0, u[0]).u;
+  to[1] = of.on_line(u, u[4]).a;
+  const auto sums = [u](const int* p) { return u[p[0] + p[1] + p[2]]; };
+  const scalar::moments_of_base<3, decltype(sums)> moments{sums, {u[0], u[1], u[2]}};
+  to[2] = moments.correct(target.shape) ? 1.0 : 0.0;
+  const auto stage = apsis::coefficients_of_stage(u[0], u[1], u[2], u[3]);
+  to[3] = model.decay(stage) + model.weight_of_derivative(stage);
+  const scalar::shakhov_target shakhov{u[5]};
+  to[4] = shakhov.decay(stage) + shakhov.weight_of_derivative(stage) +
+          shakhov.shape(3, state, u, u[3], 1.0).of_g.w[0];
+  scalar::find_heat_flux(3, [u](int k, int l) { return u[k + l]; }, [u](int k) { return u[k]; }, to + 5);
 }
 
 extern "C" void mixtures(const double* u, double* to) {

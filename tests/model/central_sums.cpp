@@ -107,10 +107,9 @@ RC_GTEST_PROP(central_sums, make_targets_conservative, ()) {
   shape.variance = covariance.trace() / d;
   for (int k = 0; k < d; ++k)
     for (int l = 0; l < d; ++l) {
-      const auto i = static_cast<std::size_t>(k), j = static_cast<std::size_t>(l);
-      plain[i][j] = covariance(k, l);
-      plain_inverse[i][j] = inverse(k, l);
-      shape.of_g.a[i][j] = shape.of_h.a[i][j] = 0.05 * deviation(k, l);
+      plain.of[k][l] = covariance(k, l);
+      plain_inverse.of[k][l] = inverse(k, l);
+      shape.of_g.a[k][l] = shape.of_h.a[k][l] = 0.05 * deviation(k, l);
     }
   const auto size = static_cast<std::size_t>(of.velocities().components());
   const double others = 3.0 * state.T - covariance.trace();

@@ -21,8 +21,7 @@ double number(double from, double to) {
 apsis::direction_matrix plain(const Eigen::MatrixXd& of) {
   apsis::direction_matrix same{};
   for (int k = 0; k < of.rows(); ++k)
-    for (int l = 0; l < of.cols(); ++l)
-      same[static_cast<std::size_t>(k)][static_cast<std::size_t>(l)] = of(k, l);
+    for (int l = 0; l < of.cols(); ++l) same.of[k][l] = of(k, l);
   return same;
 }
 

@@ -29,4 +29,31 @@ constexpr relaxation_weights<Real> relax_weights(Real a, Real b, Real rate, Real
                        : relaxation_weights<Real>{smaller, larger};
 }
 
+/// Returns the largest part of u ≥ 0 that a target may be below 0, so that the combination with it stays
+/// nonnegative: the target is at least −kept_part(…) u. The margin is larger than the rounding of the
+/// combination.
+constexpr double kept_part(const relaxation_weights<double>& weights) {
+  constexpr double margin = 1e-13;
+  return weights.of_e > 0.0 ? (1.0 - margin) * (weights.of_u / weights.of_e) : 0.0;
+}
+
+/// The coefficients of a stage in units of the collision rate.
+struct stage_coefficients {
+  double a = 0.0,         ///< A = aC/ε
+      b = 0.0,            ///< B = |b|(C/ε)²
+      weight_of_b = 0.0;  ///< B/(A + B); 0 if both are 0
+};
+
+/// Returns the coefficients for C/ε, which may be infinite. Arguments as of relax_weights().
+constexpr stage_coefficients coefficients_of_stage(double a, double b, double rate, double epsilon) {
+  const double k = rate > 0.0 || rate != rate ? rate / epsilon : 0.0;
+  stage_coefficients of;
+  of.a = a == 0.0 ? 0.0 : a * k;
+  const double once = b == 0.0 ? 0.0 : -b * k;  // B/A without overflow of B
+  of.b = once == 0.0 ? 0.0 : once * k;
+  const bool infinite = once - once != 0.0;
+  if (once > 0.0) of.weight_of_b = infinite ? 1.0 : once / (a + once);
+  return of;
+}
+
 }  // namespace apsis

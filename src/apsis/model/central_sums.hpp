@@ -20,6 +20,11 @@ class central_sums {
 
   /// Returns the moment with some exponents.
   double operator[](const exponents& p) const { return of_[p[0]][p[1]][p[2]]; }
+  /// Returns the moment with exponents p_1 … p_3.
+  double operator()(const int* p) const {
+    return of_[static_cast<std::size_t>(p[0])][static_cast<std::size_t>(p[1])]
+              [static_cast<std::size_t>(p[2])];
+  }
   /// Returns the moment of the product of c_k for some directions k.
   double along(std::initializer_list<std::size_t> directions) const {
     exponents p{};

@@ -1,13 +1,12 @@
 #pragma once
 
+#include <apsis/model/formulas/small_matrix.hpp>
 #include <apsis/model/maxwellian.hpp>
-
-#include <array>
 
 namespace apsis {
 
 /// A symmetric matrix of the resolved directions, in its first rows and columns.
-using direction_matrix = std::array<std::array<double, 3>, 3>;
+using direction_matrix = scalar::small_matrix<3>;
 
 /// m ← ρ (det 2πΘ)^{−1/2} exp(−½ cᵀΘ⁻¹c), c = v − u, at the grid points, for a positive definite covariance Θ
 /// and its inverse; values below 1e-300 may be 0. Dimensionless.

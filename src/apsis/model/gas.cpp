@@ -1,6 +1,7 @@
 #include <apsis/model/gas.hpp>
 
 #include <apsis/core/errors.hpp>
+#include <apsis/model/formulas/reduction.hpp>
 #include <apsis/model/grid_sums.hpp>
 #include <apsis/model/nearby_maxwellian.hpp>
 #include <apsis/model/velocity_support.hpp>
@@ -9,7 +10,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
 #include <fmt/format.h>
 
@@ -45,23 +45,9 @@ int degrees_of(const model_config& config, int dimensions) {
   return given;
 }
 
-/// Variances of the two velocities next to u, and of those at the ends, with the mean u.
-struct variances {
-  double nearest = 0.0, farthest = 0.0;
-};
-
-variances variances_at(const velocity_line& line, double u) {
-  const auto& v = line.v();
-  // Rounding may put a bulk velocity beyond the last point.
-  const double farthest = std::max((u - v.front()) * (v.back() - u), 0.0);
-  if (line.uniform()) {
-    const double step = line.spacing(), place = u / step + 0.5 * (line.points() - 1);
-    const double beyond = place - std::floor(place);
-    return {beyond * (1.0 - beyond) * step * step, farthest};
-  }
-  const auto after = std::upper_bound(v.begin(), v.end(), u);
-  if (after == v.begin() || after == v.end()) return {0.0, farthest};
-  return {(u - *(after - 1)) * (*after - u), farthest};
+scalar::variances variances_on(const velocity_line& line, double u) {
+  if (line.uniform()) return scalar::variances_at(line.v().data(), line.points(), line.spacing(), u);
+  return scalar::variances_at(line.v().data(), line.points(), u);
 }
 
 /// The component along the axis is the first of (x, r, θ) in the plane (x, r), and the last of (r, θ, x)
@@ -123,41 +109,24 @@ void gas::moments(const double* row, std::ptrdiff_t pitch, int rows, double* ome
 }
 
 fluid_state gas::state(const double* omega) const {
-  fluid_state s = to_fluid_state(omega, dimensions());
-  if (reduced()) s.T *= static_cast<double>(dimensions()) / degrees_;
-  return s;
+  if (!reduced()) return to_fluid_state(omega, dimensions());
+  return scalar::reduced_gas{dimensions(), degrees_}.state(omega);
 }
 
-/// Every f ≥ 0 has an equilibrium: if the grid cannot hold the temperature in g, because h is small or large
-/// beside it, g gets the nearest one, at most that of equally occupied velocities, and h the rest of the
-/// energy.
 double gas::moments_of_g(const double* omega, double* of_g) const {
   const int d = dimensions();
   const fluid_state s = state(omega);
-  double square = 0.0, least = 0.0, greatest = 0.0;
   std::copy_n(omega, d + 1, of_g);
-  for (int k = 0; k < d; ++k) square += s.u[k] * s.u[k];
   if (grid_.is_polar()) {
+    double square = 0.0;
+    for (int k = 0; k < d; ++k) square += s.u[k] * s.u[k];
     of_g[d + 1] = omega[0] > 0.0 ? 0.5 * s.rho * (square + d * s.T) : omega[d + 1];
     return omega[0] > 0.0 ? (degrees_ - d) * s.T : 0.0;
   }
-  for (int k = 0; k < d; ++k) {
-    const auto [nearest, farthest] = variances_at(grid_.line(k), s.u[k]);
-    least += nearest;
-    greatest += farthest;
-  }
-  least = std::min(least, greatest);
-  // All of f ≥ 0 may have one velocity: T is 0, up to the rounding of sums.
-  constexpr double rounding = 1e-12;
-  if (omega[0] > 0.0 && !(degrees_ * s.T >= -rounding * (square + greatest))) {
-    of_g[d + 1] = 0.5 * s.rho * (square + d * s.T);
-    return std::numeric_limits<double>::quiet_NaN();
-  }
-  const double variance = std::min(std::max(d * s.T, least), least + (greatest - least) / 3.0);
-  const bool usual = !(omega[0] > 0.0) || variance == d * s.T;
-  of_g[d + 1] = omega[0] == 0.0 ? omega[d + 1] : 0.5 * s.rho * (square + (usual ? d * s.T : variance));
-  if (!(omega[0] > 0.0)) return 0.0;
-  return std::max(usual ? (degrees_ - d) * s.T : degrees_ * s.T - variance, 0.0);
+  const auto parts = scalar::reduced_gas{d, degrees_}.parts(
+      omega, s, [&](int k) { return variances_on(grid_.line(k), s.u[k]); });
+  of_g[d + 1] = parts.of_g;
+  return parts.others;
 }
 
 void gas::fill_h(double energy, double* row) const {

@@ -1,6 +1,7 @@
 #include <apsis/model/gas_model.hpp>
 
 #include <apsis/model/fluid_fields.hpp>
+#include <apsis/model/formulas/reduction.hpp>
 #include <apsis/model/gas_target.hpp>
 #include <apsis/velocity/component_name.hpp>
 
@@ -100,10 +101,8 @@ double gas_model::cfl_rate(std::span<const double> spacing) const {
 
 double gas_model::rate(const double* omega) const {
   if (!by_viscosity_) return 1.0;
-  const double T = omega[0] > 0.0 ? gas_.state(omega).T : 0.0;
-  if (!(T > 0.0)) return 0.0;
-  const double power = exponent_ == 0.5 ? std::sqrt(T) : std::pow(T, exponent_);  // hard spheres
-  return prandtl_ * omega[0] * power;
+  return omega[0] > 0.0 ? scalar::rate_by_viscosity{prandtl_, exponent_}.of(omega[0], gas_.state(omega).T)
+                        : 0.0;
 }
 
 std::vector<std::string> gas_model::invariants() const {

@@ -14,6 +14,11 @@
 
 namespace apsis {
 
+namespace scalar {
+struct ellipsoidal_model;
+struct shakhov_target;
+}  // namespace scalar
+
 /// A gas that relaxes to a Maxwellian, in one to three space dimensions: everything that BGK, Shakhov and
 /// ES-BGK models share. f_t + v·∇_x f = (C/ε)(target − f), ω = (ρ, ρu, 𝓔), rows as in gas.hpp, E = M. With C
 /// = Pr ρ T^{1−s} the viscosity is ε T^s. Dimensionless.
@@ -37,6 +42,10 @@ class gas_model : public relaxation_model {
     return by_viscosity_ ? std::optional<double>(exponent_) : std::nullopt;
   }
   double prandtl() const { return prandtl_; }  ///< Pr of C
+  /// Returns the target as a formula for kernels, if it is Shakhov's; else null.
+  virtual const scalar::shakhov_target* as_shakhov() const { return nullptr; }
+  /// Returns the ellipsoidal model as formulas for kernels, if it is that; else null.
+  virtual const scalar::ellipsoidal_model* as_ellipsoidal() const { return nullptr; }
   int components() const override { return gas_.velocities().components(); }
   int space_dimensions() const override { return space_dimensions_; }
   const velocity_set& velocities() const override { return gas_.velocities(); }

@@ -1,12 +1,15 @@
 #include <apsis/model/gas_target.hpp>
 
 #include <apsis/model/central_sums.hpp>
-#include <apsis/model/internal/target_moments.hpp>
+#include <apsis/model/formulas/ellipsoidal.hpp>
+#include <apsis/model/formulas/shakhov.hpp>
 #include <apsis/model/polar_maxwellian.hpp>
+#include <apsis/model/target_rows.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <type_traits>
 
 namespace apsis {
 namespace {
@@ -14,58 +17,36 @@ namespace {
 /// Lines that a loop passes together.
 constexpr int together = 16;
 
-/// Whether P has no term of third degree.
-bool is_quadratic(const target_polynomial& p) {
-  return p.w[0] == 0.0 && p.w[1] == 0.0 && p.w[2] == 0.0;
-}
-
 /// P along the last lines of a grid of d dimensions. `Cubic`: P has terms of third degree.
-template <std::size_t d, bool Cubic>
+template <int d, bool Cubic>
 class polynomial_on_lines {
  public:
   polynomial_on_lines(const velocity_grid& grid, const fluid_state& state, const target_polynomial& p)
-      : last_(static_cast<std::size_t>(grid.last_component())), p_(p) {
-    for (std::size_t k = 0; k + 1 < d; ++k) {
-      const int across = grid.component_across(static_cast<int>(k));
-      across_[k] = static_cast<std::size_t>(across);
-      v_[k] = grid.component_of_lines(static_cast<int>(k));
-      u_[k] = state.u[across];
+      : last_(grid.last_component()), p_(p) {
+    for (int k = 0; k + 1 < d; ++k) {
+      across_[k] = grid.component_across(k);
+      v_[k] = grid.component_of_lines(k);
+      u_[k] = state.u[across_[k]];
     }
   }
 
   target_rows::cubic operator[](int line) const {
-    double square = 0.0, along = 0.0;
-    std::array<double, d> c{};
-    for (std::size_t k = 0; k + 1 < d; ++k) c[k] = v_[k][line] - u_[k];
-    target_rows::cubic of_line{p_.k, p_.l[last_], p_.a[last_][last_], p_.w[last_]};
-    for (std::size_t k = 0; k + 1 < d; ++k) {
-      const std::size_t i = across_[k];
-      if constexpr (Cubic) {
-        square += c[k] * c[k];
-        along += p_.w[i] * c[k];
-      }
-      of_line.k0 += p_.l[i] * c[k];
-      of_line.k1 += 2.0 * p_.a[i][last_] * c[k];
-      for (std::size_t l = 0; l + 1 < d; ++l) of_line.k0 += p_.a[i][across_[l]] * c[k] * c[l];
-    }
-    if constexpr (Cubic) {
-      of_line.k0 += along * square;
-      of_line.k1 += p_.w[last_] * square;
-      of_line.k2 += along;
-    }
-    return of_line;
+    double c[d] = {};
+    for (int k = 0; k + 1 < d; ++k) c[k] = v_[k][line] - u_[k];
+    const auto of_line = scalar::polynomial_on_line<d, Cubic>(p_, across_, last_, c);
+    return {of_line.k0, of_line.k1, of_line.k2, of_line.k3};
   }
 
  private:
-  std::size_t last_;
+  int last_;
   target_polynomial p_;
-  std::array<std::size_t, d> across_{};
-  std::array<const double*, d> v_{};
-  std::array<double, d> u_{};
+  int across_[d] = {};
+  const double* v_[d] = {};
+  double u_[d] = {};
 };
 
 /// e ← max(base · P, −keep f) for one set of components. Returns whether a value was raised to its bound.
-template <std::size_t d, bool Cubic>
+template <int d, bool Cubic>
 bool weigh_lines(const velocity_grid& grid, const fluid_state& state, const target_polynomial& p,
                  const double* base, const double* f, double keep, double* e) {
   const polynomial_on_lines<d, Cubic> polynomial(grid, state, p);
@@ -83,31 +64,38 @@ bool weigh_lines(const velocity_grid& grid, const fluid_state& state, const targ
   return raised;
 }
 
-template <std::size_t d>
+template <int d>
 bool weigh_lines(const velocity_grid& grid, const fluid_state& state, const target_polynomial& p,
                  const double* base, const double* f, double keep, double* e) {
-  return is_quadratic(p) ? weigh_lines<d, false>(grid, state, p, base, f, keep, e)
-                         : weigh_lines<d, true>(grid, state, p, base, f, keep, e);
+  return p.is_quadratic() ? weigh_lines<d, false>(grid, state, p, base, f, keep, e)
+                          : weigh_lines<d, true>(grid, state, p, base, f, keep, e);
+}
+
+/// Returns body(constant) with the number of dimensions.
+template <class Body>
+bool with_dimensions(int dimensions, const Body& body) {
+  switch (dimensions) {
+    case 1:
+      return body(std::integral_constant<int, 1>());
+    case 2:
+      return body(std::integral_constant<int, 2>());
+    default:
+      return body(std::integral_constant<int, 3>());
+  }
 }
 
 bool weigh(const velocity_grid& grid, const fluid_state& state, const target_polynomial& p,
            const double* base, const double* f, double keep, double* e) {
-  switch (grid.dimensions()) {
-    case 1:
-      return weigh_lines<1>(grid, state, p, base, f, keep, e);
-    case 2:
-      return weigh_lines<2>(grid, state, p, base, f, keep, e);
-    default:
-      return weigh_lines<3>(grid, state, p, base, f, keep, e);
-  }
+  return with_dimensions(grid.dimensions(),
+                         [&](auto d) { return weigh_lines<d.value>(grid, state, p, base, f, keep, e); });
 }
+
+using scalar::target_defect;
 
 /// The largest bound on an energy that is a difference of large numbers.
 constexpr double largest_bound = 1e-12;
-/// Smallest variance of a base in units of Δv²: below it, a Gaussian at points has other moments.
-constexpr double narrowest = 0.25;
 
-/// Returns Δv² or, of other lines, the square of the largest distance of velocities within a thermal speed.
+/// Returns the square of the largest distance of velocities within a thermal speed, Δv² of uniform lines.
 double widest_gap(const velocity_grid& grid, const fluid_state& state) {
   if (grid.is_polar()) return gap_square_on_rings(grid, state);
   double widest = 0.0;
@@ -128,7 +116,7 @@ target_defect defect_of(const double* after, const double* omega, const fluid_st
   double energy = after[d + 1] - omega[d + 1];
   for (int k = 0; k < d; ++k) {
     const double momentum = after[k + 1] - omega[k + 1];
-    found.momentum[static_cast<std::size_t>(k)] = (momentum - state.u[k] * mass) / (omega[0] * speed);
+    found.momentum[k] = (momentum - state.u[k] * mass) / (omega[0] * speed);
     energy -= state.u[k] * (momentum - 0.5 * state.u[k] * mass);
   }
   found.mass = mass / omega[0];
@@ -153,12 +141,17 @@ bool is_accurate(const target_defect& found, double ratio) {
 /// not possible.
 bool correct_by_moments(const gas& of, const fluid_state& state, const target_base& base,
                         target_shape& shape) {
-  const int d = of.dimensions();
-  if (base.moments.known) return moments_of_product(base.moments, d).correct(shape);
-  if (!is_quadratic(shape.of_g) || !is_quadratic(shape.of_h) || (of.reduced() && !(base.others > 0.0)))
+  if (base.moments.known)
+    return with_dimensions(of.dimensions(), [&](auto d) {
+      return scalar::moments_of_product<d.value>(base.moments).correct(shape);
+    });
+  if (!shape.of_g.is_quadratic() || !shape.of_h.is_quadratic() || (of.reduced() && !(base.others > 0.0)))
     return false;
   const central_sums sums(of.grid(), base.row, state.u, central_sums::highest_degree);
-  return moments_of_row(sums, d, {state.rho, base.others, of.degrees_of_freedom() * state.T}).correct(shape);
+  const scalar::base_contents contents{state.rho, base.others, of.degrees_of_freedom() * state.T};
+  return with_dimensions(of.dimensions(), [&](auto d) {
+    return scalar::moments_of_base<d.value, central_sums>{sums, contents}.correct(shape);
+  });
 }
 
 }  // namespace
@@ -169,13 +162,20 @@ central_moments compute_central_moments(const gas& of, const double* row, const 
   const central_sums g(grid, row, state.u, 3);
   central_moments all;
   for (std::size_t k = 0; k < d; ++k)
-    for (std::size_t l = 0; l < d; ++l) {
-      all.stress[k][l] = g.along({k, l}) / state.rho;
-      all.heat[k] += 0.5 * g.along({k, l, l});
-    }
-  if (!of.reduced()) return all;
-  const central_sums h(grid, row + grid.size(), state.u, 1);
-  for (std::size_t k = 0; k < d; ++k) all.heat[k] += 0.5 * h.along({k});
+    for (std::size_t l = 0; l < d; ++l) all.stress[k][l] = g.along({k, l}) / state.rho;
+  const auto third = [&g](int k, int l) {
+    const auto i = static_cast<std::size_t>(k), j = static_cast<std::size_t>(l);
+    return g.along({i, j, j});
+  };
+  const auto find_heat = [&](const auto& of_h) {
+    scalar::find_heat_flux(grid.dimensions(), third, of_h, all.heat.data());
+  };
+  if (of.reduced()) {
+    const central_sums h(grid, row + grid.size(), state.u, 1);
+    find_heat([&h](int k) { return h.along({static_cast<std::size_t>(k)}); });
+  } else {
+    find_heat([](int) { return 0.0; });
+  }
   return all;
 }
 
@@ -195,7 +195,7 @@ bool conservative_target(const gas& of, const double* omega, const target_base& 
   const int d = grid.dimensions();
   const fluid_state state = of.state(omega);
   target_shape shape = given;
-  if (!(shape.variance >= narrowest * widest_gap(grid, state))) return false;
+  if (!(shape.variance >= scalar::narrowest_target * widest_gap(grid, state))) return false;
   const auto weigh_all = [&](bool with_h) {
     bool some = weigh(grid, state, shape.of_g, base.row, f, keep, e);
     if (of.reduced() && with_h)
@@ -206,7 +206,7 @@ bool conservative_target(const gas& of, const double* omega, const target_base& 
   if (correct_by_moments(of, state, base, shape) && !weigh_all(true)) return true;
   // Where corrections no longer reduce a defect, target_accuracy is enough.
   const double ratio = energy_ratio(omega, d, shape.variance),
-               enough = std::min(target_rounding * ratio, largest_bound);
+               enough = std::min(scalar::target_rounding * ratio, largest_bound);
   double best = 1e300;
   constexpr int most_corrections = 12;
   for (int iteration = 0; iteration < most_corrections; ++iteration) {
@@ -224,7 +224,7 @@ bool conservative_target(const gas& of, const double* omega, const target_base& 
     }
     if (iteration + 1 == most_corrections) return is_accurate(found, ratio);
     best = size;
-    correction_of(found, d, shape.variance).add_to(shape.of_g, d);
+    scalar::correction_of(found, d, shape.variance).add_to(shape.of_g, d);
   }
   return false;
 }

@@ -1,7 +1,8 @@
 #pragma once
 
+#include <apsis/model/formulas/target_moments.hpp>
 #include <apsis/model/gas.hpp>
-#include <apsis/model/target_rows.hpp>
+#include <apsis/model/line_moments.hpp>
 
 #include <array>
 
@@ -19,23 +20,7 @@ central_moments compute_central_moments(const gas& of, const double* row, const 
 std::array<std::array<double, 3>, 3> compute_stress(const gas& of, const double* row,
                                                     const fluid_state& state);
 
-/// The polynomial P(c) = k + l·c + cᵀA c + (w·c)|c|² in the resolved components c = v − u.
-struct target_polynomial {
-  double k = 1.0;                            ///< k
-  std::array<double, 3> l{},                 ///< l
-      w{};                                   ///< w
-  std::array<std::array<double, 3>, 3> a{};  ///< A, symmetric
-};
-
-/// The part of the temperature that a target has in its resolved directions, for the correction below.
-struct target_shape {
-  target_polynomial of_g,  ///< factor of g
-      of_h;                ///< factor of h
-  double variance = 1.0;   ///< of one resolved component of the base
-};
-
-/// Largest relative difference of the moments of conservative_target() from ω.
-inline constexpr double target_accuracy = 1e-14;
+using scalar::target_accuracy, scalar::target_polynomial, scalar::target_shape;
 
 /// The row that a target is a polynomial times.
 struct target_base {

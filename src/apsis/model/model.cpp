@@ -4,7 +4,6 @@
 #include <apsis/model/model_registry.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <limits>
 #include <map>
@@ -114,16 +113,6 @@ void relaxation_model::relax(const stage_coefficients&, double*) const {}
 bool relaxation_model::target(const double* omega, const double*, const double*, double, double* e,
                               double&) const {
   return equilibrium(omega, e);
-}
-
-stage_coefficients coefficients_of_stage(double a, double b, double rate, double epsilon) {
-  const double k = rate > 0.0 || rate != rate ? rate / epsilon : 0.0;
-  stage_coefficients of;
-  of.a = a == 0.0 ? 0.0 : a * k;
-  const double once = b == 0.0 ? 0.0 : -b * k;  // B/A without overflow of B
-  of.b = once == 0.0 ? 0.0 : once * k;
-  if (once > 0.0) of.weight_of_b = std::isinf(once) ? 1.0 : once / (a + once);
-  return of;
 }
 
 }  // namespace apsis

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <apsis/core/construction_count.hpp>
+#include <apsis/core/relaxation_weights.hpp>
 #include <apsis/model/data_form.hpp>
 #include <apsis/model/dimension.hpp>
 #include <apsis/model/point_collision.hpp>
@@ -187,15 +188,6 @@ inline bool collisions_decrease_entropy(const model& equation) {
   const auto entropy = equation.entropy();
   return entropy && entropy->collisions_decrease;
 }
-
-/// The coefficients of a stage v = u + A (…) + B (…) of a relaxation.
-struct stage_coefficients {
-  double a = 0.0,         ///< A = aC/ε
-      b = 0.0,            ///< B = |b|(C/ε)²
-      weight_of_b = 0.0;  ///< B/(A + B); 0 if both are 0
-};
-/// Returns the coefficients for C/ε, which may be infinite.
-stage_coefficients coefficients_of_stage(double a, double b, double rate, double epsilon);
 
 /// Q(u) = C(ω)(E − u) with ω = ℛu and ℛQ = 0 (paper, Properties 3–5); every stage is solved in closed form.
 /// The target is the equilibrium E(ω), or depends also on moments s of u that relax: then 𝒮E(ω, s) = (1 −

@@ -128,10 +128,8 @@ class relaxation_collision final : public point_collision {
       const double* row = u + p * at.pitch;
       const double rate = equation_.rate(omega(p));
       const auto weights = relax_weights(a, b, rate, at.epsilon[p]);
-      // The margin is larger than the rounding of the combination. An explicit Q(u) is bounded for its
-      // forward Euler step ε/C, which ends at the target.
-      constexpr double margin = 1e-13;
-      const double keep = weights.of_e > 0.0 ? (1.0 - margin) * (weights.of_u / weights.of_e) : 0.0;
+      // An explicit Q(u) is bounded for its forward Euler step ε/C, which ends at the target.
+      const double keep = kept_part(weights);
       equation_.relaxing_moments(row, omega(p), relaxing_.data());
       equation_.relax(coefficients_of_stage(a, b, rate, at.epsilon[p]), relaxing_.data());
       double cut = 0.0;

@@ -1,6 +1,7 @@
 #include <apsis/velocity/velocity_line.hpp>
 
 #include <apsis/core/errors.hpp>
+#include <apsis/velocity/widest_gap.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -67,10 +68,7 @@ void velocity_line::set_unit(double unit) {
 }
 
 double velocity_line::widest_gap(double from, double to) const {
-  double widest = spacing_;
-  for (std::size_t j = 1; j < v_.size(); ++j)
-    if (v_[j] > from && v_[j - 1] < to) widest = std::max(widest, v_[j] - v_[j - 1]);
-  return widest;
+  return apsis::widest_gap(v_.data(), points(), spacing_, from, to);
 }
 
 }  // namespace apsis

@@ -1,25 +1,22 @@
 #include <apsis/core/errors.hpp>
 #include <apsis/exec/aligned.hpp>
 #include <apsis/model/correlated_gaussian.hpp>
+#include <apsis/model/formulas/ellipsoidal.hpp>
 #include <apsis/model/gas_model.hpp>
 #include <apsis/model/gas_target.hpp>
 
 #include <algorithm>
 #include <cstddef>
 
-#include <Eigen/Dense>
-
 namespace apsis {
 namespace {
 
+/// In the first rows and columns.
 template <int d>
-using matrix = Eigen::Matrix<double, d, d>;
-
-template <int d>
-direction_matrix plain(const matrix<d>& of) {
-  direction_matrix same{};
+direction_matrix widened(const scalar::small_matrix<d>& of) {
+  direction_matrix same;
   for (int k = 0; k < d; ++k)
-    for (int l = 0; l < d; ++l) same[static_cast<std::size_t>(k)][static_cast<std::size_t>(l)] = of(k, l);
+    for (int l = 0; l < d; ++l) same.of[k][l] = of.of[k][l];
   return same;
 }
 
@@ -31,8 +28,7 @@ direction_matrix plain(const matrix<d>& of) {
 class es_bgk_model final : public gas_model {
  public:
   explicit es_bgk_model(const model_config& config)
-      : gas_model(config, config.parameters.at("prandtl")),
-        rate_of_stress_(1.0 / config.parameters.at("prandtl")) {
+      : gas_model(config, config.parameters.at("prandtl")), formula_{1.0 / config.parameters.at("prandtl")} {
     if (molecules().degrees_of_freedom() != 3)
       throw input_error("model.degrees_of_freedom is not 3 (the model is that of a monatomic gas); give 3");
   }
@@ -46,6 +42,8 @@ class es_bgk_model final : public gas_model {
   }
 
   std::string cut_moment() const override { return "stress"; }
+
+  const scalar::ellipsoidal_model* as_ellipsoidal() const override { return &formula_; }
 
   int relaxing_count() const override { return pairs() + 1; }
 
@@ -62,9 +60,9 @@ class es_bgk_model final : public gas_model {
   }
 
   void relax(const stage_coefficients& of, double* s) const override {
-    const double decay = 1.0 / (1.0 + rate_of_stress_ * of.a + rate_of_stress_ * rate_of_stress_ * of.b);
+    const double decay = formula_.decay(of);
     for (int k = 0; k < pairs(); ++k) s[k] *= decay;
-    s[pairs()] = rate_of_stress_ * of.weight_of_b;
+    s[pairs()] = formula_.weight_of_derivative(of);
   }
 
   bool target(const double* omega, const double* s, const double* f, double keep, double* e,
@@ -81,7 +79,7 @@ class es_bgk_model final : public gas_model {
           return gaussian_target<3>(omega, state, s, part, f, bound, row, raised);
       }
     };
-    return find_target(omega, s, rate_of_stage(rate_of_stress_, s[pairs()]), keep, e, cut, with_part);
+    return find_target(omega, s, rate_of_stage(formula_.rate_of_stress, s[pairs()]), keep, e, cut, with_part);
   }
 
  private:
@@ -93,33 +91,17 @@ class es_bgk_model final : public gas_model {
   bool gaussian_target(const double* omega, const fluid_state& state, const double* s, double part,
                        const double* f, double keep, double* e, bool& raised) const {
     const gas& g = molecules();
-    matrix<d> change;  // (1 − 1/Pr) σ
-    for (int k = 0; k < d; ++k)
-      for (int l = k; l < d; ++l) change(k, l) = change(l, k) = part * (1.0 - rate_of_stress_) * *s++;
-    const double derivative = *s;
-    const int unresolved = g.degrees_of_freedom() - d;
-    const double change_of_others = unresolved > 0 ? -change.trace() / unresolved : 0.0;
-    // The Gaussian has the covariance Θ̂ in the resolved directions, and T̂ in each of the others.
-    const matrix<d> covariance = state.T * matrix<d>::Identity() + change;
-    const double others = state.T + change_of_others;
-    if (covariance.llt().info() != Eigen::Success || !(others > 0.0)) return false;
-    const matrix<d> inverse = covariance.inverse();
+    const auto target =
+        scalar::ellipsoidal_target<d>::of(formula_, state, s, s[pairs()], part, g.degrees_of_freedom() - d);
+    if (!target.exists) return false;
     thread_local aligned_vector<double> base;
     base.resize(static_cast<std::size_t>(components()));
-    correlated_gaussian(g.grid(), state, plain<d>(covariance), plain<d>(inverse), base.data());
-    if (g.reduced()) g.fill_h(unresolved * others, base.data());
-
-    target_shape target;
-    target.variance = covariance.trace() / d;
-    const matrix<d> quadratic = 0.5 * derivative * inverse * change * inverse;
-    const double trace = 0.5 * derivative * (inverse * change).trace();
-    target.of_g.k = target.of_h.k = 1.0 - trace;
-    target.of_g.a = target.of_h.a = plain<d>(quadratic);
-    target.of_h.k += derivative * change_of_others / others;
-    return conservative_target(g, omega, {base.data(), {}, unresolved * others}, target, f, keep, e, raised);
+    correlated_gaussian(g.grid(), state, widened(target.covariance), widened(target.inverse), base.data());
+    if (g.reduced()) g.fill_h(target.others, base.data());
+    return conservative_target(g, omega, {base.data(), {}, target.others}, target.shape, f, keep, e, raised);
   }
 
-  double rate_of_stress_;  ///< λ = 1/Pr
+  scalar::ellipsoidal_model formula_;
 };
 
 }  // namespace

@@ -1,4 +1,5 @@
 #include <apsis/core/errors.hpp>
+#include <apsis/model/formulas/shakhov.hpp>
 #include <apsis/model/gas_model.hpp>
 #include <apsis/model/gas_target.hpp>
 
@@ -17,7 +18,7 @@ namespace {
 class shakhov_model final : public gas_model {
  public:
   explicit shakhov_model(const model_config& config)
-      : gas_model(config), prandtl_(config.parameters.at("prandtl")) {
+      : gas_model(config), target_{config.parameters.at("prandtl")} {
     if (molecules().degrees_of_freedom() != 3)
       throw input_error(
           "model.degrees_of_freedom is not 3 (Shakhov's model is that of a monatomic gas); give 3");
@@ -31,6 +32,8 @@ class shakhov_model final : public gas_model {
   }
 
   std::string cut_moment() const override { return "heat_flux"; }
+
+  const scalar::shakhov_target* as_shakhov() const override { return &target_; }
 
   int relaxing_count() const override { return molecules().dimensions() + 1; }
 
@@ -48,9 +51,9 @@ class shakhov_model final : public gas_model {
 
   void relax(const stage_coefficients& of, double* s) const override {
     const int d = molecules().dimensions();
-    const double decay = 1.0 / (1.0 + prandtl_ * of.a + prandtl_ * prandtl_ * of.b);
+    const double decay = target_.decay(of);
     for (int k = 0; k < d; ++k) s[k] *= decay;
-    s[d] = prandtl_ * of.weight_of_b;
+    s[d] = target_.weight_of_derivative(of);
   }
 
   bool target(const double* omega, const double* s, const double* f, double keep, double* e,
@@ -66,24 +69,14 @@ class shakhov_model final : public gas_model {
       std::copy(base.begin(), base.end(), e);
       return true;
     }
-    const double scale = (1.0 - prandtl_) * (1.0 + s[d]) / (5.0 * state.rho * state.T * state.T);
     const auto with_part = [&](double part, double bound, double* row, bool& raised) {
-      target_shape shape;
-      shape.variance = state.T;
-      for (int k = 0; k < d; ++k) {
-        const double along = part * scale * s[k];
-        const auto i = static_cast<std::size_t>(k);
-        shape.of_g.l[i] = -(d + 2.0) * along;
-        shape.of_h.l[i] = -static_cast<double>(d) * along;
-        shape.of_g.w[i] = shape.of_h.w[i] = along / state.T;
-      }
-      return conservative_target(g, omega, of, shape, f, bound, row, raised);
+      return conservative_target(g, omega, of, target_.shape(d, state, s, s[d], part), f, bound, row, raised);
     };
-    return find_target(omega, s, rate_of_stage(prandtl_, s[d]), keep, e, cut, with_part);
+    return find_target(omega, s, rate_of_stage(target_.prandtl, s[d]), keep, e, cut, with_part);
   }
 
  private:
-  double prandtl_;
+  scalar::shakhov_target target_;
 };
 
 }  // namespace

@@ -11,9 +11,17 @@ namespace device_row_checks_test {
 using apsis::field;
 using apsis::grid;
 
-std::unique_ptr<apsis::model> gas(int points, const std::string& name = "bgk") {
+struct variant {
+  std::vector<int> points;            ///< of every direction
+  std::vector<std::string> set = {};  ///< of every direction; even velocities without one
+  int degrees = 0;                    ///< of freedom; 0: as many as directions
+};
+
+std::unique_ptr<apsis::model> gas(const variant& of, const std::string& name = "bgk") {
   apsis::model_config config = apsis::default_config(apsis::find_model(name));
-  config.velocity = {8.0, points, apsis::equilibrium_choice::automatic};
+  config.velocity = {8.0, of.points, apsis::equilibrium_choice::automatic, of.set};
+  config.parameters["velocity_dimensions"] = static_cast<double>(of.points.size());
+  if (of.degrees > 0) config.parameters["degrees_of_freedom"] = of.degrees;
   return apsis::find_model(name).make(config);
 }
 
@@ -35,9 +43,19 @@ field odd_rows(const grid& mesh, const apsis::model& equation) {
 }
 
 TEST(device_row_checks, have_the_bits_of_the_host) {
-  // Fewer than eight beyond whole octets, and more than a chain of additions.
-  for (const int points : {21, 40, 150, 700}) {
-    const auto equation = gas(points);
+  // On a line fewer than eight velocities beyond whole octets, and more than a chain of additions.
+  for (const variant& of : {variant{{21}},
+                            {{40}},
+                            {{150}},
+                            {{700}},
+                            {{30}, {"graded"}},
+                            {{40}, {}, 3},
+                            {{30}, {"graded"}, 5},
+                            {{13, 24}},
+                            {{20, 11}, {"graded", "uniform"}, 3},
+                            {{9, 7, 10}},
+                            {{10, 8, 12}, {"graded"}, 5}}) {
+    const auto equation = gas(of);
     const grid mesh = grid::line(37, 0.0, 1.0).with_solids({{.first = {9, 0, 0}, .cells = {2, 1, 1}}});
     const field u = odd_rows(mesh, *equation);
     for (const auto& on : tested_devices()) {
@@ -57,20 +75,21 @@ TEST(device_row_checks, have_the_bits_of_the_host) {
           compare(here.lowest, there.extremes.lowest, "minimum");
           compare(double(here.negative), double(there.extremes.negative), "negative numbers");
           if (std::isnan(here.lowest)) continue;
-          std::vector<double> densities(3);
+          std::vector<double> densities(equation->invariants().size());
           equation->invariant_densities(u.row(cell), densities.data());
-          for (std::size_t k = 0; k < 3; ++k) compare(densities[k], there.densities[k], "density");
+          for (std::size_t k = 0; k < densities.size(); ++k)
+            compare(densities[k], there.densities[k], "density");
           if (here.negative == 0)
             compare(equation->entropy()->density(u.row(cell)), there.entropy, "entropy");
         }
-      EXPECT_EQ(found, 0) << points << " velocities";
+      EXPECT_EQ(found, 0) << equation->components() << " components";
     }
   }
 }
 
 TEST(device_row_checks, squares_have_the_bits_of_the_host) {
   for (const int points : {21, 150}) {
-    const auto equation = gas(points);
+    const auto equation = gas({{points}});
     const grid mesh = grid::line(37, 0.0, 1.0);
     const field u = varied_rows(mesh, *equation, true), v = varied_rows(mesh, *equation, false);
     for (const auto& on : tested_devices()) {
@@ -92,10 +111,10 @@ TEST(device_row_checks, squares_have_the_bits_of_the_host) {
 }
 
 /// Where a model has no kernel, the state is copied and checked on the host.
-TEST(device_row_checks, are_those_of_a_gas_on_a_line) {
+TEST(device_row_checks, are_those_of_a_gas) {
   const grid mesh = grid::line(4, 0.0, 1.0);
-  EXPECT_NE(apsis::device_row_checks::make(*tested_device(), *gas(40), mesh), nullptr);
-  EXPECT_EQ(apsis::device_row_checks::make(*tested_device(), *gas(5000), mesh), nullptr);
+  EXPECT_NE(apsis::device_row_checks::make(*tested_device(), *gas({{40}}), mesh), nullptr);
+  EXPECT_EQ(apsis::device_row_checks::make(*tested_device(), *gas({{5000}}), mesh), nullptr);
   const auto broadwell =
       apsis::find_model("broadwell").make(apsis::default_config(apsis::find_model("broadwell")));
   EXPECT_EQ(apsis::device_row_checks::make(*tested_device(), *broadwell, mesh), nullptr);

@@ -1,7 +1,7 @@
 #include <apsis/device/row_checks.hpp>
 
-#include <apsis/device/internal/device_array.hpp>
-#include <apsis/device/internal/kernels/check_line.hpp>
+#include <apsis/device/internal/device_gas_rows.hpp>
+#include <apsis/device/internal/kernels/check_gas.hpp>
 #include <apsis/device/internal/kernels/compare_rows.hpp>
 #include <apsis/mesh/on_host.hpp>
 #include <apsis/model/gas_model.hpp>
@@ -14,18 +14,18 @@ namespace {
 /// The blocks of a launch for so many cells.
 template <class Kernel>
 launch_size launch_of_cells(int count) {
-  return {(count + Kernel::cells - 1) / Kernel::cells, Kernel::lanes, Kernel::lanes};
+  return {(count + Kernel::cells - 1) / Kernel::cells, Kernel::lanes,
+          static_cast<std::size_t>(kernels::most_totals * Kernel::lanes)};
 }
 
-class checks_on_line final : public device_row_checks {
+class checks_of_gas final : public device_row_checks {
  public:
-  checks_on_line(device& on, const gas_model& gas, const grid& mesh)
+  checks_of_gas(device& on, const gas_model& gas, const grid& mesh)
       : device_(on),
-        gas_(gas),
         cells_(mesh.fluid()),
-        v_(gas.molecules().grid().last_line().v(), on.memory()),
-        half_square_(gas.molecules().grid().half_square(), on.memory()),
-        checks_(static_cast<std::size_t>(mesh.size()) * kernel::numbers, on.memory()),
+        rows_(on, gas.molecules()),
+        numbers_(kernel::numbers(gas.molecules().dimensions())),
+        checks_(static_cast<std::size_t>(mesh.size()) * static_cast<std::size_t>(numbers_), on.memory()),
         on_host_(checks_.size()) {
     if (cells_.empty()) cells_.push_back({0, mesh.size()});
   }
@@ -34,11 +34,8 @@ class checks_on_line final : public device_row_checks {
     kernel::arguments of{};
     of.u = u.row(0);
     of.checks = checks_.data();
-    of.v = v_.data();
-    of.half_square = half_square_.data();
+    of.rows = rows_.view();
     of.stride = u.stride();
-    of.n = u.components();
-    of.weight = gas_.molecules().grid().weight();
     for (const cell_range& some : cells_) {
       of.first = some.begin;
       of.last = some.end;
@@ -55,21 +52,24 @@ class checks_on_line final : public device_row_checks {
   }
 
   row of(int cell) const override {
-    const double* here = on_host_.data() + static_cast<std::size_t>(cell) * kernel::numbers;
+    const double* here = on_host_.data() + first_of(cell);
     return {{here[kernel::lowest], static_cast<long>(here[kernel::negative])},
             here + kernel::density,
             here[kernel::entropy]};
   }
 
  private:
-  using kernel = kernels::check_line;
+  using kernel = kernels::check_gas;
 
-  double* checks_of(int cell) { return on_host_.data() + static_cast<std::size_t>(cell) * kernel::numbers; }
+  std::size_t first_of(int cell) const {
+    return static_cast<std::size_t>(cell) * static_cast<std::size_t>(numbers_);
+  }
+  double* checks_of(int cell) { return on_host_.data() + first_of(cell); }
 
   device& device_;
-  const gas_model& gas_;
   std::vector<cell_range> cells_;
-  device_array<double> v_, half_square_;
+  device_gas_rows rows_;
+  int numbers_;
   stored_numbers checks_;
   std::vector<double> on_host_;
 };
@@ -92,11 +92,8 @@ std::unique_ptr<device_row_checks> device_row_checks::make(device& on, const mod
                                                            const grid& mesh) {
   const gas_model* gas = equation.as_gas();
   if (gas == nullptr || !equation.condition().empty()) return nullptr;
-  const velocity_grid& velocities = gas->molecules().grid();
-  if (gas->molecules().reduced() || velocities.dimensions() != 1 || !velocities.uniform() ||
-      velocities.size() > kernels::check_line::most_velocities)
-    return nullptr;
-  return std::make_unique<checks_on_line>(on, *gas, mesh);
+  if (!device_gas_rows::why_not(gas->molecules()).empty()) return nullptr;
+  return std::make_unique<checks_of_gas>(on, *gas, mesh);
 }
 
 }  // namespace apsis

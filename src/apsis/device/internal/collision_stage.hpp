@@ -2,8 +2,8 @@
 
 #include <apsis/core/relaxation_weights.hpp>
 #include <apsis/device/internal/lane_group.hpp>
+#include <apsis/model/formulas/reduction.hpp>
 #include <apsis/model/formulas/relaxation.hpp>
-#include <apsis/model/formulas/velocity_line.hpp>
 
 namespace apsis::kernels {
 
@@ -11,13 +11,14 @@ namespace apsis::kernels {
 /// v = u + a Q(v)/ε + b Q̇(v)/ε² in every cell. Cells whose equilibrium the kernel does not find are left as
 /// they are, and are marked.
 struct collision_stage {
-  double* u;              ///< rows of all cells
-  double* marks;          ///< of every cell: 1 if it is left, else 0
-  const double* epsilon;  ///< ε of every cell
-  long stride;            ///< numbers of a row
-  int first, last;        ///< cells
-  int by_viscosity;       ///< whether C = Pr ρ √T instead of 1
-  double prandtl, a, b;   ///< Pr, a ≥ 0, b ≤ 0
+  double* u;                       ///< rows of all cells
+  double* marks;                   ///< of every cell: 1 if it is left, else 0
+  const double* epsilon;           ///< ε of every cell
+  long stride;                     ///< numbers of a row
+  int first, last;                 ///< cells
+  int by_viscosity;                ///< whether C is the rate by viscosity instead of 1
+  scalar::rate_by_viscosity rate;  ///< this rate
+  double a, b;                     ///< a ≥ 0, b ≤ 0
 
   /// The number of the cell that is the turn of a group; groups behind the last cell take part in the sums.
   template <class Group>
@@ -34,30 +35,24 @@ struct collision_stage {
     return by_formula;
   }
 
-  /// The weights of a cell with density ρ and temperature T > 0.
+  /// The weights of a cell with density ρ > 0 and temperature T.
   APSIS_FORMULA relaxation_weights<double> weights(int cell, double rho, double T) const {
-    return relax_weights(a, b, by_viscosity != 0 ? prandtl * rho * __builtin_sqrt(T) : 1.0, epsilon[cell]);
+    return relax_weights(a, b, rate_of(rho, T), epsilon[cell]);
+  }
+  /// The coefficients of the stage of such a cell.
+  APSIS_FORMULA stage_coefficients coefficients(int cell, double rho, double T) const {
+    return coefficients_of_stage(a, b, rate_of(rho, T), epsilon[cell]);
   }
   /// The solution from u and the equilibrium e.
   static APSIS_FORMULA double solution(const relaxation_weights<double>& weights, double u, double e) {
     return weights.of_e <= weights.of_u ? scalar::moved_towards(u, weights.of_e, e)
                                         : scalar::moved_towards(e, weights.of_u, u);
   }
-};
 
-/// Calls put(first velocity, value) for the octets of a Gaussian, as velocity_rows::gaussians().
-template <class Group, class Put>
-APSIS_FORMULA void gaussian_on_line(const Group& group, const scalar::spaced_line& line,
-                                    const scalar::gaussian_of_line& curve, const Put& put) {
-  using namespace scalar;
-  if (!walks_outwards(line, curve)) return gaussian_by_octets(group, line, curve, put);
-  const double per = curve.per();
-  const double centre =
-      gaussian_vector(curve.u, line.spacing, double(line.n), double(octet_length), double(line.octets()));
-  const double x = distances_of_octet(group, line, curve.u, centre);
-  const double right = gaussian_right(x, per, line.jump()), change = gaussian_change(per, line.jump());
-  walk_outwards(gaussian_outwards<double>{gaussian_start(curve.a, x, per), right, change / right, change},
-                static_cast<int>(centre), line, curve, put);
-}
+ private:
+  APSIS_FORMULA double rate_of(double rho, double T) const {
+    return by_viscosity != 0 ? rate.of(rho, T) : 1.0;
+  }
+};
 
 }  // namespace apsis::kernels

@@ -1,15 +1,16 @@
 #include <apsis/device/internal/device_collision.hpp>
 
 #include <apsis/core/errors.hpp>
+#include <apsis/device/internal/kernels/collide.hpp>
+#include <apsis/device/internal/kernels/collide_es_bgk.hpp>
+#include <apsis/device/internal/kernels/collide_shakhov.hpp>
 #include <apsis/exec/aligned.hpp>
-#include <apsis/model/velocity_rows.hpp>
 
+#include <algorithm>
 #include <utility>
 
 namespace apsis {
 namespace {
-
-static_assert(velocity_rows::longest_chain == scalar::longest_chain_of_line, "host and device halve alike");
 
 /// A copy of a state on the host.
 field on_host(const field& u) {
@@ -27,70 +28,56 @@ const gas_model& gas_of(const model& equation, stage_solution stages) {
 /// Lanes that share the work on a cell.
 constexpr int lanes_of_cell = scalar::octet_length;
 
-/// Points of all directions together.
-int points_of(const velocity_grid& grid) {
-  int points = 0;
-  for (int k = 0; k < grid.dimensions(); ++k) points += grid.line(k).points();
-  return points;
+/// Numbers that a cell needs in the memory of a block.
+std::size_t shared_by_cell(const gas_model& gas, const kernels::gas_rows& rows) {
+  using namespace kernels;
+  const int own = gas.as_ellipsoidal() != nullptr
+                      ? memory_of_central_sums::powers_of(rows, collide_es_bgk::degree)
+                  : gas.as_shakhov() != nullptr
+                      ? rows.points + memory_of_central_sums::powers_of(rows, collide_shakhov::degree)
+                      : rows.points;
+  return static_cast<std::size_t>(most_totals * lanes_of_cell + own);
 }
 
-/// Numbers that a cell needs in the memory of a block.
-std::size_t shared_by_cell(const velocity_grid& grid) {
-  return static_cast<std::size_t>(kernels::most_totals * lanes_of_cell + points_of(grid));
+/// Numbers that a cell needs in the memory of the device.
+std::size_t room_of_cell(const gas_model& gas, const kernels::gas_rows& rows) {
+  using namespace kernels;
+  return static_cast<std::size_t>(gas.as_ellipsoidal() != nullptr ? collide_es_bgk::numbers_of_room(rows)
+                                  : gas.as_shakhov() != nullptr   ? collide_shakhov::numbers_of_room(rows)
+                                                                  : 0);
 }
 
 /// Memory that blocks have on every device, 48 KiB.
 constexpr std::size_t most_shared = 6144;
 
 /// A launch for so many cells, with as many of them in a block as its memory and 128 lanes allow.
-launch_size launch_of_cells(int cells, const velocity_grid& grid) {
-  const std::size_t of_cell = shared_by_cell(grid);
+launch_size launch_of_cells(int cells, std::size_t shared_by_cell) {
   int together = 16;
-  while (static_cast<std::size_t>(together) * of_cell > most_shared) together /= 2;
+  while (static_cast<std::size_t>(together) * shared_by_cell > most_shared) together /= 2;
   return {(cells + together - 1) / together, together * lanes_of_cell,
-          static_cast<std::size_t>(together) * of_cell};
+          static_cast<std::size_t>(together) * shared_by_cell};
 }
 
-bool has_too_many_velocities(const velocity_grid& grid) {
-  return (grid.dimensions() == 1 && grid.size() > kernels::collide::most_velocities_of_line) ||
-         grid.lines() > kernels::collide::most_lines || shared_by_cell(grid) > most_shared;
-}
+/// Room of all cells of a launch, 128 MiB; at least 16 cells have some.
+constexpr std::size_t most_room = 1 << 24;
 
-/// The numbers of all directions, one after the other.
-template <class Numbers>
-std::vector<double> of_directions(const velocity_grid& grid, const Numbers& numbers) {
-  std::vector<double> all;
-  for (int k = 0; k < grid.dimensions(); ++k) {
-    const auto& some = (grid.line(k).*numbers)();
-    all.insert(all.end(), some.begin(), some.end());
-  }
-  return all;
-}
-
-/// Factors in the sums of the kernel: ½v² on an even line, functions of all lines otherwise.
-const aligned_vector<double>& functions_of(const velocity_grid& grid) {
-  return grid.dimensions() == 1 && grid.uniform() ? grid.half_square() : grid.functions_of_lines();
-}
-
-kernels::collide::formulas closed_forms(equilibrium_choice choice) {
-  using kernels::collide;
-  return choice == equilibrium_choice::formula    ? collide::all
-         : choice == equilibrium_choice::discrete ? collide::none
-                                                  : collide::where_exact;
+kernels::equilibrium_formulas closed_forms(equilibrium_choice choice) {
+  using kernels::equilibrium_formulas;
+  return choice == equilibrium_choice::formula    ? equilibrium_formulas::all
+         : choice == equilibrium_choice::discrete ? equilibrium_formulas::none
+                                                  : equilibrium_formulas::where_exact;
 }
 
 }  // namespace
 
 std::string device_collision::why_not(const model& equation, stage_solution stages) {
   const gas_model* gas = equation.as_gas();
-  if (gas == nullptr || gas->relaxing_count() > 0) return "the kernel of its collisions is missing";
-  const velocity_grid& grid = gas->molecules().grid();
-  if (gas->molecules().reduced())
-    return "the kernel of its collisions has no degrees of freedom beside the velocities";
-  if (grid.is_polar()) return "the kernel of its collisions has no rings of velocities";
-  if (gas->rate_exponent() && *gas->rate_exponent() != 0.5)
-    return "the kernel of its collisions has the viscosity of hard spheres alone";
-  if (has_too_many_velocities(grid)) return "it has too many velocities";
+  if (gas == nullptr ||
+      (gas->relaxing_count() > 0 && gas->as_shakhov() == nullptr && gas->as_ellipsoidal() == nullptr))
+    return "the kernel of its collisions is missing";
+  if (std::string reason = device_gas_rows::why_not(gas->molecules()); !reason.empty()) return reason;
+  if (shared_by_cell(*gas, device_gas_rows::shape(gas->molecules())) > most_shared)
+    return "it has too many velocities";
   if (stages == stage_solution::exact) return "the kernel of exact collisions is missing";
   return "";
 }
@@ -102,59 +89,55 @@ device_collision::device_collision(device& on, const model& equation, std::vecto
       epsilon_(std::move(epsilon)),
       cells_(std::move(cells)),
       host_(make_pointwise_collision(equation, epsilon_, keeps_sign, cells_, stages)),
-      v_(of_directions(gas_.molecules().grid(), &velocity_line::v), device_.memory()),
-      quadrature_(of_directions(gas_.molecules().grid(), &velocity_line::weights), device_.memory()),
-      functions_(functions_of(gas_.molecules().grid()), device_.memory()),
+      rows_(device_, gas_.molecules()),
       epsilon_on_device_(epsilon_, device_.memory()),
       marks_(epsilon_.size(), device_.memory()),
       marks_on_host_(epsilon_.size()) {
   if (cells_.empty()) cells_.push_back({0, static_cast<int>(epsilon_.size())});
+  for (const cell_range& some : cells_) cells_of_launch_ = std::max(cells_of_launch_, some.end - some.begin);
+  if (const std::size_t of_cell = room_of_cell(gas_, rows_.view()); of_cell > 0) {
+    const auto most = static_cast<int>(std::min(most_room / of_cell, most_room));
+    cells_of_launch_ = std::min(cells_of_launch_, std::max(most / 16 * 16, 16));
+    // The last block may have fewer cells.
+    room_ = stored_numbers((static_cast<std::size_t>(cells_of_launch_) + 16) * of_cell, device_.memory());
+  }
   const field row(1, equation.components());
   rest_ = equation.make_collision({1, row.stride(), keeps_sign, stages});
 }
 
-/// All but the stage.
-kernels::collide::arguments device_collision::arguments() const {
-  const velocity_grid& grid = gas_.molecules().grid();
-  kernels::collide::arguments of{};
-  int before = 0;
-  for (int k = 0; k < grid.dimensions(); ++k) {
-    const velocity_line& line = grid.line(k);
-    of.of[k] = {.v = v_.data() + before,
-                .weights = grid.uniform() ? nullptr : quadrature_.data() + before,
-                .n = line.points(),
-                .even = line.uniform() ? 1 : 0,
-                .spacing = line.spacing(),
-                .max = line.max()};
-    before += line.points();
-  }
-  of.functions = functions_.data();
-  of.dimensions = grid.dimensions();
-  of.points = before;
-  of.uniform = grid.uniform() ? 1 : 0;
-  of.closed_forms = closed_forms(gas_.molecules().choice());
-  of.weight = grid.weight();
-  return of;
-}
-
 void device_collision::solve(double, double a, double b, field& u) {
-  kernels::collide::arguments of = arguments();
-  of.stage = {.u = u.row(0),
-              .marks = marks_.data(),
-              .epsilon = epsilon_on_device_.data(),
-              .stride = u.stride(),
-              .first = 0,
-              .last = 0,
-              .by_viscosity = gas_.rate_exponent() ? 1 : 0,
-              .prandtl = gas_.prandtl(),
-              .a = a,
-              .b = b};
+  kernels::collision_stage stage{.u = u.row(0),
+                                 .marks = marks_.data(),
+                                 .epsilon = epsilon_on_device_.data(),
+                                 .stride = u.stride(),
+                                 .first = 0,
+                                 .last = 0,
+                                 .by_viscosity = gas_.rate_exponent() ? 1 : 0,
+                                 .rate = {gas_.prandtl(), gas_.rate_exponent().value_or(0.0)},
+                                 .a = a,
+                                 .b = b};
   for (const cell_range& some : cells_) {
-    of.stage.first = some.begin;
-    of.stage.last = some.end;
-    device_.launch<kernels::collide>(launch_of_cells(some.end - some.begin, gas_.molecules().grid()), of);
+    for (stage.first = some.begin; stage.first < some.end; stage.first = stage.last) {
+      stage.last = std::min(stage.first + cells_of_launch_, some.end);
+      launch(stage);
+    }
     solve_rest(a, b, some, u);
   }
+}
+
+/// Solves a stage of some cells on the device.
+void device_collision::launch(const kernels::collision_stage& stage) {
+  const kernels::gas_rows rows = rows_.view();
+  const launch_size size = launch_of_cells(stage.last - stage.first, shared_by_cell(gas_, rows));
+  const auto formulas = closed_forms(gas_.molecules().choice());
+  const int cuts_tails = gas_.collisions_keep_sign() ? 1 : 0;
+  if (const auto* target = gas_.as_shakhov())
+    device_.launch<kernels::collide_shakhov>(size,
+                                             {stage, rows, *target, room_.data(), formulas, cuts_tails});
+  else if (const auto* model = gas_.as_ellipsoidal())
+    device_.launch<kernels::collide_es_bgk>(size, {stage, rows, *model, room_.data(), cuts_tails});
+  else
+    device_.launch<kernels::collide>(size, {stage, rows, formulas});
 }
 
 /// Solves the cells that the kernel has left.
@@ -187,6 +170,11 @@ void device_collision::add_collision(double t, const field& u,
   }
   host_->add_collision(t, on_host(u), there);
   for (std::size_t k = 0; k < targets.size(); ++k) targets[k].acc->copy_rows(copies[k]);
+}
+
+double device_collision::take_cut() {
+  const double here = host_->take_cut(), of_rest = rest_->take_cut();
+  return std::max(here, of_rest);
 }
 
 double device_collision::forward_euler_step(const field& u) const {

@@ -1,8 +1,9 @@
 #pragma once
 
 #include <apsis/device/device.hpp>
+#include <apsis/device/internal/collision_stage.hpp>
 #include <apsis/device/internal/device_array.hpp>
-#include <apsis/device/internal/kernels/collide.hpp>
+#include <apsis/device/internal/device_gas_rows.hpp>
 #include <apsis/model/gas_model.hpp>
 #include <apsis/semidiscrete/collision.hpp>
 
@@ -12,9 +13,9 @@
 
 namespace apsis {
 
-/// make_pointwise_collision() on a device, with the same bits: stages of the BGK model whose velocities are
-/// a product of lines. Cells for whose equilibrium Newton's method does not converge from a Gaussian are
-/// solved on the host, row by row.
+/// make_pointwise_collision() on a device, with the same bits: stages of the BGK model, of Shakhov's and of
+/// the ellipsoidal one, whose velocities are a product of lines. Cells for whose equilibrium Newton's method
+/// does not converge from a Gaussian, and those whose target is cut off, are solved on the host, row by row.
 ///
 /// Its states live in the memory of the device.
 class device_collision final : public collision {
@@ -34,12 +35,12 @@ class device_collision final : public collision {
   double forward_euler_step(const field& u) const override;
   /// On the host, with a copy of the state.
   double relaxation_time(const field& u) const override;
-  double take_cut() override { return host_->take_cut(); }
+  double take_cut() override;
   /// Returns how many cells all stages so far have left to the host.
   long solved_on_host() const { return solved_on_host_; }
 
  private:
-  kernels::collide::arguments arguments() const;
+  void launch(const kernels::collision_stage& stage);
   void solve_rest(double a, double b, const cell_range& cells, field& u);
 
   device& device_;
@@ -48,9 +49,11 @@ class device_collision final : public collision {
   std::vector<cell_range> cells_;
   std::unique_ptr<collision> host_;
   std::unique_ptr<point_collision> rest_;
-  device_array<double> v_, quadrature_, functions_, epsilon_on_device_;
-  stored_numbers marks_;
+  device_gas_rows rows_;
+  device_array<double> epsilon_on_device_;
+  stored_numbers marks_, room_;
   std::vector<double> marks_on_host_;
+  int cells_of_launch_ = 0;
   long solved_on_host_ = 0;
 };
 

@@ -20,6 +20,9 @@
 
 #include <apsis/exec/number.hpp>
 
+/// Attribute of lambda expressions that are part of a kernel.
+#define APSIS_INLINED __attribute__((always_inline))
+
 namespace apsis::device_code {
 
 #if defined(__NVPTX__)

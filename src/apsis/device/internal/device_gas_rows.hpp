@@ -1,0 +1,31 @@
+#pragma once
+
+#include <apsis/device/device.hpp>
+#include <apsis/device/internal/device_array.hpp>
+#include <apsis/device/internal/gas_rows.hpp>
+#include <apsis/model/gas.hpp>
+
+#include <string>
+
+namespace apsis {
+
+/// What kernels need to know about the rows of a gas, in the memory of a device.
+class device_gas_rows {
+ public:
+  /// `on` and `molecules` must outlive the object. The gas must be one that kernels can have.
+  device_gas_rows(const device& on, const gas& molecules);
+
+  /// Returns why kernels cannot have the rows of a gas, as a clause; "" if they can.
+  static std::string why_not(const gas& molecules);
+
+  /// Returns view() without any pointer.
+  static kernels::gas_rows shape(const gas& molecules);
+  /// Returns the arguments of kernels, which live as long as this object.
+  kernels::gas_rows view() const;
+
+ private:
+  const gas& gas_;
+  device_array<double> v_, quadrature_, functions_, weights_;
+};
+
+}  // namespace apsis

@@ -167,8 +167,8 @@ TEST(device_transport, refuses_what_it_does_not_have) {
   EXPECT_THAT([&] { make(limits::edges); },
               testing::ThrowsMessage<apsis::input_error>(testing::HasSubstr("edge values are limited")));
   auto t = make(limits::nothing);
-  EXPECT_THAT([&] { t.set_force({}); },
-              testing::ThrowsMessage<apsis::input_error>(testing::HasSubstr("force")));
+  EXPECT_THAT([&] { t.set_source({}); },
+              testing::ThrowsMessage<apsis::input_error>(testing::HasSubstr("a source is not possible")));
 }
 
 }  // namespace device_transport_test

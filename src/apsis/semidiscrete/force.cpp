@@ -104,11 +104,25 @@ void force::add(double t, const field& u, std::span<const target<field, double>>
       });
     });
   });
-  const std::vector<double> all = global_integrals(*space_, of_cells_, invariants_ + losses_.size());
+  integrate();
+  failure.rethrow();
+}
+
+/// Sets what was given and lost from the sums of all cells.
+void force::integrate() const {
+  const std::vector<double> all = global_integrals(*space_, of_cells_, sums_of_cell());
   const auto first_loss = all.begin() + static_cast<std::ptrdiff_t>(invariants_);
   std::copy(all.begin(), first_loss, given_.begin());
   std::copy(first_loss, all.end(), losses_.begin());
-  failure.rethrow();
+}
+
+void force::balance(std::span<const double> sums, const std::function<std::array<double, 3>(int)>& at) const {
+  std::copy(sums.begin(), sums.end(), of_cells_.begin());
+  for_cells_in(space_->mesh().fluid(), 0, space_->mesh().size(), [&](int begin, int end) {
+    for (int cell = begin; cell < end; ++cell)
+      set_losses(at(cell), of_cells_.data() + size(cell) * sums_of_cell());
+  });
+  integrate();
 }
 
 std::array<double, 3> force::acceleration_in(double t, int cell) const {
@@ -126,7 +140,7 @@ std::array<double, 3> force::acceleration_in(double t, int cell) const {
 void force::add_cell(double t, const field& u, std::span<const target<field, double>> targets, int cell,
                      workspace& here) const {
   const auto a = acceleration_in(t, cell);
-  double* sums = of_cells_.data() + size(cell) * (invariants_ + losses_.size());
+  double* sums = of_cells_.data() + size(cell) * sums_of_cell();
   double held = 0.0;
   bool fresh = true;
   for (std::size_t direction = 0; direction < lattice_.points.size(); ++direction) {
@@ -135,21 +149,21 @@ void force::add_cell(double t, const field& u, std::span<const target<field, dou
     fresh = false;
   }
   if (fresh) {
-    std::fill_n(sums, invariants_ + losses_.size(), 0.0);
+    std::fill_n(sums, sums_of_cell(), 0.0);
     return;
   }
   equation_.invariant_densities(here.sum.data(), sums);
-  set_losses(u.row(cell), a, held, sums);
+  equation_.invariant_densities(u.row(cell), sums + invariants_);
+  sums[sums_of_cell() - 1] = held;
+  set_losses(a, sums);
   for (const auto& to : targets)
     lattice_rows::add(here.sum.data(), to.beta, u.components(), to.acc->row(cell));
 }
 
-/// Sets the losses behind the invariants that were given to a cell: mass, momentum and energy of a gas.
-void force::set_losses(const double* row, const std::array<double, 3>& a, double held, double* sums) const {
+/// Replaces the invariants of a row by the losses: mass, momentum and energy of a gas.
+void force::set_losses(const std::array<double, 3>& a, double* sums) const {
   double* losses = sums + invariants_;
-  // First the densities, the mass in the place of what is held.
-  equation_.invariant_densities(row, losses);
-  const double mass = losses[force_losses::held];
+  const double mass = losses[force_losses::held], held = losses[invariants_];
   double power = 0.0, square = 0.0;
   for (std::size_t k = 0; k < lattice_.points.size(); ++k) {
     power += losses[force_losses::lost + k] * a[k];
@@ -161,13 +175,16 @@ void force::set_losses(const double* row, const std::array<double, 3>& a, double
   losses[invariants_] = mass * std::sqrt(square);
 }
 
+lattice_rows::flux_rule force::rule_for(double a) const {
+  return {fifth_order_, limited_, a > 0.0, 1.0 / std::max(limiter::least_cfl_number, kappa * share_)};
+}
+
 /// Adds −a ∂f/∂v along one direction to the sum, or sets it; returns the mass that enters the last points.
 double force::add_direction(const double* row, std::size_t direction, double a, bool fresh,
                             workspace& here) const {
   const lattice_rows::layout at = layout_along(direction);
-  const lattice_rows::flux_rule rule{fifth_order_, limited_, a > 0.0,
-                                     1.0 / std::max(limiter::least_cfl_number, kappa * share_)};
-  const double rate = std::abs(a) / lattice_.spacing[direction];
+  const lattice_rows::flux_rule rule = rule_for(a);
+  const double rate = rate_along(direction, a);
   lattice_rows::add_changes(at, rule, rate, row, fresh, here.sum.data(), here.into_last.data(),
                             here.scratch.data());
   return rate * mass_into_ends(at, rule.forward, here.into_last.data());

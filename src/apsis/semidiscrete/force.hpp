@@ -10,6 +10,8 @@
 #include <apsis/semidiscrete/limited_reconstruction.hpp>
 
 #include <array>
+#include <cmath>
+#include <functional>
 #include <memory>
 #include <span>
 #include <vector>
@@ -46,11 +48,29 @@ class force {
   /// Tells the limiter that β rate() ≤ share α in all calls to come, 0 < share ≤ 1 (initially 1).
   void limit_for_steps(double share) { share_ = share; }
 
+  /// @name Parts of add(), for devices
+  /// @{
+  /// Returns a in a cell. Throws numerical_error where it is not finite or larger than its bound.
+  std::array<double, 3> acceleration_in(double t, int cell) const;
+  /// Returns the layout of rows along a direction of the lattice.
+  lattice_rows::layout layout_along(std::size_t direction) const;
+  /// Returns how fluxes along a direction with the acceleration a are found.
+  lattice_rows::flux_rule rule_for(double a) const;
+  /// Returns |a|/Δv of a direction.
+  double rate_along(std::size_t direction, double a) const {
+    return std::abs(a) / lattice_.spacing[direction];
+  }
+  /// Returns how many sums a cell has: the invariants that the force gave, the invariants of its row, and the
+  /// mass that entered the last points (force_losses).
+  std::size_t sums_of_cell() const { return invariants_ + losses_.size(); }
+  /// Sets given() and losses() from the sums of every cell, whose accelerations are at(cell). Collective.
+  void balance(std::span<const double> sums, const std::function<std::array<double, 3>(int)>& at) const;
+  /// @}
+
  private:
   struct workspace;
-  lattice_rows::layout layout_along(std::size_t direction) const;
-  std::array<double, 3> acceleration_in(double t, int cell) const;
-  void set_losses(const double* row, const std::array<double, 3>& a, double held, double* sums) const;
+  void set_losses(const std::array<double, 3>& a, double* sums) const;
+  void integrate() const;
   void add_cell(double t, const field& u, std::span<const target<field, double>> targets, int cell,
                 workspace& here) const;
   double add_direction(const double* row, std::size_t direction, double a, bool fresh, workspace& here) const;

@@ -5,10 +5,8 @@
 #include <apsis/semidiscrete/lattice_rows.hpp>
 
 #include <apsis/semidiscrete/formulas/lattice.hpp>
-#include <apsis/semidiscrete/formulas/upwind.hpp>
 
 #include <algorithm>
-#include <utility>
 
 HWY_BEFORE_NAMESPACE();
 namespace apsis::HWY_NAMESPACE {
@@ -47,90 +45,22 @@ class values_along {
   int points_, count_;
 };
 
-/// Five neighbouring values, and the edge downstream of the middle one.
-template <bool FifthOrder, class Values>
-class edge_window {
- public:
-  HWY_INLINE explicit edge_window(const Values& values)
-      : values_(values), a_(0.0), b_(0.0), c_(values(0)), d_(values(1)), e_(values(2)) {}
-  HWY_INLINE N value() const { return c_; }
-  HWY_INLINE N edge() const {
-    if constexpr (FifthOrder) return upwind5_edge(a_, b_, c_, d_, e_);
-    return upwind1_edge(c_);
-  }
-  /// Moves to point j.
-  HWY_INLINE void advance_to(int j) {
-    a_ = b_;
-    b_ = c_;
-    c_ = d_;
-    d_ = e_;
-    e_ = values_(j + 2);
-  }
-
- private:
-  const Values& values_;
-  N a_, b_, c_, d_, e_;
-};
-
-/// Fluxes as those of add_limited(), or edges.
-template <bool Limited, class Window>
-class flux_walk {
- public:
-  HWY_INLINE flux_walk(Window& window, double inverse_cfl)
-      : window_(window), inverse_cfl_(inverse_cfl), here_(first(window, inverse_cfl_)) {}
-  /// The flux out of point j − 1, having moved from it to point j.
-  HWY_INLINE N to(int j) {
-    window_.advance_to(j);
-    if constexpr (Limited) {
-      const auto after = limited_after(here_, window_.value(), window_.edge(), inverse_cfl_);
-      const N out = limited_flux(here_, after);
-      here_ = after;
-      return out;
-    } else {
-      const N out = here_;
-      here_ = window_.edge();
-      return out;
-    }
-  }
-
- private:
-  static HWY_INLINE auto first(const Window& window, N inverse_cfl) {
-    if constexpr (Limited)
-      return limited_after(unlimited(N(0.0), N(0.0), inverse_cfl), window.value(), window.edge(),
-                           inverse_cfl);
-    else
-      return window.edge();
-  }
-
-  Window& window_;
-  N inverse_cfl_;
-  decltype(first(std::declval<const Window&>(), N(0.0))) here_;
-};
-
 template <bool Limited, bool FifthOrder, bool Whole>
 HWY_INLINE void change_bundle(const bundle& of, const lattice_rows::flux_rule& rule, double rate,
                               bool fresh) {
   const values_along<Whole> values(of, rule.forward);
-  edge_window<FifthOrder, values_along<Whole>> window(values);
-  flux_walk<Limited, decltype(window)> fluxes(window, rule.inverse_cfl);
   const std::ptrdiff_t step = rule.forward ? of.pitch : -of.pitch;
   double* sum = of.sum + (rule.forward ? 0 : (of.points - 1) * of.pitch);
-  N in(0.0);
-  const auto put = [&](N out) APSIS_PACKED {
+  const auto put = [&](N difference) APSIS_PACKED {
     const N before = fresh ? N(0.0) : Whole ? N::load(sum) : load_some(sum, of.count);
-    const N after = fma(N(rate), in - out, before);
+    const N after = fma(N(rate), difference, before);
     if constexpr (Whole)
       after.store(sum);
     else
       store_some(after, of.count, sum);
     sum += step;
   };
-  for (int j = 1; j < of.points; ++j) {
-    const N out = fluxes.to(j);
-    put(out);
-    in = out;
-  }
-  put(N(0.0));  // nothing leaves the last point
+  const N in = add_fluxes<Limited, FifthOrder>(values, of.points, N(rule.inverse_cfl), put);
   store_some(in, of.count, of.into_last);
 }
 

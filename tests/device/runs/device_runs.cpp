@@ -180,6 +180,7 @@ std::vector<std::string> flows_of_argon() {
 
 TEST(device_runs, in_a_plane_and_in_space_have_the_bits_of_the_host) {
   std::vector<std::string> flows = flows_of_argon();
+  flows.front() += "[force]\nacceleration = [\"0.2*cos(3*x + 40*t)\", 0.1]\n";
   flows.insert(flows.end(), {flow_in_a_plane, flow_in_space});
   for (const std::string& text : flows) expect_same(run(text, true), run(text, false), text);
 }
@@ -207,7 +208,7 @@ TEST(device_runs, are_refused_before_the_first_step_where_a_kernel_is_missing) {
   };
   refused(changed("formulation = \"finite-difference\"", "formulation = \"finite-volume\""), "formulation");
   refused(gas + "[steady]\ntolerance = 1e-6\n", "a table [steady]");
-  refused(gas + "[force]\nacceleration = [0.1]\n", "force");
+  refused(gas + "[source]\nrho = 0.1\nT = 1\n", "a source is not possible");
   refused(
       "[model]\nname = \"broadwell\"\nepsilon = 1\n[space]\ncells = 20\nformulation = "
       "\"finite-difference\"\n[time]\n" +

@@ -52,14 +52,11 @@ constexpr std::size_t most_shared = 6144;
 
 /// A launch for so many cells, with as many of them in a block as its memory and 128 lanes allow.
 launch_size launch_of_cells(int cells, std::size_t shared_by_cell) {
-  int together = 16;
+  int together = launch_room::cells_of_block;
   while (static_cast<std::size_t>(together) * shared_by_cell > most_shared) together /= 2;
   return {(cells + together - 1) / together, together * lanes_of_cell,
           static_cast<std::size_t>(together) * shared_by_cell};
 }
-
-/// Room of all cells of a launch, 128 MiB; at least 16 cells have some.
-constexpr std::size_t most_room = 1 << 24;
 
 kernels::equilibrium_formulas closed_forms(equilibrium_choice choice) {
   using kernels::equilibrium_formulas;
@@ -87,20 +84,14 @@ device_collision::device_collision(device& on, const model& equation, std::vecto
     : device_(on),
       gas_(gas_of(equation, stages)),
       epsilon_(std::move(epsilon)),
-      cells_(std::move(cells)),
+      cells_(cells.empty() ? std::vector<cell_range>{{0, static_cast<int>(epsilon_.size())}}
+                           : std::move(cells)),
       host_(make_pointwise_collision(equation, epsilon_, keeps_sign, cells_, stages)),
       rows_(device_, gas_.molecules()),
       epsilon_on_device_(epsilon_, device_.memory()),
       marks_(epsilon_.size(), device_.memory()),
-      marks_on_host_(epsilon_.size()) {
-  if (cells_.empty()) cells_.push_back({0, static_cast<int>(epsilon_.size())});
-  for (const cell_range& some : cells_) cells_of_launch_ = std::max(cells_of_launch_, some.end - some.begin);
-  if (const std::size_t of_cell = room_of_cell(gas_, rows_.view()); of_cell > 0) {
-    const auto most = static_cast<int>(std::min(most_room / of_cell, most_room));
-    cells_of_launch_ = std::min(cells_of_launch_, std::max(most / 16 * 16, 16));
-    // The last block may have fewer cells.
-    room_ = stored_numbers((static_cast<std::size_t>(cells_of_launch_) + 16) * of_cell, device_.memory());
-  }
+      marks_on_host_(epsilon_.size()),
+      room_(device_.memory(), cells_, room_of_cell(gas_, rows_.view())) {
   const field row(1, equation.components());
   rest_ = equation.make_collision({1, row.stride(), keeps_sign, stages});
 }
@@ -117,10 +108,11 @@ void device_collision::solve(double, double a, double b, field& u) {
                                  .a = a,
                                  .b = b};
   for (const cell_range& some : cells_) {
-    for (stage.first = some.begin; stage.first < some.end; stage.first = stage.last) {
-      stage.last = std::min(stage.first + cells_of_launch_, some.end);
+    room_.for_parts(some, [&](int first, int last) {
+      stage.first = first;
+      stage.last = last;
       launch(stage);
-    }
+    });
     solve_rest(a, b, some, u);
   }
 }

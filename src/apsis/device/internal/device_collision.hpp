@@ -4,6 +4,7 @@
 #include <apsis/device/internal/collision_stage.hpp>
 #include <apsis/device/internal/device_array.hpp>
 #include <apsis/device/internal/device_gas_rows.hpp>
+#include <apsis/device/internal/launch_room.hpp>
 #include <apsis/model/gas_model.hpp>
 #include <apsis/semidiscrete/collision.hpp>
 
@@ -51,9 +52,9 @@ class device_collision final : public collision {
   std::unique_ptr<point_collision> rest_;
   device_gas_rows rows_;
   device_array<double> epsilon_on_device_;
-  stored_numbers marks_, room_;
+  stored_numbers marks_;
   std::vector<double> marks_on_host_;
-  int cells_of_launch_ = 0;
+  launch_room room_;
   long solved_on_host_ = 0;
 };
 

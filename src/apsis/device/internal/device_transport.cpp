@@ -59,6 +59,7 @@ device_transport::device_transport(device& on, const model& equation, std::share
                                    limited_reconstruction edges, const cell_unknown& unknown,
                                    std::string kernel)
     : device_(on),
+      equation_(equation),
       space_(std::move(space)),
       edges_(std::move(edges)),
       kernel_(std::move(kernel)),
@@ -73,9 +74,12 @@ device_transport::device_transport(device& on, const model& equation, std::share
 }
 
 void device_transport::limit_for_steps(double share) {
+  share_ = share;
   host_.limit_for_steps(share);
-  line_speeds::limit_for_steps(speeds_, share, 0.0, edges_.kappa());
+  const double of_force = force_ ? force_->on_host().rate() : 0.0;
+  line_speeds::limit_for_steps(speeds_, share, of_force, edges_.kappa());
   for (std::size_t k = 0; k < along_.size(); ++k) along_[k].set_speeds(speeds_[k]);
+  if (force_) force_->on_host().limit_for_steps(share);
 }
 
 bool device_transport::add_transport(double t, const field& u, targets_view targets, const cells_job&) const {
@@ -87,6 +91,13 @@ bool device_transport::add_transport(double t, const field& u, targets_view targ
     return false;
   }
   sweep_all(t, u, targets);
+  if (force_) {
+    force_->add(t, u, targets);
+    std::vector<double> given = force_->on_host().given();
+    const auto& losses = force_->on_host().losses();
+    given.insert(given.end(), losses.begin(), losses.end());
+    surfaces_.set_inside(given);
+  }
   return false;
 }
 
@@ -134,8 +145,15 @@ std::vector<double> device_transport::observe_surfaces(double t, const field& u)
   return surfaces_.observed();
 }
 
-void device_transport::set_force(acceleration) {
-  throw input_error("a force is not possible on a device (its kernel is missing); run the case on the host");
+void device_transport::set_force(acceleration of) {
+  const gas_model* gas = equation_.as_gas();
+  if (gas == nullptr || !device_gas_rows::why_not(gas->molecules()).empty())
+    throw input_error(
+        "a force is not possible on a device (its kernel has gases on products of velocity lines alone); run "
+        "the case on the host");
+  force_ = std::make_unique<device_force>(device_, *gas, space_, of, edges_);
+  host_.set_force(std::move(of));
+  limit_for_steps(share_);
 }
 void device_transport::set_rotation(int) {
   throw input_error(

@@ -2,6 +2,7 @@
 
 #include <apsis/boundary/domain.hpp>
 #include <apsis/device/device.hpp>
+#include <apsis/device/internal/device_force.hpp>
 #include <apsis/device/internal/surface_rows.hpp>
 #include <apsis/device/internal/swept_segments.hpp>
 #include <apsis/semidiscrete/upwind_transport.hpp>
@@ -38,7 +39,7 @@ class device_transport final : public transport {
   std::span<const double> budget_rates() const override { return surfaces_.rates(); }
   std::vector<double> observe_surfaces(double t, const field& u) const override;
 
-  /// Throws input_error: forces are not on the device.
+  /// Throws input_error for a model that is no gas on a product of lines, or as the force does.
   void set_force(acceleration of) override;
   /// Throws input_error: rotations are not on the device.
   void set_rotation(int radial) override;
@@ -55,6 +56,7 @@ class device_transport final : public transport {
   void sweep(int direction, const field& u, std::span<const target<field, double>> targets) const;
 
   device& device_;
+  const model& equation_;
   std::shared_ptr<domain> space_;
   limited_reconstruction edges_;
   std::string kernel_;
@@ -62,6 +64,8 @@ class device_transport final : public transport {
   mutable surface_rows surfaces_;
   std::vector<swept_segments> along_;  ///< [direction]
   std::vector<line_speeds> speeds_;
+  std::unique_ptr<device_force> force_;
+  double share_ = 1.0;  ///< of limit_for_steps()
 };
 
 }  // namespace apsis

@@ -44,6 +44,8 @@ class surface_rows {
   void observe(bool wanted) { faces_.observe(wanted); }
   /// Returns face_fluxes::observed().
   const std::vector<double>& observed() const { return faces_.observed(); }
+  /// As face_fluxes::set_inside(), after complete().
+  void set_inside(std::span<const double> given) { faces_.set_inside(given); }
   /// Returns face_fluxes::rates().
   std::span<const double> rates() const { return faces_.rates(); }
 

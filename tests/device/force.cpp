@@ -1,0 +1,153 @@
+#include "device_case.hpp"
+
+#include <apsis/core/errors.hpp>
+#include <apsis/device/internal/device_transport.hpp>
+
+#include <algorithm>
+#include <array>
+
+#include <gmock/gmock.h>
+
+namespace device_force_test {
+
+using apsis::field;
+using apsis::grid;
+using apsis::target;
+using limits = apsis::limited_reconstruction::limits;
+
+struct variant {
+  std::vector<int> points;  ///< of every direction of the velocities
+  int degrees;              ///< of freedom
+  std::string scheme;
+  limits limited;
+
+  std::string label() const {
+    std::string text = scheme + (limited == limits::nothing ? "" : " limited");
+    for (const int n : points) text += " " + std::to_string(n);
+    return text + ", " + std::to_string(degrees) + " degrees of freedom";
+  }
+};
+
+std::unique_ptr<apsis::model> gas(const variant& of, const std::vector<std::string>& set = {}) {
+  apsis::model_config config = apsis::default_config(apsis::find_model("bgk"));
+  config.velocity = {4.0, of.points, apsis::equilibrium_choice::automatic, set};
+  config.parameters["velocity_dimensions"] = static_cast<double>(of.points.size());
+  config.parameters["degrees_of_freedom"] = of.degrees;
+  return apsis::find_model("bgk").make(config);
+}
+
+/// A periodic line of cells.
+std::shared_ptr<apsis::domain> line(const grid& mesh, const apsis::model& equation) {
+  const auto side = apsis::make_boundary("periodic");
+  const std::vector<apsis::domain::faces> sides = {{side, side}};
+  return std::make_shared<apsis::domain>(apsis::phase_space(mesh, equation.velocities()), sides);
+}
+
+/// Of either sign, and zero in some directions and cells.
+apsis::acceleration changing(const apsis::model& equation) {
+  apsis::acceleration of;
+  const std::size_t directions = equation.lattice().points.size();
+  std::fill_n(of.largest.begin(), directions, 0.6);
+  of.value = [directions](double t, const apsis::position& x) {
+    std::array<double, 3> a{};
+    for (std::size_t k = 0; k < directions; ++k) {
+      const double wave = 0.5 * std::cos(5.0 * x[0] + t + 2.0 * static_cast<double>(k));
+      a[k] = x[0] > 0.7 ? 0.0 : wave > 0.3 ? 0.0 : wave;
+    }
+    return a;
+  };
+  return of;
+}
+
+TEST(device_force, has_the_bits_of_the_host_in_every_order_of_lanes) {
+  const grid mesh = grid::line(37, 0.0, 1.0);
+  for (const variant& of : {variant{{21}, 1, "weno5-z", limits::nothing},
+                            {{40}, 3, "weno5-z", limits::fluxes},
+                            {{9, 14}, 2, "weno5-z", limits::fluxes},
+                            {{12, 5}, 3, "upwind5", limits::nothing},
+                            {{8, 10}, 3, "upwind1", limits::nothing},
+                            {{6, 7, 9}, 3, "weno5-z", limits::fluxes},
+                            {{6, 7, 5}, 5, "weno5-z", limits::nothing}}) {
+    const auto equation = gas(of);
+    const apsis::limited_reconstruction edges{apsis::find_reconstruction(of.scheme).make(), of.limited};
+    const field u = varied_rows(mesh, *equation, of.limited == limits::fluxes);
+    for (const auto& on : tested_devices()) {
+      apsis::upwind_transport host(*equation, line(mesh, *equation), edges, apsis::point_values());
+      apsis::device_transport there(*on, *equation, line(mesh, *equation), edges, apsis::point_values(),
+                                    apsis::kernel_of_reconstruction(of.scheme));
+      host.set_force(changing(*equation));
+      there.set_force(changing(*equation));
+      EXPECT_EQ(host.forward_euler_step(), there.forward_euler_step());
+      const double step = 0.5 * host.forward_euler_step();
+      field a(mesh.size(), u.components()), b = u, sent(mesh.size(), u.components(), on->memory()), c = sent,
+                                            d = sent, back = a;
+      sent.copy_rows(u);
+      d.copy_rows(u);
+      bit_differences different;
+      for (const double share : {1.0, 0.4}) {
+        host.limit_for_steps(share);
+        there.limit_for_steps(share);
+        const std::array<target<field, double>, 2> on_host = {
+            {{&a, 1.0, share * step, true}, {&b, 0.4, -step, false}}};
+        const std::array<target<field, double>, 2> on_device = {
+            {{&c, 1.0, share * step, true}, {&d, 0.4, -step, false}}};
+        host.add_transport(0.3, u, on_host);
+        there.add_transport(0.3, sent, on_device);
+        back.copy_rows(c);
+        different += different_numbers(mesh, a, back);
+        back.copy_rows(d);
+        different += different_numbers(mesh, b, back);
+        const auto rates = host.budget_rates(), others = there.budget_rates();
+        ASSERT_EQ(rates.size(), others.size());
+        for (std::size_t k = 0; k < rates.size(); ++k)
+          different.compare(rates[k], others[k], [&] { return fmt::format("rate {}", k); });
+      }
+      EXPECT_EQ(different, 0) << of.label();
+    }
+  }
+}
+
+/// A force changes the state, so that the comparison above is one of more than sweeps.
+TEST(device_force, gives_momentum) {
+  const variant of{{21}, 1, "weno5-z", limits::nothing};
+  const auto equation = gas(of);
+  const grid mesh = grid::line(8, 0.0, 1.0);
+  const auto& on = tested_device();
+  apsis::device_transport there(*on, *equation, line(mesh, *equation),
+                                {apsis::find_reconstruction(of.scheme).make(), of.limited},
+                                apsis::point_values(), apsis::kernel_of_reconstruction(of.scheme));
+  there.set_force(
+      {[](double, const apsis::position&) { return std::array{0.25, 0.0, 0.0}; }, {0.25, 0.0, 0.0}});
+  field row(mesh.size(), equation->components()), sent(mesh.size(), equation->components(), on->memory()),
+      rate = sent;
+  apsis::fluid_state state;
+  state.rho = 2.0;
+  state.T = 0.15;
+  for (int cell = 0; cell < mesh.size(); ++cell)
+    equation->as_gas()->molecules().formula(state, 1.0, row.row(cell));
+  sent.copy_rows(row);
+  std::array<double, 3> of_row{};
+  equation->as_gas()->molecules().moments(row.row(0), 0, 1, of_row.data());
+  const target<field, double> to{&rate, 0.0, 1.0, true};
+  there.add_transport(0.0, sent, {&to, 1});
+  row.copy_rows(rate);
+  for (int cell = 0; cell < mesh.size(); ++cell) {
+    std::array<double, 3> omega{};
+    equation->as_gas()->molecules().moments(row.row(cell), 0, 1, omega.data());
+    // ρa to the rounding of sums, as the ends of the velocities are 10 thermal speeds away.
+    EXPECT_NEAR(omega[1], 0.25 * of_row[0], 1e-14);
+  }
+}
+
+TEST(device_force, is_refused_where_velocities_are_not_even) {
+  const variant of{{20}, 1, "weno5-z", limits::nothing};
+  const auto equation = gas(of, {"graded"});
+  const grid mesh = grid::line(8, 0.0, 1.0);
+  apsis::device_transport there(*tested_device(), *equation, line(mesh, *equation),
+                                {apsis::find_reconstruction(of.scheme).make(), of.limited},
+                                apsis::point_values(), apsis::kernel_of_reconstruction(of.scheme));
+  EXPECT_THAT([&] { there.set_force(changing(*equation)); },
+              testing::ThrowsMessage<apsis::input_error>(testing::HasSubstr("equal distances")));
+}
+
+}  // namespace device_force_test

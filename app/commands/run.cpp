@@ -76,7 +76,7 @@ int run_on(const std::shared_ptr<communicator>& processes, run_options options) 
   progress_bar bar;
   options.session.processes = processes;
   run_collectively(*processes, [&] {
-    if (options.device) options.session.on = open_device(*options.device);
+    if (options.device) options.session.on = open_device(*options.device, processes->number_here());
   });
   options.session.command = command_line();
   options.session.stop = interrupted;

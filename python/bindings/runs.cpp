@@ -231,7 +231,7 @@ py::object run_on(const std::shared_ptr<communicator>& processes, const std::opt
   session_options how;
   how.processes = processes;
   run_collectively(*processes, [&] {
-    if (device) how.on = open_device(*device);
+    if (device) how.on = open_device(*device, processes->number_here());
   });
   how.out = out;
   how.restart = restart;

@@ -219,6 +219,17 @@ class SameResults(Folder):
         self.write("step.toml", STEP)
         self.expect_same("step.toml")
 
+    def test_a_device_for_each_process(self):
+        self.write("step.toml", STEP)
+        self.completed(1, "run", "step.toml", "--out", "one")
+        for count in one_of((3, 2, 4), 0):
+            self.completed(count, "run", "step.toml", "--device", "teams", "--out", f"on-{count}")
+            self.assert_same_results("one", f"on-{count}")
+        self.completed(2, "run", "step.toml", "time.end=0.01", "--device", "teams", "--out", "half")
+        self.completed(3, "run", "step.toml", "--restart", "half/checkpoint.h5", "--out", "rest")
+        for name in ("fields.csv", "history.csv"):
+            self.assertEqual((self.folder / "one" / name).read_text(), (self.folder / "rest" / name).read_text())
+
     def test_bodies_in_the_plane_across_all_borders(self):
         self.write("bodies.toml", BODIES)
         self.expect_same("bodies.toml", counts=one_of((5, 3, 2), 0))

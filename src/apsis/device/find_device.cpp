@@ -18,14 +18,15 @@ std::vector<found_device> found_devices() {
   return all;
 }
 
-std::shared_ptr<device> open_device(const std::string& wanted) {
+std::shared_ptr<device> open_device(const std::string& wanted, int process) {
   const auto all = found_devices();
   std::string there;
   for (std::size_t k = 0; k < all.size(); ++k) {
-    const std::string& place = all[k].place;
-    const bool first = wanted.empty() && k == 0;
-    there += fmt::format("{}{} ({})", k == 0 ? "" : ", ", place, all[k].name);
-    if (!first && wanted != std::to_string(k) && wanted != place) continue;
+    there += fmt::format("{}{} ({})", k == 0 ? "" : ", ", all[k].place, all[k].name);
+    const bool by_number = wanted == std::to_string(k) || (wanted.empty() && k == 0);
+    if (!by_number && wanted != all[k].place) continue;
+    const std::size_t mine = by_number ? (k + static_cast<std::size_t>(process)) % all.size() : k;
+    const std::string& place = all[mine].place;
     const std::size_t colon = place.find(':');
     for (const device_backend_entry* kind : device_backend_entries())
       if (kind->name == place.substr(0, colon)) return kind->open(std::stoi(place.substr(colon + 1)));

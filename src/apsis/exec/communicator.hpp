@@ -55,6 +55,8 @@ class communicator {
 
   /// Returns the number of processes on the machine of this one, with which it shares processors and memory.
   virtual int processes_here() const { return 1; }
+  /// Returns the number of this process among them, 0 … processes_here() − 1.
+  virtual int number_here() const { return 0; }
   /// Returns the Fortran handle of the MPI communicator, for libraries that communicate themselves; −1 for a
   /// single process.
   virtual std::int64_t handle() const { return -1; }

@@ -117,7 +117,6 @@ void run_setup::move_to_device() {
   if (config_.space.discretization != "finite-difference")
     missing("space.formulation", "space.formulation = \"" + config_.space.discretization + "\"");
   if (config_.steady_state.tolerance) missing("steady", "a table [steady]");
-  if (builder_.processes().size() > 1) missing("space.cells", "a mesh that several processes share");
   builder_.with_discretization(on_device(*device_, config_.space.reconstruction));
 }
 

@@ -1,13 +1,15 @@
 // A library with the functions of the CUDA driver that Apsis calls. Its device is memory of the host, and its
 // kernels are those of the host, run by teams of lanes. The variable FAKE_DEVICE makes it fail: "old" for a
 // device of compute capability 6.1, "old-driver", "small" for a device with 1 MB, "lost" for one that fails
-// after ten launches, "wrong" for one with a wrong last bit in the first number of every result.
+// after ten launches, "wrong" for one with a wrong last bit in the first number of every result. There are
+// three devices with "three".
 #include <apsis/device/internal/kernel_table.hpp>
 #include <apsis/device/lane_team.hpp>
 
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
+#include <string>
 #include <string_view>
 
 namespace {
@@ -25,6 +27,10 @@ std::size_t size() {
   return behaves("small") ? one_megabyte : 1024 * one_megabyte;
 }
 
+int devices() {
+  return behaves("three") ? 3 : 1;
+}
+
 template <class T>
 T* at(std::uint64_t address) {
   return reinterpret_cast<T*>(address);
@@ -38,15 +44,16 @@ int cuInit(unsigned) {
   return 0;
 }
 int cuDeviceGetCount(int* count) {
-  *count = 1;
+  *count = devices();
   return 0;
 }
 int cuDeviceGet(int* device, int number) {
   *device = number;
-  return number == 0 ? 0 : 101;
+  return number < devices() ? 0 : 101;
 }
-int cuDeviceGetName(char* name, int length, int) {
-  std::strncpy(name, "fake processor", static_cast<std::size_t>(length));
+int cuDeviceGetName(char* name, int length, int device) {
+  const std::string text = "fake processor" + (device > 0 ? " " + std::to_string(device) : std::string());
+  std::strncpy(name, text.c_str(), static_cast<std::size_t>(length));
   return 0;
 }
 int cuDeviceGetAttribute(int* value, int attribute, int) {

@@ -20,7 +20,7 @@ using testing::HasSubstr;
 
 namespace {
 
-/// Makes the device fail in a way while it lives.
+/// Makes the driver behave in a way while it lives.
 class failing {
  public:
   explicit failing(const char* way) { setenv("FAKE_DEVICE", way, 1); }
@@ -59,6 +59,19 @@ TEST(with_driver, a_device_is_found_and_opened_by_its_number_and_place) {
   EXPECT_THAT([] { open_device("1"); },
               testing::ThrowsMessage<input_error>(
                   HasSubstr("no device '1' (this machine has cuda:0 (fake processor)); give one of these")));
+}
+
+TEST(with_driver, processes_of_a_machine_take_its_devices_in_turn) {
+  const failing now("three");
+  const auto name = [](const std::string& wanted, int process) {
+    return open_device(wanted, process)->name();
+  };
+  EXPECT_EQ(name("0", 0), "fake processor");
+  EXPECT_EQ(name("0", 2), "fake processor 2");
+  EXPECT_EQ(name("1", 1), "fake processor 2");
+  EXPECT_EQ(name("1", 2), "fake processor");
+  EXPECT_EQ(name("0", 7), "fake processor 1");
+  for (const int process : {0, 1, 2}) EXPECT_EQ(name("cuda:1", process), "fake processor 1");
 }
 
 TEST(with_driver, a_run_has_the_bits_of_the_host) {

@@ -1,5 +1,6 @@
 #include <apsis/device/internal/device_force.hpp>
 
+#include <apsis/core/first_error.hpp>
 #include <apsis/device/internal/kernels/add_force.hpp>
 
 #include <algorithm>
@@ -59,7 +60,19 @@ void device_force::set_accelerations(double t) {
 }
 
 void device_force::add(double t, const field& u, std::span<const target<field, double>> targets) {
-  set_accelerations(t);
+  first_error failure;
+  failure.run([&] {
+    set_accelerations(t);
+    change(u, targets);
+  });
+  host_.balance(sums_on_host_, [this](int cell) {
+    const double* a = accelerations_.data() + 3l * cell;
+    return std::array{a[0], a[1], a[2]};
+  });
+  failure.rethrow();
+}
+
+void device_force::change(const field& u, std::span<const target<field, double>> targets) {
   const lattice_rows::flux_rule rule = host_.rule_for(1.0);
   kernel::arguments of{};
   of.u = u.row(0);
@@ -93,10 +106,6 @@ void device_force::add(double t, const field& u, std::span<const target<field, d
       });
   }
   device_.memory().copy_to_host(sums_.data(), sums_on_host_.size(), sums_on_host_.data());
-  host_.balance(sums_on_host_, [this](int cell) {
-    const double* a = accelerations_.data() + 3l * cell;
-    return std::array{a[0], a[1], a[2]};
-  });
 }
 
 }  // namespace apsis

@@ -20,7 +20,7 @@ class device_force {
   device_force(device& on, const gas_model& gas, std::shared_ptr<domain> space, acceleration of,
                const limited_reconstruction& edges);
 
-  /// As force::add(), for states on the device.
+  /// As force::add(), for states on the device. Collective, also where a process fails.
   void add(double t, const field& u, std::span<const target<field, double>> targets);
   /// Returns the force on the host, with what the last add() gave and lost.
   force& on_host() { return host_; }
@@ -29,6 +29,7 @@ class device_force {
 
  private:
   void set_accelerations(double t);
+  void change(const field& u, std::span<const target<field, double>> targets);
 
   device& device_;
   std::shared_ptr<domain> space_;

@@ -1,6 +1,7 @@
 #include <apsis/device/internal/device_transport.hpp>
 
 #include <apsis/core/errors.hpp>
+#include <apsis/core/first_error.hpp>
 #include <apsis/device/internal/kernel_table.hpp>
 #include <apsis/device/internal/kernels/combine.hpp>
 #include <apsis/device/internal/row_launch.hpp>
@@ -50,7 +51,6 @@ std::string device_transport::why_not(const model& equation, const domain& space
   if (equation.space_dimensions() == 0) return "the model has no space";
   if (equation.has_source()) return "the model has a source";
   if (edges.limits_edges()) return "edge values are limited";
-  if (space.shared()) return "several processes share the mesh";
   if (space.mesh().cut() != nullptr) return "the mesh has bodies";
   return "";
 }
@@ -90,15 +90,22 @@ bool device_transport::add_transport(double t, const field& u, targets_view targ
     }
     return false;
   }
-  sweep_all(t, u, targets);
-  if (force_) {
-    force_->add(t, u, targets);
-    std::vector<double> given = force_->on_host().given();
-    const auto& losses = force_->on_host().losses();
-    given.insert(given.end(), losses.begin(), losses.end());
-    surfaces_.set_inside(given);
-  }
+  first_error failure;
+  failure.run([&] { sweep_all(t, u, targets); });
+  if (force_) add_force(t, u, targets, failure);
+  failure.rethrow();
   return false;
+}
+
+/// Its sums are those of all processes, even if this one has failed.
+void device_transport::add_force(double t, const field& u, targets_view targets, first_error& failure) const {
+  failure.run([&] { force_->add(t, u, targets); });
+  std::vector<double> given = force_->on_host().given();
+  const auto& losses = force_->on_host().losses();
+  given.insert(given.end(), losses.begin(), losses.end());
+  // One process keeps what all have received together.
+  if (!space_->processes().is_root()) std::fill(given.begin(), given.end(), 0.0);
+  surfaces_.set_inside(given);
 }
 
 void device_transport::sweep_all(double t, const field& u, targets_view targets) const {

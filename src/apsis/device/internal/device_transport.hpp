@@ -14,6 +14,8 @@
 
 namespace apsis {
 
+class first_error;
+
 /// Returns the name of the kernel with the edges of a reconstruction, "sweep_weno5_z" of "weno5-z". Throws
 /// input_error if that kernel is missing.
 std::string kernel_of_reconstruction(const std::string& name);
@@ -52,6 +54,8 @@ class device_transport final : public transport {
   bool source_depends_on_state() const override { return false; }
 
  private:
+  void add_force(double t, const field& u, std::span<const target<field, double>> targets,
+                 first_error& failure) const;
   void sweep_all(double t, const field& u, std::span<const target<field, double>> targets) const;
   void sweep(int direction, const field& u, std::span<const target<field, double>> targets) const;
 

@@ -30,6 +30,7 @@ surface_rows::surface_rows(device& on, const model& equation, std::shared_ptr<do
     first_at_surface_.push_back(ends_);
     ends_ += one.own;
   }
+  space_->exchange(mirror_);  // so that rows of other processes have their places
   number_sent_rows();
   list_inside_rows();
   list_entries();
@@ -58,8 +59,22 @@ void surface_rows::number_sent_rows() {
   }
 }
 
+/// Other processes need the rows next to borders with them.
+void surface_rows::list_rows_of_others() {
+  const grid& mesh = space_->mesh();
+  for (int direction = 0; direction < mesh.dimensions(); ++direction) {
+    if (!space_->splits(direction)) continue;
+    const int cells = mesh.cells(direction);
+    for (int pencil = 0; pencil < mesh.pencils(direction); ++pencil)
+      for (int k = 0; k < cells; ++k)
+        if (k < ghosts_ || k >= cells - ghosts_)
+          inside_.push_back(mesh.first_cell(direction, pencil) + k * mesh.stride(direction));
+  }
+}
+
 /// Boundaries read as many rows inside as there are beyond, and three at least.
 void surface_rows::list_inside_rows() {
+  list_rows_of_others();
   constexpr int least = 3;
   for (int number = 0; number < static_cast<int>(space_->surfaces().size()); ++number) {
     if (space_->repeats(number)) continue;

@@ -58,6 +58,7 @@ class surface_rows {
   };
 
   void number_sent_rows();
+  void list_rows_of_others();
   void list_inside_rows();
   void list_entries();
   void send(const std::vector<double>& from, const field& to) const;
@@ -68,7 +69,7 @@ class surface_rows {
   int ghosts_;
   face_fluxes faces_;
   field mirror_;             ///< the rows next to surfaces, of all cells on the host
-  std::vector<int> inside_;  ///< cells whose rows boundaries read
+  std::vector<int> inside_;  ///< cells whose rows boundaries or other processes read
   device_array<int> inside_on_device_;
   std::unordered_map<const double*, int> sent_numbers_;
   std::vector<const double*> sent_from_;  ///< rows beyond ends on the host

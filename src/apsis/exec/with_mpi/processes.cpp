@@ -42,6 +42,7 @@ class mpi_communicator final : public communicator {
     check_mpi(MPI_Comm_split_type(all_, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &here),
               "MPI_Comm_split_type");
     MPI_Comm_size(here, &here_);
+    MPI_Comm_rank(here, &number_here_);
     MPI_Comm_free(&here);
     notice_ = std::make_unique<failure_notice>(ends_);
   }
@@ -62,6 +63,7 @@ class mpi_communicator final : public communicator {
   int rank() const override { return rank_; }
   int size() const override { return size_; }
   int processes_here() const override { return here_; }
+  int number_here() const override { return number_here_; }
   std::int64_t handle() const override { return MPI_Comm_c2f(all_); }
   bool all_call_within(double seconds) override {
     MPI_Request request = MPI_REQUEST_NULL;
@@ -291,7 +293,7 @@ class mpi_communicator final : public communicator {
   std::shared_ptr<void> session_;
   MPI_Comm all_ = MPI_COMM_NULL,
            ends_ = MPI_COMM_NULL;  ///< the second one for all_call_within() and failures
-  int rank_ = 0, size_ = 1, here_ = 1;
+  int rank_ = 0, size_ = 1, here_ = 1, number_here_ = 0;
   pending exchange_, discarded_;
   std::vector<std::byte> unread_;
   std::unique_ptr<failure_notice> notice_;

@@ -11,6 +11,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <integrate/ode_model.hpp>
 #include <integrate/random.hpp>
 #include <integrate/reference.hpp>
 #include <support/bad_input.hpp>
@@ -219,6 +220,26 @@ struct decay_by_hand {
     hx[1] = 2e8 * k[0] * x[0];
   }
 };
+
+// One of two rates vanishes: where rounding errors of the linear solve counted as its size, one run in five
+// ended without a solution.
+TEST(unsquared_newton, ends_where_a_rate_vanishes) {
+  for (const char* method : {"md-imex-6-3", "md-imex-16-4-accurate"})
+    for (const double epsilon : {1e-6, 1e-8, 1e-10})
+      for (int k = 0; k < 20; ++k) {
+        auto by_newton = ode_model::as_newton(epsilon);
+        auto in_closed_form = ode_model::as_relaxation(epsilon);
+        row u{2 + 1e-3 * k, 0}, expected = u;
+        apsis::stepper march(apsis::find_method(method), by_newton);
+        apsis::stepper closed(apsis::find_method(method), in_closed_form);
+        const auto rule = apsis::step_rule<double>::fixed(1.0 / 64);
+        apsis::integrate(march, u, 0.0, 1.0, rule);
+        apsis::integrate(closed, expected, 0.0, 1.0, rule);
+        // Roundings of 64 steps, of about 16 stages each, are below 1e-13.
+        EXPECT_NEAR(u[0], expected[0], 1e-12) << method << ", epsilon " << epsilon << ", " << k;
+        EXPECT_NEAR(u[1], expected[1], 1e-12) << method << ", epsilon " << epsilon << ", " << k;
+      }
+}
 
 TEST(newton_problem, accepts_derivatives_by_hand) {
   int products = 0;

@@ -136,6 +136,16 @@ class unsquared {
     lu_.compute(rows_.asDiagonal() * m * cols_.asDiagonal());
     const square inverse = cols_.asDiagonal() * lu_.inverse() * rows_.asDiagonal();
     noise_ = rounding * (inverse.cwiseAbs() * terms + x_.cwiseAbs());
+    // A rate need not be more accurate than the residual shows: one that vanishes has no terms, but rounding
+    // errors of the linear solve.
+    for (Eigen::Index i = 0; i < n_; ++i) {
+      const auto effects = m.col(n_ + i).head(n_).cwiseAbs();
+      Real invisible = std::numeric_limits<Real>::infinity();
+      for (Eigen::Index j = 0; j < n_; ++j)
+        if (effects[j] > Real(0)) invisible = std::min(invisible, rounding * terms[j] / effects[j]);
+      if (invisible < std::numeric_limits<Real>::infinity())
+        noise_[n_ + i] = std::max(noise_[n_ + i], invisible);
+    }
   }
 
   /// Chooses powers of 2 that bring the largest entries of rows and columns near 1.

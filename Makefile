@@ -10,7 +10,7 @@ export CTEST_PARALLEL_LEVEL ?= $(shell echo $$(($(CORES) + 1)))
 # For whole builds: several files are compiled as one, with precompiled headers.
 WHOLE := -DAPSIS_PCH=ON -DCMAKE_UNITY_BUILD=ON
 
-FORMATTED = $(shell find src app paper validation tests bench examples python -name '*.[ch]pp' 2>/dev/null)
+FORMATTED = $(shell find src app paper validation tests bench examples python -name '*.[ch]pp' -o -name '*.[ch]' 2>/dev/null)
 
 .DEFAULT_GOAL := help
 .PHONY: help run validate reproduce study program figures test test-all test-slow device-check clang asan tsan bench packages format format-check tidy docs docs-links clean

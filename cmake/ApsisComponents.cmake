@@ -3,8 +3,9 @@
 #   integrate   the methods and the time integrator, for any problem
 #   kinetic     the solver of kinetic equations
 #   design      the search for new methods
+#   c           the C interface of integrate, a shared library
 # exec cannot be requested as a component; it is the common part of kinetic and design.
-set(apsis_components integrate kinetic design)
+set(apsis_components integrate kinetic design c)
 foreach(component IN LISTS APSIS_COMPONENTS)
   if(NOT component IN_LIST apsis_components)
     list(JOIN apsis_components ", " valid)
@@ -32,8 +33,8 @@ endif()
 
 # In order of dependence.
 set(apsis_parts "")
-foreach(part integrate exec kinetic design)
-  if(part IN_LIST apsis_components OR (part STREQUAL exec AND NOT apsis_components STREQUAL "integrate"))
+foreach(part integrate exec kinetic design c)
+  if(part IN_LIST apsis_components OR (part STREQUAL exec AND apsis_components MATCHES "kinetic|design"))
     list(APPEND apsis_parts ${part})
   endif()
 endforeach()

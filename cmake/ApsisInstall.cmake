@@ -12,10 +12,19 @@ foreach(part IN LISTS apsis_parts)
   if(part STREQUAL kinetic)
     list(APPEND targets apsis_kinetic)
   endif()
+  set(libraries program)
+  if(part STREQUAL c)
+    set(libraries c_library)
+  endif()
   install(TARGETS ${targets} EXPORT apsisTargets-${part}
           ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT development
-          LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT program NAMELINK_COMPONENT development)
+          LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT ${libraries} NAMELINK_COMPONENT development)
   install(EXPORT apsisTargets-${part} NAMESPACE apsis:: DESTINATION ${apsis_package_dir} COMPONENT development)
+  if(part STREQUAL c)
+    install(FILES ${PROJECT_SOURCE_DIR}/src/apsis/apsis.h ${PROJECT_SOURCE_DIR}/src/apsis/apsis.f90
+            DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/apsis COMPONENT development)
+    set(rooms "")  # its other headers are internal
+  endif()
   foreach(room IN LISTS rooms)
     install(DIRECTORY ${PROJECT_SOURCE_DIR}/src/apsis/${room} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/apsis
             COMPONENT development FILES_MATCHING PATTERN "*.hpp" PATTERN internal EXCLUDE)
@@ -30,6 +39,10 @@ foreach(part IN LISTS apsis_parts)
   string(APPEND apsis_package_lists "set(apsis_packages_${part} ${packages})\n")
 endforeach()
 
+set(apsis_needed_by_c "")
+if(BUILD_SHARED_LIBS)
+  set(apsis_needed_by_c integrate) # whose libraries it loads
+endif()
 configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/apsisConfig.cmake.in
   ${PROJECT_BINARY_DIR}/apsisConfig.cmake INSTALL_DESTINATION ${apsis_package_dir}
   NO_SET_AND_CHECK_MACRO)
@@ -47,7 +60,8 @@ install(FILES ${PROJECT_SOURCE_DIR}/LICENSE ${PROJECT_SOURCE_DIR}/CITATION.cff
 if(NOT PROJECT_IS_TOP_LEVEL)
   return()
 endif()
-# Debian packages (cpack): apsis, the program, and libapsis-dev, for programs that use the library.
+# Debian packages (cpack): apsis, the program; libapsis-dev, for programs that use the library; and libapsis-cN with the
+# library of the C interface, which such programs need to run.
 file(STRINGS ${PROJECT_SOURCE_DIR}/scripts/packages.txt run_lines REGEX "^run ")
 string(REGEX MATCHALL "[a-z0-9+-]+-dev" development_packages "${run_lines}")
 if(NOT "design" IN_LIST apsis_parts)
@@ -60,6 +74,14 @@ set(CPACK_PACKAGE_CONTACT "The Apsis maintainers")
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_STRIP_FILES ON)
 set(CPACK_COMPONENTS_ALL program development)
+if(TARGET apsis_c)
+  get_target_property(abi apsis_c SOVERSION)
+  list(APPEND CPACK_COMPONENTS_ALL c_library)
+  set(CPACK_DEBIAN_C_LIBRARY_PACKAGE_NAME libapsis-c${abi})
+  set(CPACK_DEBIAN_C_LIBRARY_PACKAGE_SECTION libs)
+  set(CPACK_DEBIAN_C_LIBRARY_PACKAGE_SHLIBDEPS ON)
+  string(APPEND development_packages ", libapsis-c${abi} (= ${PROJECT_VERSION})")
+endif()
 set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)

@@ -5,7 +5,8 @@
 #
 # PUBLIC and PRIVATE as in target_link_libraries; INSIDE is for packages of headers that only sources include, which users
 # of the installed library therefore do not need. The component is kinetic if not given; a room of a component that is
-# not built (ApsisComponents.cmake) is skipped.
+# not built (ApsisComponents.cmake) is skipped. C_INTERFACE names the header of a room with a C interface: always a shared
+# library, with static rooms inside, the symbols of its exported.map alone, and the APSIS_ABI_VERSION of the header in its name.
 
 add_library(apsis_options INTERFACE)
 target_compile_features(apsis_options INTERFACE cxx_std_20)
@@ -55,8 +56,19 @@ if(APSIS_PCH)
     <boost/multiprecision/cpp_bin_float.hpp> <fmt/format.h> <fmt/ranges.h>)
 endif()
 
+# Names and exports of a library with a C interface; `header` defines APSIS_ABI_VERSION.
+function(apsis_c_library name header)
+  file(STRINGS ${header} version REGEX "^#define APSIS_ABI_VERSION [0-9]+$")
+  string(REGEX MATCH "[0-9]+$" version "${version}")
+  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${header})
+  set(map ${CMAKE_CURRENT_SOURCE_DIR}/${name}/exported.map)
+  target_link_options(apsis_${name} PRIVATE LINKER:--version-script=${map})
+  set_target_properties(apsis_${name} PROPERTIES LINK_DEPENDS ${map} INSTALL_RPATH "$ORIGIN"
+                        VERSION ${version}.${PROJECT_VERSION} SOVERSION ${version})
+endfunction()
+
 function(apsis_room name)
-  cmake_parse_arguments(ROOM "KERNELS" "COMPONENT" "DEPENDS;PUBLIC;PRIVATE;INSIDE;GENERATED" ${ARGN})
+  cmake_parse_arguments(ROOM "KERNELS" "COMPONENT;C_INTERFACE" "DEPENDS;PUBLIC;PRIVATE;INSIDE;GENERATED" ${ARGN})
   if(NOT ROOM_COMPONENT)
     set(ROOM_COMPONENT kinetic)
   endif()
@@ -79,7 +91,13 @@ function(apsis_room name)
       set_source_files_properties(${source} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
     endif()
   endforeach()
-  add_library(apsis_${name} ${sources} ${ROOM_GENERATED})
+  set(kind "")
+  set(to_users PUBLIC)
+  if(ROOM_C_INTERFACE)
+    set(kind SHARED)
+    set(to_users PRIVATE)  # who do not read C++
+  endif()
+  add_library(apsis_${name} ${kind} ${sources} ${ROOM_GENERATED})
   add_library(apsis::${name} ALIAS apsis_${name})
   set_target_properties(apsis_${name} PROPERTIES EXPORT_NAME ${name} POSITION_INDEPENDENT_CODE ON CXX_EXTENSIONS OFF
     # Exports of a room are not marked, so all symbols are visible, regardless of the settings of an enclosing project.
@@ -87,17 +105,19 @@ function(apsis_room name)
     # Static and shared libraries have the same compile flags.
     DEFINE_SYMBOL "")
   get_target_property(type apsis_${name} TYPE)
-  if(type STREQUAL SHARED_LIBRARY)
+  if(ROOM_C_INTERFACE)
+    apsis_c_library(${name} ${CMAKE_CURRENT_SOURCE_DIR}/${ROOM_C_INTERFACE})
+  elseif(type STREQUAL SHARED_LIBRARY)
     # Before 1.0 a minor version may change the interface.
     set_target_properties(apsis_${name} PROPERTIES INSTALL_RPATH "$ORIGIN" VERSION ${PROJECT_VERSION}
       SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
   endif()
-  target_compile_features(apsis_${name} PUBLIC cxx_std_20)
+  target_compile_features(apsis_${name} ${to_users} cxx_std_20)
   target_include_directories(apsis_${name} PUBLIC
     $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/src> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
   list(TRANSFORM ROOM_DEPENDS PREPEND apsis_)
   list(TRANSFORM ROOM_INSIDE REPLACE "(.+)" "$<BUILD_INTERFACE:\\1>")
-  target_link_libraries(apsis_${name} PUBLIC ${ROOM_DEPENDS} ${ROOM_PUBLIC})
+  target_link_libraries(apsis_${name} ${to_users} ${ROOM_DEPENDS} ${ROOM_PUBLIC})
   target_link_libraries(apsis_${name} PRIVATE $<BUILD_INTERFACE:apsis_options> ${ROOM_PRIVATE} ${ROOM_INSIDE})
   if(ROOM_KERNELS)
     target_link_libraries(apsis_${name} PRIVATE $<BUILD_INTERFACE:apsis_kernel_options>)

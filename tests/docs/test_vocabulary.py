@@ -85,7 +85,7 @@ def page_texts(source):
     return texts
 
 
-READERS = {".cpp": cpp_texts, ".hpp": cpp_texts, ".py": python_texts, ".toml": hash_texts, ".txt": hash_texts, ".md": page_texts}
+READERS = {".cpp": cpp_texts, ".hpp": cpp_texts, ".h": cpp_texts, ".py": python_texts, ".toml": hash_texts, ".txt": hash_texts, ".md": page_texts}
 
 
 def files_of(place):

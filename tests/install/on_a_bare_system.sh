@@ -16,7 +16,7 @@ chroot "$root" bash -euo pipefail -c '
   apt-get install -qq -y --no-install-recommends /packages/apsis_*.deb >/log 2>&1 || { tail /log; exit 1; }
   apsis run paper/ode --out /result | grep complete
   apsis info >/dev/null
-  apt-get install -qq -y --no-install-recommends /packages/libapsis-dev_*.deb g++-12 cmake ninja-build >/log 2>&1 || { tail /log; exit 1; }
+  apt-get install -qq -y --no-install-recommends /packages/libapsis-dev_*.deb /packages/libapsis-c[0-9]*_*.deb g++-12 cmake ninja-build >/log 2>&1 || { tail /log; exit 1; }
   cmake -S /consumer -B /built -G Ninja -DCMAKE_CXX_COMPILER=g++-12 -DCMAKE_C_COMPILER=gcc-12 -DCMAKE_BUILD_TYPE=Release >/dev/null
   cmake --build /built >/log && /built/consumer'
 rm -f "$root.log"

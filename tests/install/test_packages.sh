@@ -5,13 +5,21 @@ commands=$(cd "$(dirname "${BASH_SOURCE[0]}")/../../app/commands" && ls)
 build=$1 work=$2
 rm -rf "$work" && mkdir -p "$work/root"
 (cd "$build" && cpack -B "$work" >"$work/cpack.log") || { cat "$work/cpack.log" && exit 1; }
-program=$(echo "$work"/apsis_*.deb) development=$(echo "$work"/libapsis-dev_*.deb)
+program=$(echo "$work"/apsis_*.deb) development=$(echo "$work"/libapsis-dev_*.deb) c_library=$(echo "$work"/libapsis-c[0-9]*_*.deb)
 
 depends=$(dpkg-deb -f "$program" Depends)
 for library in libhdf5 libhwy libc6; do
   grep -q "$library" <<<"$depends" || { echo "$library is not among the dependencies: $depends" && exit 1; }
 done
 dpkg-deb -f "$development" Depends | grep -q libhdf5-dev
+
+# The library of the C interface is a package of its own, which the other two packages do not contain.
+depends=$(dpkg-deb -f "$c_library" Depends)
+grep -q libstdc++6 <<<"$depends" || { echo "libstdc++6 is not among the dependencies: $depends" && exit 1; }
+dpkg-deb -c "$c_library" | grep 'libapsis_c\.so\.[0-9]* ->' >/dev/null
+dpkg-deb -c "$development" | grep 'libapsis_c\.so ->' >/dev/null
+dpkg-deb -f "$development" Depends | grep -q "$(dpkg-deb -f "$c_library" Package) (= $(dpkg-deb -f "$c_library" Version))"
+if dpkg-deb -c "$program" | grep libapsis_c; then exit 1; fi
 
 dpkg-deb -x "$program" "$work/root"
 cd "$work"

@@ -1,0 +1,257 @@
+/// The C interface of Apsis: methods, and time integration of u' = T(t, u) + Q(u) over arrays of doubles.
+///
+/// The transport T is explicit; the collision Q is stiff, implicit, and does not depend on t. All quantities
+/// are dimensionless. docs/linking.md has an example, and states what later versions preserve.
+///
+/// Functions that return an int return one of apsis_status, and never end the program. Errors are negative;
+/// apsis_error_message() describes the last one of the calling thread. There is no global state: threads may
+/// use different handles simultaneously, and the same method, but not the same integrator.
+#ifndef APSIS_APSIS_H
+#define APSIS_APSIS_H
+
+#include <stddef.h>
+
+/// Version of the binary interface, part of the name of the library file. It changes with every change that a
+/// compiled program could notice; additions leave it as it is.
+#define APSIS_ABI_VERSION 1
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/// Results of functions. Errors are negative.
+enum apsis_status {
+  APSIS_OK = 0,                ///< success; of apsis_integrate(): the requested time is reached
+  APSIS_STOPPED = 1,           ///< the observer ended the integration
+  APSIS_INPUT_ERROR = -1,      ///< an invalid argument, name, file or combination of settings
+  APSIS_NUMERICAL_ERROR = -2,  ///< a step failed: NaN, no convergence, a state that a callback rejects
+  APSIS_FILE_ERROR = -3,       ///< a file cannot be read
+  APSIS_CLAIM_ERROR = -4,      ///< a method does not have the properties that its file claims
+  APSIS_CALLBACK_ERROR = -5,   ///< a callback returned a negative number
+  APSIS_MEMORY_ERROR = -6,     ///< memory is exhausted
+  APSIS_INTERNAL_ERROR = -7    ///< an error of Apsis itself
+};
+
+/// Returns the APSIS_ABI_VERSION of the library, to be compared with that of the header.
+int apsis_abi_version(void);
+/// Returns the version of the library, "1.2.3".
+const char* apsis_version(void);
+/// Returns the message of the last error of this thread, "problem (reason); suggestion."; "" before the
+/// first. Valid until the next error of this thread.
+const char* apsis_error_message(void);
+
+// Methods ---------------------------------------------------------------------------------------------------
+
+/// A certified time integrator. Its functions are thread-safe, also on the same method.
+typedef struct apsis_method apsis_method;
+
+/// Returns the number of methods of the catalogue. Members of families, such as "md-imex-chain-5-2", are
+/// found by name and not counted.
+size_t apsis_catalogue_size(void);
+/// Returns the name of a method of the catalogue, index from 0; NULL beyond the last. Valid to the end of the
+/// program.
+const char* apsis_catalogue_name(size_t index);
+
+/// Sets *method to the method called `name`, which apsis_free_method() releases: a method of the catalogue, a
+/// member of a family, a formula such as "imex-bdf-3", or a method file given by its path, FILE.toml. Methods
+/// are certified when they are loaded. Errors: APSIS_INPUT_ERROR with the nearest name, APSIS_FILE_ERROR, or
+/// APSIS_CLAIM_ERROR if a claim of a file does not hold; *method is then NULL.
+int apsis_find_method(const char* name, apsis_method** method);
+/// Releases a method; integrators made from it remain valid. NULL is ignored.
+void apsis_free_method(apsis_method* method);
+
+/// Returns the name of a method; "" for NULL. Valid as long as the method.
+const char* apsis_method_name(const apsis_method* method);
+/// Returns its title, one line; "" for NULL. Valid as long as the method.
+const char* apsis_method_title(const apsis_method* method);
+/// Returns its kind, "runge-kutta", "exponential", "two-step" or "imex-bdf"; "" for NULL.
+const char* apsis_method_kind(const apsis_method* method);
+/// Returns its order p; 0 for NULL.
+int apsis_method_order(const apsis_method* method);
+/// Returns the number k of steps: u^{n+1} depends on u^{n+1−k}, …, u^n; 0 for NULL.
+int apsis_method_steps(const apsis_method* method);
+/// Returns its number s of stages; 0 for NULL.
+size_t apsis_method_stages(const apsis_method* method);
+/// Returns its SSP coefficient r: steps Δt ≤ r Δt_FE preserve what forward Euler steps of T preserve. 0 if
+/// there is no such step, and for NULL.
+double apsis_method_ssp_coefficient(const apsis_method* method);
+
+/// Requirements of a method.
+enum apsis_needs {
+  APSIS_NEEDS_RATE = 1,        ///< evaluates Q(u): apsis_set_rate()
+  APSIS_NEEDS_FLOW = 2,        ///< solves u' = Q(u) exactly: apsis_set_flow()
+  APSIS_NEEDS_EQUAL_STEPS = 4  ///< steps have equal lengths: apsis_set_step(), without a tolerance
+};
+/// Returns the sum of the apsis_needs of a method; 0 for NULL.
+int apsis_method_needs(const apsis_method* method);
+
+/// Coefficients of a method with s stages. Matrices are s × s, row by row; for the equations of both forms
+/// see docs/methods.md.
+enum apsis_coefficients {
+  APSIS_SHU_OSHER_P = 0,     ///< p_ij, s × s
+  APSIS_SHU_OSHER_W = 1,     ///< w_ij, s × s
+  APSIS_SHU_OSHER_D = 2,     ///< d_ij, s × s
+  APSIS_SHU_OSHER_DDOT = 3,  ///< ḋ_i, s numbers ≤ 0
+  APSIS_SHU_OSHER_R = 4,     ///< r, one number
+  APSIS_BUTCHER_A_HAT = 5,   ///< â_ij of T, s × s
+  APSIS_BUTCHER_A = 6,       ///< a_ij of Q, s × s
+  APSIS_BUTCHER_A_DOT = 7    ///< ȧ_ij of Q̇, s × s
+};
+/// Writes coefficients, one of apsis_coefficients, to `values`, correctly rounded: those of the Butcher form
+/// are computed in 60 digits. Error: APSIS_INPUT_ERROR for a formula (kind "imex-bdf"), and for the Butcher
+/// form of a method of two steps.
+int apsis_method_coefficients(const apsis_method* method, int which, double* values);
+/// Sets *text to the method file with exact coefficients. Valid as long as the method. Error:
+/// APSIS_INPUT_ERROR for a formula and for a method of two steps.
+int apsis_method_file(const apsis_method* method, const char** text);
+/// Sets *text to the certificate, properties derived from the coefficients alone: lines "key = value". Valid
+/// as long as the method.
+int apsis_method_certificate(const apsis_method* method, const char** text);
+/// Sets *value to a number of the certificate; flags are 0 or 1. Error: APSIS_INPUT_ERROR with the nearest
+/// key, or if the value is a text.
+int apsis_method_fact(const apsis_method* method, const char* key, double* value);
+
+// Callbacks -------------------------------------------------------------------------------------------------
+
+/// Callbacks return 0 on success. A positive number rejects the state, as if it were NaN: steps controlled by
+/// a tolerance are repeated with a smaller length, and others end the integration with APSIS_NUMERICAL_ERROR.
+/// A negative number ends it with APSIS_CALLBACK_ERROR. `data` is the pointer given to apsis_set_data(), `n`
+/// the number of unknowns in `u`. Outputs have undefined contents before the call.
+
+/// out ← T(t, u).
+typedef int apsis_transport_function(double t, size_t n, const double* u, double* out, void* data);
+/// u ← v, in place, with v = u + a Q(v) + b Q̇(v), Q̇ = Q'Q, a ≥ 0 and b ≤ 0, not both 0; `t` is the time of
+/// the stage. Methods without derivatives have b = 0. If a relaxation time is given, error estimates project
+/// to equilibrium by a = 1e100.
+typedef int apsis_stage_function(double t, double a, double b, size_t n, double* u, void* data);
+/// u ← exp(sQ) u, in place: the solution of u' = Q(u) after a time s ≥ 0.
+typedef int apsis_flow_function(double t, double s, size_t n, double* u, void* data);
+/// q ← Q(u) for one block (apsis_set_block_size), numbered from 0.
+typedef int apsis_rate_function(size_t block, size_t n, const double* u, double* q, void* data);
+/// The n × n entries ∂Q_i/∂u_j of one block, row by row.
+typedef int apsis_jacobian_function(size_t block, size_t n, const double* u, double* jacobian, void* data);
+/// jx ← Q'(u) x for one block. Its error enters the solution through Q̇ = Q'Q.
+typedef int apsis_product_function(size_t block, size_t n, const double* u, const double* x, double* jx,
+                                   void* data);
+/// hx ← Q''(u)[k, x] for one block. Its error only slows Newton's method.
+typedef int apsis_curvature_function(size_t block, size_t n, const double* u, const double* k,
+                                     const double* x, double* hx, void* data);
+/// *result ← a positive time: Δt_FE, or the smallest relaxation time ε/C of the state.
+typedef int apsis_time_function(double t, size_t n, const double* u, double* result, void* data);
+/// *result ← 1 if u, a block, is admissible, such as positive, and 0 if it is not.
+typedef int apsis_admissible_function(size_t block, size_t n, const double* u, int* result, void* data);
+/// Observes u after a step of length dt that ended at t; `step` counts from 1 since apsis_start(). A positive
+/// number ends the integration with APSIS_STOPPED.
+typedef int apsis_observer_function(long long step, double t, double dt, size_t n, const double* u,
+                                    void* data);
+
+// Integrators -----------------------------------------------------------------------------------------------
+
+/// A problem, a method, and a state that advances in time.
+typedef struct apsis_integrator apsis_integrator;
+
+/// Sets *integrator to a new integrator for n unknowns, which apsis_free_integrator() releases. Error:
+/// APSIS_INPUT_ERROR for n = 0; *integrator is then NULL.
+int apsis_new_integrator(const apsis_method* method, size_t n, apsis_integrator** integrator);
+/// Releases an integrator. NULL is ignored.
+void apsis_free_integrator(apsis_integrator* integrator);
+
+/// Every setting may be changed between two calls of apsis_integrate(); NULL removes a callback. In
+/// callbacks, settings are errors (APSIS_INPUT_ERROR), and so are apsis_start() and apsis_integrate().
+
+/// Sets the last argument of all callbacks, initially NULL.
+int apsis_set_data(apsis_integrator* integrator, void* data);
+/// Sets T. Without it T = 0.
+int apsis_set_transport(apsis_integrator* integrator, apsis_transport_function* transport);
+
+/// The collision is given in one of two ways: by apsis_set_stage(), or by apsis_set_rate() with one of
+/// apsis_set_jacobian() and apsis_set_product(), where Newton's method solves the stages. Without a
+/// collision, Q = 0.
+
+/// Sets the solver of stages.
+int apsis_set_stage(apsis_integrator* integrator, apsis_stage_function* stage);
+/// Sets Q. Explicit methods need it, and Newton's method.
+int apsis_set_rate(apsis_integrator* integrator, apsis_rate_function* rate);
+/// Sets the Jacobian of Q as a matrix.
+int apsis_set_jacobian(apsis_integrator* integrator, apsis_jacobian_function* jacobian);
+/// Sets products with the Jacobian of Q, which are used in preference to the matrix.
+int apsis_set_product(apsis_integrator* integrator, apsis_product_function* product);
+/// Sets the second derivative of Q. Without it, differences of first derivatives replace it.
+int apsis_set_curvature(apsis_integrator* integrator, apsis_curvature_function* curvature);
+/// Sets the exact solution of the collision, for methods of kind "exponential".
+int apsis_set_flow(apsis_integrator* integrator, apsis_flow_function* flow);
+/// Sets the number of consecutive unknowns that Q couples: u is a sequence of such blocks, as the cells of a
+/// mesh, and rate, derivatives and `admissible` get one block. Initially n. Error: APSIS_INPUT_ERROR unless
+/// it divides n.
+int apsis_set_block_size(apsis_integrator* integrator, size_t size);
+/// Sets the largest block, initially 96 unknowns, whose linear systems in Newton's method are dense. Larger
+/// ones are solved by GMRES without preconditioner, which is for Q that is not stiff.
+int apsis_set_dense_limit(apsis_integrator* integrator, size_t unknowns);
+/// Sets the states that every stage must belong to. Newton's method does not leave them.
+int apsis_set_admissible(apsis_integrator* integrator, apsis_admissible_function* admissible);
+/// Sets the relaxation time of a collision with a stage solver. Error estimates then weigh components off the
+/// equilibrium less where they relax within a step.
+int apsis_set_relaxation_time(apsis_integrator* integrator, apsis_time_function* relaxation_time);
+
+/// Steps have the length dt, or satisfy Δt ≤ safety · r · Δt_FE; a tolerance shortens them further where the
+/// estimated error requires it. One of the three must be given, and no two of dt and Δt_FE.
+
+/// Sets the length of steps; it is reduced until it divides the interval of apsis_integrate(). With a
+/// tolerance it is the largest length. 0 removes it.
+int apsis_set_step(apsis_integrator* integrator, double dt);
+/// Sets Δt_FE of T for the property to be preserved. The method must have an SSP coefficient.
+int apsis_set_forward_euler_step(apsis_integrator* integrator, apsis_time_function* step);
+/// Sets the factor of r Δt_FE, initially 1.
+int apsis_set_safety(apsis_integrator* integrator, double safety);
+/// Controls the estimated error e of a step: |e_i| ≤ absolute + relative |u_i| for every i. relative ≥ 0, and
+/// absolute > 0; both 0 removes the control. Methods without an embedded solution take each step twice, as
+/// one and as two halves.
+int apsis_set_tolerance(apsis_integrator* integrator, double relative, double absolute);
+/// The same with an absolute tolerance of each unknown, n positive numbers, which are copied.
+int apsis_set_tolerances(apsis_integrator* integrator, double relative, const double* absolute);
+/// Divides the first step after apsis_start() into graded steps that resolve the initial layer, for data out
+/// of equilibrium (docs/plateaus.md). `growth`, from 2 to 64, is the ratio of their successive times; 0
+/// removes them. Needs a relaxation time.
+int apsis_set_graded_start(apsis_integrator* integrator, int growth);
+/// Sets the function that observes every step.
+int apsis_set_observer(apsis_integrator* integrator, apsis_observer_function* observer);
+
+/// Sets time and state, n numbers, which are copied, and all counters to 0. Errors: APSIS_INPUT_ERROR if one
+/// is not finite.
+int apsis_start(apsis_integrator* integrator, double t0, const double* u0);
+/// Integrates from the time reached to t1 and ends exactly there. After an error the state is that of the
+/// last accepted step; the integration may be continued with other settings. Methods that need equal steps
+/// begin each call with their starter. Returns APSIS_OK, APSIS_STOPPED or an error.
+int apsis_integrate(apsis_integrator* integrator, double t1);
+
+/// Returns the time reached; NaN for NULL and before apsis_start().
+double apsis_time(const apsis_integrator* integrator);
+/// Returns the n numbers of the state; NULL for NULL and before apsis_start(). Valid until the next call of
+/// apsis_start(), apsis_integrate() or apsis_free_integrator().
+const double* apsis_state(const apsis_integrator* integrator);
+
+/// Counters since apsis_start().
+enum apsis_counter {
+  APSIS_STEPS = 0,           ///< accepted steps
+  APSIS_REJECTED_STEPS = 1,  ///< steps repeated because of their estimated error, or because they failed
+  APSIS_TRANSPORT_EVALUATIONS = 2,  ///< calls of the transport
+  APSIS_STAGE_SOLVES = 3,           ///< calls of the stage solver, or of Newton's method for a block
+  APSIS_NEWTON_ITERATIONS = 4,      ///< linear systems of Newton's method
+  APSIS_RATE_EVALUATIONS = 5,       ///< calls of the rate
+  APSIS_JACOBIAN_EVALUATIONS = 6,   ///< calls of the Jacobian matrix
+  APSIS_PRODUCT_EVALUATIONS = 7,    ///< calls of products with the Jacobian
+  APSIS_FLOW_EVALUATIONS = 8        ///< calls of the exact flow
+};
+/// Returns a counter, one of apsis_counter; −1 for NULL and for an unknown counter.
+long long apsis_count(const apsis_integrator* integrator, int counter);
+
+/// Sets *of_u = 1/(1 + μ) and *of_e = μ/(1 + μ), μ = a k + |b| k², accurate to rounding for every k = C/ε
+/// from 0 to infinity: the stage v of a relaxation Q(u) = k (E(u) − u) that conserves what E and k depend on
+/// is v = *of_u · u + *of_e · E.
+void apsis_relaxation_weights(double a, double b, double k, double* of_u, double* of_e);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

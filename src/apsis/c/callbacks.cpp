@@ -1,0 +1,83 @@
+#include "internal/callbacks.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
+
+namespace apsis::c {
+
+void throw_refusal(const char* name, int returned) {
+  if (returned < 0)
+    throw callback_error(
+        fmt::format("the callback '{}' failed (it returned {}); check the callback", name, returned));
+  throw numerical_error(fmt::format(
+      "the callback '{}' rejects a state (it returned {}); reduce the time step, or check the callback", name,
+      returned));
+}
+
+void callbacks::evaluate_transport(double t, const std::vector<double>& u, std::vector<double>& out) {
+  out.resize(u.size());
+  if (transport == nullptr) {
+    std::fill(out.begin(), out.end(), 0.0);
+    return;
+  }
+  count(APSIS_TRANSPORT_EVALUATIONS);
+  require_success("transport", transport(t, u.size(), u.data(), out.data(), data));
+  require_finite(out, "the result of the callback 'transport'");
+}
+
+void callbacks::evaluate_block(std::size_t block, std::span<const double> u, std::span<double> q) {
+  count(APSIS_RATE_EVALUATIONS);
+  require_success("rate", rate(block, u.size(), u.data(), q.data(), data));
+}
+
+void callbacks::evaluate_rate(const std::vector<double>& u, std::vector<double>& out) {
+  out.resize(u.size());
+  if (rate == nullptr) {  // Q = 0: nothing else was accepted
+    std::fill(out.begin(), out.end(), 0.0);
+    return;
+  }
+  const std::span<const double> all(u);
+  const std::span<double> rates(out);
+  for (std::size_t block = 0; block * block_size < u.size(); ++block)
+    evaluate_block(block, all.subspan(block * block_size, block_size),
+                   rates.subspan(block * block_size, block_size));
+  require_finite(out, "the result of the callback 'rate'");
+}
+
+bool callbacks::is_admissible(std::size_t block, std::span<const double> u) const {
+  if (admissible == nullptr) return true;
+  int result = 0;
+  require_success("admissible", admissible(block, u.size(), u.data(), &result, data));
+  return result != 0;
+}
+
+void callbacks::require_valid(const std::vector<double>& u) const {
+  require_finite(u, "a stage");
+  if (admissible == nullptr) return;
+  const std::span<const double> all(u);
+  for (std::size_t block = 0; block * block_size < u.size(); ++block)
+    if (!is_admissible(block, all.subspan(block * block_size, block_size)))
+      throw numerical_error(
+          "a stage is not admissible (the method or the time step does not preserve admissibility); use Δt ≤ "
+          "r "
+          "Δt_FE with an SSP method",
+          {-1, std::nan(""), u.size() > block_size ? static_cast<long>(block) : -1, std::nan("")});
+}
+
+double callbacks::time_of(apsis_time_function* function, const char* name, double t,
+                          const std::vector<double>& u) const {
+  double result = std::numeric_limits<double>::infinity();
+  if (function == nullptr) return result;
+  require_success(name, function(t, u.size(), u.data(), &result, data));
+  if (!(result > 0.0))
+    throw numerical_error(
+        fmt::format("the callback '{}' gives the time {} (a positive number is needed); check the "
+                    "callback",
+                    name, result));
+  return result;
+}
+
+}  // namespace apsis::c

@@ -1,0 +1,56 @@
+#pragma once
+
+#include "callbacks.hpp"
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace apsis::c {
+
+/// The stage solve in progress.
+struct stage_position {
+  std::size_t block = 0;  ///< number of its block
+  long long solve = 0;    ///< number of the solve
+};
+
+/// A Jacobian matrix and where it was evaluated: a dense linear system asks for it column by column. It is
+/// not kept for later solves, before which a program may change its data.
+class known_jacobian {
+ public:
+  /// jx ← Q'(u) x. Throws numerical_error if Q' is not finite.
+  void product(callbacks& of, const stage_position& now, std::span<const double> u, std::span<const double> x,
+               std::span<double> jx);
+
+ private:
+  std::vector<double> at_, matrix_;
+  long long solve_ = -1;
+};
+
+/// Q and its derivatives on one block (`differentiated` of integrate/autodiff.hpp).
+class block_field {
+ public:
+  /// Stores references.
+  block_field(callbacks& of, const stage_position& now) : of_(&of), now_(&now) {}
+
+  /// out ← Q(u).
+  void value(std::span<const double> u, std::span<double> out) { of_->evaluate_block(now_->block, u, out); }
+  /// jx ← Q'(u) x.
+  void jacobian_product(std::span<const double> u, std::span<const double> x, std::span<double> jx) {
+    product(middle_, u, x, jx);
+  }
+  /// hx ← Q''(u)[k, x], by differences to a few digits unless the program has the function.
+  void curvature(std::span<const double> u, std::span<const double> k, std::span<const double> x,
+                 std::span<double> hx);
+
+ private:
+  void product(known_jacobian& known, std::span<const double> u, std::span<const double> x,
+               std::span<double> jx);
+
+  callbacks* of_;
+  const stage_position* now_;
+  known_jacobian before_, middle_, after_;
+  std::vector<double> moved_, other_;
+};
+
+}  // namespace apsis::c

@@ -1,0 +1,59 @@
+#pragma once
+
+#include "guarded.hpp"
+
+#include <apsis/apsis.h>
+#include <apsis/core/errors.hpp>
+#include <apsis/integrate/array_state.hpp>
+
+#include <array>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace apsis::c {
+
+/// Throws what a nonzero result of a callback means: numerical_error if it is positive, callback_error if it
+/// is negative.
+[[noreturn]] void throw_refusal(const char* name, int returned);
+
+/// Checks the result of the callback called `name`.
+inline void require_success(const char* name, int returned) {
+  if (returned != 0) throw_refusal(name, returned);
+}
+
+/// The functions of a program, and how often they were called.
+struct callbacks {
+  void* data = nullptr;
+  std::size_t block_size = 0, dense_limit = 96;
+  apsis_transport_function* transport = nullptr;
+  apsis_stage_function* stage = nullptr;
+  apsis_flow_function* flow = nullptr;
+  apsis_rate_function* rate = nullptr;
+  apsis_jacobian_function* jacobian = nullptr;
+  apsis_product_function* product = nullptr;
+  apsis_curvature_function* curvature = nullptr;
+  apsis_time_function* forward_euler_step = nullptr;
+  apsis_time_function* relaxation_time = nullptr;
+  apsis_admissible_function* admissible = nullptr;
+  apsis_observer_function* observer = nullptr;
+  std::array<long long, APSIS_FLOW_EVALUATIONS + 1> counts{};
+
+  void count(apsis_counter which, long long more = 1) { counts[static_cast<std::size_t>(which)] += more; }
+
+  /// out ← T(t, u); 0 without transport. Throws numerical_error if T is not finite.
+  void evaluate_transport(double t, const std::vector<double>& u, std::vector<double>& out);
+  /// out ← Q(u), block by block; 0 without a rate. Throws numerical_error if Q is not finite.
+  void evaluate_rate(const std::vector<double>& u, std::vector<double>& out);
+  /// Sets q ← Q(u) of one block, which may be a state that Newton's method tries and leaves.
+  void evaluate_block(std::size_t block, std::span<const double> u, std::span<double> q);
+  /// Whether a block is admissible.
+  bool is_admissible(std::size_t block, std::span<const double> u) const;
+  /// Throws numerical_error unless all blocks of a stage are admissible and finite.
+  void require_valid(const std::vector<double>& u) const;
+  /// Returns the result of a time_function; +infinity without one.
+  double time_of(apsis_time_function* function, const char* name, double t,
+                 const std::vector<double>& u) const;
+};
+
+}  // namespace apsis::c

@@ -1,0 +1,122 @@
+#include "internal/integrator_handle.hpp"
+#include "internal/newton_blocks.hpp"
+#include "internal/split_problem.hpp"
+
+#include <apsis/core/errors.hpp>
+#include <apsis/integrate/evolution.hpp>
+
+#include <cmath>
+#include <string>
+
+namespace apsis::c {
+namespace {
+
+/// Returns max_i |u_i − v_i|/(absolute_i + relative |u_i|), NaN if one is.
+double weighted_difference(const step_limits& limits, const numbers& u, const numbers& v) {
+  double largest = 0.0;
+  for (std::size_t i = 0; i < u.size(); ++i) {
+    const double one = std::abs(u[i] - v[i]) / (limits.absolute[i] + limits.relative * std::abs(u[i]));
+    if (std::isnan(one)) return one;
+    if (one > largest) largest = one;
+  }
+  return largest;
+}
+
+template <class Problem>
+class run_of final : public any_run {
+ public:
+  run_of(const time_integrator& m, callbacks& of, const step_rule<double>& rule,
+         const std::optional<step_tolerance<numbers, double>>& tolerance, double t, const numbers& u)
+      : problem_(of), evolution_(m, problem_, rule, tolerance) {
+    evolution_.start(t, u);
+  }
+
+  bool advance(double t1, const observer& observe) override { return evolution_.advance(t1, observe); }
+  double t() const override { return evolution_.t(); }
+  const numbers& u() const override { return evolution_.u(); }
+  long steps() const override { return evolution_.steps(); }
+  long rejected() const override { return evolution_.rejected(); }
+
+ private:
+  Problem problem_;
+  evolution<Problem> evolution_;
+};
+
+bool has_derivatives(const callbacks& of) {
+  return of.jacobian != nullptr || of.product != nullptr;
+}
+
+bool has_collision(const callbacks& of) {
+  return of.stage != nullptr || of.rate != nullptr || of.flow != nullptr;
+}
+
+/// Whether no stage of a method is solved.
+bool is_explicit(const time_integrator& m) {
+  return m.file() != nullptr && m.file()->kind == method_kind::explicit_only;
+}
+
+/// Throws input_error unless the collision is given in the form that the method needs.
+void require_collision(const time_integrator& m, const callbacks& of) {
+  if (of.stage != nullptr && has_derivatives(of))
+    throw input_error(
+        "a stage solver and derivatives of Q are given (only one of them can solve the stages); remove one");
+  if (has_derivatives(of) && of.rate == nullptr)
+    throw input_error("derivatives of Q are given without Q; give it by apsis_set_rate()");
+  if (!has_collision(of)) return;
+  if (m.needs.exact_collision && of.flow == nullptr)
+    throw input_error("method '" + m.name +
+                      "' solves u' = Q(u) exactly (and there is no flow); give it by apsis_set_flow(), or "
+                      "choose another method");
+  if (m.needs.explicit_collision && of.rate == nullptr)
+    throw input_error("method '" + m.name +
+                      "' evaluates Q (and there is no rate); give it by apsis_set_rate(), or choose another "
+                      "method");
+  if (!m.needs.exact_collision && !is_explicit(m) && of.stage == nullptr && !has_derivatives(of))
+    throw input_error(
+        "method '" + m.name +
+        "' solves stages (and there is neither a stage solver nor a derivative of Q); give one by "
+        "apsis_set_stage(), apsis_set_jacobian() or apsis_set_product()");
+}
+
+/// Returns the limit of the steps. Throws input_error unless there is one.
+step_rule<double> rule_of(const callbacks& of, const step_limits& limits, bool fresh) {
+  const bool limited = of.forward_euler_step != nullptr;
+  if (limits.dt && limited)
+    throw input_error(
+        "dt and a forward Euler step are given (each sets the length of steps); remove one of them");
+  if (!limits.dt && !limited && limits.absolute.empty())
+    throw input_error(
+        "the step size is unknown (neither dt nor a tolerance nor a forward Euler step is given); give one "
+        "by "
+        "apsis_set_step(), apsis_set_tolerance() or apsis_set_forward_euler_step()");
+  if (limits.growth > 0 && of.relaxation_time == nullptr)
+    throw input_error(
+        "a graded start needs the width of the initial layer (there is no relaxation time); give it by "
+        "apsis_set_relaxation_time()");
+  const auto rule = limits.dt ? step_rule<double>::fixed(*limits.dt)
+                    : limited ? step_rule<double>::ssp(limits.safety)
+                              : step_rule<double>::unlimited();
+  return limits.growth > 0 && fresh ? rule.with(startup::graded, limits.growth) : rule;
+}
+
+}  // namespace
+
+std::unique_ptr<any_run> make_run(const time_integrator& m, callbacks& of, const step_limits& limits,
+                                  double t, const numbers& u, bool fresh) {
+  require_collision(m, of);
+  const auto rule = rule_of(of, limits, fresh);
+  std::optional<step_tolerance<numbers, double>> tolerance;
+  if (!limits.absolute.empty())
+    tolerance = {1.0,
+                 [limits](const numbers& a, const numbers& b) { return weighted_difference(limits, a, b); }};
+  const bool by_newton = has_derivatives(of) && !m.needs.exact_collision;
+  if (by_newton && of.relaxation_time != nullptr)
+    throw input_error(
+        "a relaxation time is given and Newton's method solves the stages (it belongs to a stage solver); "
+        "remove "
+        "it, or give a stage solver by apsis_set_stage()");
+  if (by_newton) return std::make_unique<run_of<newton_blocks>>(m, of, rule, tolerance, t, u);
+  return std::make_unique<run_of<split_problem>>(m, of, rule, tolerance, t, u);
+}
+
+}  // namespace apsis::c

@@ -31,7 +31,9 @@ class run_of final : public any_run {
     evolution_.start(t, u);
   }
 
-  bool advance(double t1, const observer& observe) override { return evolution_.advance(t1, observe); }
+  bool advance(double t1, const observer& observe) override {
+    return evolution_.advance(t1, observe) == evolution_end::reached;
+  }
   double t() const override { return evolution_.t(); }
   const numbers& u() const override { return evolution_.u(); }
   long steps() const override { return evolution_.steps(); }

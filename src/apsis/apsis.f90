@@ -9,9 +9,10 @@ module apsis
   integer(c_int), parameter :: APSIS_MODULE_ABI_VERSION = 1  ! APSIS_ABI_VERSION; Fortran reads that as the function
 
   ! apsis_status
-  integer(c_int), parameter :: APSIS_OK = 0, APSIS_STOPPED = 1, APSIS_INPUT_ERROR = -1, APSIS_NUMERICAL_ERROR = -2, &
-                               APSIS_FILE_ERROR = -3, APSIS_CLAIM_ERROR = -4, APSIS_CALLBACK_ERROR = -5, &
-                               APSIS_MEMORY_ERROR = -6, APSIS_INTERNAL_ERROR = -7
+  integer(c_int), parameter :: APSIS_OK = 0, APSIS_STOPPED = 1, APSIS_EVENT = 2, &
+                               APSIS_INPUT_ERROR = -1, APSIS_NUMERICAL_ERROR = -2, APSIS_FILE_ERROR = -3, &
+                               APSIS_CLAIM_ERROR = -4, APSIS_CALLBACK_ERROR = -5, APSIS_MEMORY_ERROR = -6, &
+                               APSIS_INTERNAL_ERROR = -7
   ! apsis_needs
   integer(c_int), parameter :: APSIS_NEEDS_RATE = 1, APSIS_NEEDS_FLOW = 2, APSIS_NEEDS_EQUAL_STEPS = 4
   ! apsis_coefficients; C writes matrices row by row, so that Fortran reads the transposed
@@ -21,7 +22,8 @@ module apsis
   ! apsis_counter
   integer(c_int), parameter :: APSIS_STEPS = 0, APSIS_REJECTED_STEPS = 1, APSIS_TRANSPORT_EVALUATIONS = 2, &
                                APSIS_STAGE_SOLVES = 3, APSIS_NEWTON_ITERATIONS = 4, APSIS_RATE_EVALUATIONS = 5, &
-                               APSIS_JACOBIAN_EVALUATIONS = 6, APSIS_PRODUCT_EVALUATIONS = 7, APSIS_FLOW_EVALUATIONS = 8
+                               APSIS_JACOBIAN_EVALUATIONS = 6, APSIS_PRODUCT_EVALUATIONS = 7, APSIS_FLOW_EVALUATIONS = 8, &
+                               APSIS_EVENTS = 9
 
   ! Callbacks. A program declares its own with bind(c) and passes c_funloc(name).
   abstract interface
@@ -96,6 +98,22 @@ module apsis
       integer(c_long_long), value :: step
       real(c_double), value :: t, dt
       integer(c_size_t), value :: n
+      real(c_double), intent(in) :: u(n)
+      type(c_ptr), value :: data
+    end function
+    integer(c_int) function apsis_event_function(t, n, u, count, g, data) bind(c)
+      import :: c_double, c_int, c_ptr, c_size_t
+      real(c_double), value :: t
+      integer(c_size_t), value :: n, count
+      real(c_double), intent(in) :: u(n)
+      real(c_double), intent(out) :: g(count)
+      type(c_ptr), value :: data
+    end function
+    ! k is the number of the function, from 0
+    integer(c_int) function apsis_event_observer_function(k, t, n, u, data) bind(c)
+      import :: c_double, c_int, c_ptr, c_size_t
+      integer(c_size_t), value :: k, n
+      real(c_double), value :: t
       real(c_double), intent(in) :: u(n)
       type(c_ptr), value :: data
     end function
@@ -288,6 +306,24 @@ module apsis
       type(c_ptr), value :: integrator
       type(c_funptr), value :: observer
     end function
+    integer(c_int) function apsis_set_events(integrator, count, events, directions, ends) bind(c)
+      import :: c_funptr, c_int, c_ptr, c_size_t
+      type(c_ptr), value :: integrator
+      integer(c_size_t), value :: count
+      type(c_funptr), value :: events
+      type(c_ptr), value :: directions, ends  ! c_loc of integer(c_int) arrays, or c_null_ptr
+    end function
+    integer(c_int) function apsis_set_event_observer(integrator, observer) bind(c)
+      import :: c_funptr, c_int, c_ptr
+      type(c_ptr), value :: integrator
+      type(c_funptr), value :: observer
+    end function
+    integer(c_int) function apsis_set_stop_times(integrator, count, times) bind(c)
+      import :: c_double, c_int, c_ptr, c_size_t
+      type(c_ptr), value :: integrator
+      integer(c_size_t), value :: count
+      real(c_double), intent(in) :: times(*)
+    end function
     integer(c_int) function apsis_start(integrator, t0, u0) bind(c)
       import :: c_double, c_int, c_ptr
       type(c_ptr), value :: integrator
@@ -307,6 +343,19 @@ module apsis
     type(c_ptr) function apsis_state(integrator) bind(c)
       import :: c_ptr
       type(c_ptr), value :: integrator
+    end function
+    integer(c_int) function apsis_state_at(integrator, t, u) bind(c)
+      import :: c_double, c_int, c_ptr
+      type(c_ptr), value :: integrator
+      real(c_double), value :: t
+      real(c_double), intent(out) :: u(*)
+    end function
+    integer(c_int) function apsis_found_event(integrator, index, k, t) bind(c)
+      import :: c_double, c_int, c_ptr, c_size_t
+      type(c_ptr), value :: integrator
+      integer(c_size_t), value :: index
+      integer(c_size_t), intent(out) :: k
+      real(c_double), intent(out) :: t
     end function
     integer(c_long_long) function apsis_count(integrator, counter) bind(c)
       import :: c_int, c_long_long, c_ptr

@@ -23,6 +23,7 @@ extern "C" {
 enum apsis_status {
   APSIS_OK = 0,                ///< success; of apsis_integrate(): the requested time is reached
   APSIS_STOPPED = 1,           ///< the observer ended the integration
+  APSIS_EVENT = 2,             ///< an event ended the integration
   APSIS_INPUT_ERROR = -1,      ///< an invalid argument, name, file or combination of settings
   APSIS_NUMERICAL_ERROR = -2,  ///< a step failed: NaN, no convergence, a state that a callback rejects
   APSIS_FILE_ERROR = -3,       ///< a file cannot be read
@@ -145,6 +146,11 @@ typedef int apsis_admissible_function(size_t block, size_t n, const double* u, i
 typedef int apsis_observer_function(long long step, double t, double dt, size_t n, const double* u,
                                     void* data);
 
+/// g[k] ← g_k(t, u) for k = 0 … count − 1, the functions whose zeros are events.
+typedef int apsis_event_function(double t, size_t n, const double* u, size_t count, double* g, void* data);
+/// Observes an event of function k, just after the sign of g_k has changed.
+typedef int apsis_event_observer_function(size_t k, double t, size_t n, const double* u, void* data);
+
 // Integrators -----------------------------------------------------------------------------------------------
 
 /// A problem, a method, and a state that advances in time.
@@ -216,12 +222,26 @@ int apsis_set_graded_start(apsis_integrator* integrator, int growth);
 /// Sets the function that observes every step.
 int apsis_set_observer(apsis_integrator* integrator, apsis_observer_function* observer);
 
+/// Sets `count` functions whose zeros are events: changes of their signs from one step to the next, located
+/// to rounding in the dense output of apsis_state_at(). A function that is 0 at the start has no event until
+/// it has another sign, and two zeros inside one step are missed. `directions` are 1 for increasing g_k, −1
+/// for decreasing, and 0 for both; NULL: both for all. `ends` are 1 if an event of g_k ends the integration
+/// there, with APSIS_EVENT, and 0 if it does not; NULL: all end it. Both lists are copied. count = 0 removes
+/// the events.
+int apsis_set_events(apsis_integrator* integrator, size_t count, apsis_event_function* events,
+                     const int* directions, const int* ends);
+/// Sets the function that observes events in the order of time, before the observer of the step.
+int apsis_set_event_observer(apsis_integrator* integrator, apsis_event_observer_function* observer);
+/// Sets times at which steps end exactly, such as discontinuities of T: `count` increasing numbers, which are
+/// copied. Methods that need equal steps begin anew at each. count = 0 removes them.
+int apsis_set_stop_times(apsis_integrator* integrator, size_t count, const double* times);
+
 /// Sets time and state, n numbers, which are copied, and all counters to 0. Errors: APSIS_INPUT_ERROR if one
 /// is not finite.
 int apsis_start(apsis_integrator* integrator, double t0, const double* u0);
 /// Integrates from the time reached to t1 and ends exactly there. After an error the state is that of the
 /// last accepted step; the integration may be continued with other settings. Methods that need equal steps
-/// begin each call with their starter. Returns APSIS_OK, APSIS_STOPPED or an error.
+/// begin each call with their starter. Returns APSIS_OK, APSIS_STOPPED, APSIS_EVENT or an error.
 int apsis_integrate(apsis_integrator* integrator, double t1);
 
 /// Returns the time reached; NaN for NULL and before apsis_start().
@@ -229,6 +249,16 @@ double apsis_time(const apsis_integrator* integrator);
 /// Returns the n numbers of the state; NULL for NULL and before apsis_start(). Valid until the next call of
 /// apsis_start(), apsis_integrate() or apsis_free_integrator().
 const double* apsis_state(const apsis_integrator* integrator);
+
+/// Writes the n numbers of the solution at a time of the last step to `u`, from its begin to apsis_time():
+/// dense output, also for observers. It takes a step from the begin to t, at the cost of a step, and so has
+/// the order of the method and its positivity, bounds and limit ε → 0. Methods that need equal steps take one
+/// of their starter. After a change of settings only apsis_time() is left. Errors: APSIS_INPUT_ERROR for
+/// other times, and those of a step.
+int apsis_state_at(apsis_integrator* integrator, double t, double* u);
+/// Sets *k and *t to the function and the time of an event since apsis_start(), number `index` from 0 in the
+/// order of time. Error: APSIS_INPUT_ERROR beyond the last, whose number is apsis_count() − 1.
+int apsis_found_event(const apsis_integrator* integrator, size_t index, size_t* k, double* t);
 
 /// Counters since apsis_start().
 enum apsis_counter {
@@ -240,7 +270,8 @@ enum apsis_counter {
   APSIS_RATE_EVALUATIONS = 5,       ///< calls of the rate
   APSIS_JACOBIAN_EVALUATIONS = 6,   ///< calls of the Jacobian matrix
   APSIS_PRODUCT_EVALUATIONS = 7,    ///< calls of products with the Jacobian
-  APSIS_FLOW_EVALUATIONS = 8        ///< calls of the exact flow
+  APSIS_FLOW_EVALUATIONS = 8,       ///< calls of the exact flow
+  APSIS_EVENTS = 9                  ///< events
 };
 /// Returns a counter, one of apsis_counter; −1 for NULL and for an unknown counter.
 long long apsis_count(const apsis_integrator* integrator, int counter);

@@ -183,6 +183,35 @@ static void stops_at_the_observer_and_follows_a_tolerance(void) {
   apsis_free_integrator(s);
 }
 
+static int level(double t, size_t n, const double* u, size_t count, double* g, void* data) {
+  (void)t;
+  (void)n;
+  (void)data;
+  if (count != 1) return -1;
+  g[0] = u[0] - 2.5;
+  return 0;
+}
+
+/* At epsilon = 0, tan(u1/2) = tan(1) e^t: u1 = 2.5 at log(tan(1.25)/tan(1)), up to epsilon and the error of
+ * order 3. */
+static void finds_an_event_in_dense_output(void) {
+  struct model m = {1e-8, 2, 0, 0};
+  apsis_integrator* s = integrator_of("md-imex-6-3", &m, 0, 64);
+  size_t k = 1;
+  double t = 0, u[2];
+  const double expected = log(tan(1.25) / tan(1));
+  CHECK(apsis_set_events(s, 1, level, NULL, NULL) == APSIS_OK);
+  CHECK(apsis_integrate(s, 1) == APSIS_EVENT);
+  CHECK(apsis_count(s, APSIS_EVENTS) == 1);
+  CHECK(apsis_found_event(s, 0, &k, &t) == APSIS_OK);
+  CHECK(k == 0 && t == apsis_time(s));
+  CHECK(fabs(t - expected) < 1e-6);
+  CHECK(apsis_state_at(s, t, u) == APSIS_OK);
+  CHECK(fabs(u[0] - 2.5) < 1e-13 && fabs(u[1] - sin(u[0])) < 1e-6);
+  CHECK(apsis_integrate(s, 1) == APSIS_OK); /* the event was left behind */
+  apsis_free_integrator(s);
+}
+
 int main(void) {
   CHECK(apsis_abi_version() == APSIS_ABI_VERSION);
   CHECK(strlen(apsis_version()) >= 5);
@@ -193,6 +222,7 @@ int main(void) {
   reports_bad_input();
   reports_callbacks_that_fail();
   stops_at_the_observer_and_follows_a_tolerance();
+  finds_an_event_in_dense_output();
   printf("%d failures\n", failures);
   return failures == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
 }

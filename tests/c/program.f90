@@ -62,6 +62,17 @@ contains
     if (step /= p%observed .or. abs(t - step * dt) > 1e-12 .or. size(u) /= 2) observer = -1
   end function
 
+  integer(c_int) function level(t, n, u, count, g, data) bind(c)
+    real(c_double), value :: t
+    integer(c_size_t), value :: n, count
+    real(c_double), intent(in) :: u(n)
+    real(c_double), intent(out) :: g(count)
+    type(c_ptr), value :: data
+    g(1) = u(1) - 2.5_c_double
+    level = 0
+    if (t < 0 .or. .not. c_associated(data)) level = -1
+  end function
+
   ! Stops with a message unless the condition holds.
   subroutine check(condition, what)
     logical, intent(in) :: condition
@@ -79,6 +90,8 @@ contains
     real(c_double) :: u1(2)
     real(c_double), pointer :: u(:)
     type(c_ptr) :: method, s
+    integer(c_size_t) :: k
+    real(c_double) :: t, at(2)
     p%observed = 0
     call check(apsis_find_method(name // c_null_char, method) == APSIS_OK, "method")
     call check(apsis_new_integrator(method, 2_c_size_t, s) == APSIS_OK, "integrator")
@@ -94,6 +107,18 @@ contains
     call check(apsis_count(s, APSIS_STEPS) == steps .and. p%observed == steps, "count")
     call c_f_pointer(apsis_state(s), u, [2])
     u1 = u
+
+    ! u1 rises through 2.5, where dense output has that value.
+    p%observed = 0
+    call check(apsis_set_observer(s, c_null_funptr) == APSIS_OK, "no observer")
+    call check(apsis_set_events(s, 1_c_size_t, c_funloc(level), c_null_ptr, c_null_ptr) == APSIS_OK, "events")
+    call check(apsis_start(s, 0.0_c_double, [2.0_c_double, 0.0_c_double]) == APSIS_OK, "start again")
+    call check(apsis_integrate(s, 1.0_c_double) == APSIS_EVENT, "an event")
+    call check(apsis_count(s, APSIS_EVENTS) == 1, "one event")
+    call check(apsis_found_event(s, 0_c_size_t, k, t) == APSIS_OK, "what was found")
+    call check(k == 0 .and. t > 0, "its function")
+    call check(apsis_state_at(s, t, at) == APSIS_OK, "dense output")
+    call check(abs(at(1) - 2.5_c_double) < 1e-12_c_double, "the state of the event")
     call apsis_free_integrator(s)
   end function
 

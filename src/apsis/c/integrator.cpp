@@ -1,9 +1,9 @@
 #include "internal/guarded.hpp"
+#include "internal/idle.hpp"
 #include "internal/integrator_handle.hpp"
 #include "internal/method_handle.hpp"
 
 #include <apsis/apsis.h>
-#include <apsis/core/graded_start.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -13,11 +13,7 @@
 #include <fmt/format.h>
 
 namespace apsis::c {
-namespace {
 
-constexpr const char* handle = "the integrator";
-
-/// Throws input_error unless `free`.
 void require_free(bool free) {
   if (!free)
     throw input_error(
@@ -25,12 +21,13 @@ void require_free(bool free) {
         "after the integration, or use another integrator");
 }
 
-/// Returns an integrator that no callback and no other thread uses. Throws input_error if one does.
 apsis_integrator& idle(apsis_integrator* integrator) {
   apsis_integrator& s = require(integrator, handle);
   require_free(!s.busy);
   return s;
 }
+
+namespace {
 
 /// Keeps an integrator for the time of an integration.
 class in_use {
@@ -47,27 +44,6 @@ class in_use {
   apsis_integrator& held_;
 };
 
-/// Ends a run: other settings need another one.
-void end_run(apsis_integrator& s) {
-  if (!s.run) return;
-  s.t = s.run->t();
-  s.u = s.run->u();
-  s.steps += s.run->steps();
-  s.rejected += s.run->rejected();
-  s.run.reset();
-}
-
-/// Changes settings by change(integrator).
-template <class Change>
-int set(apsis_integrator* integrator, const Change& change) {
-  return guarded([&] {
-    apsis_integrator& s = idle(integrator);
-    change(s);
-    end_run(s);
-    return APSIS_OK;
-  });
-}
-
 void require_finite_state(std::span<const double> u) {
   for (std::size_t i = 0; i < u.size(); ++i)
     if (!std::isfinite(u[i]))
@@ -75,45 +51,50 @@ void require_finite_state(std::span<const double> u) {
           fmt::format("the initial state is not finite (component {} is {}); give numbers", i, u[i]));
 }
 
-void set_tolerances(apsis_integrator& s, double relative, numbers absolute) {
-  if (!(relative >= 0.0) || !std::isfinite(relative))
-    throw input_error(fmt::format(
-        "the relative tolerance is {} (it is at least 0 and finite); give such a number", relative));
-  for (const double one : absolute)
-    if (!(one > 0.0) || !std::isfinite(one))
-      throw input_error(
-          fmt::format("an absolute tolerance is {} (it is above 0 and finite); give such a number", one));
-  s.limits.relative = relative;
-  s.limits.absolute = std::move(absolute);
-}
-
 /// Calls the observer of the program. Returns whether the integration continues.
-bool observe(const apsis_integrator& s, long long step, double t, double dt, const numbers& u) {
+bool observe(apsis_integrator& s, long long step, double t, double dt, const numbers& u) {
   if (s.of.observer == nullptr) return true;
-  const int returned = s.of.observer(step, t, dt, u.size(), u.data(), s.of.data);
+  const int returned =
+      s.of.observe([&] { return s.of.observer(step, t, dt, u.size(), u.data(), s.of.data); });
   if (returned < 0) require_success("observer", returned);
   return returned == 0;
 }
 
-int integrate(apsis_integrator& s, double t1) {
+void require_started(const apsis_integrator& s) {
   if (!s.started)
     throw input_error("the integrator has no initial state (apsis_start() was not called); call it first");
+}
+
+int integrate(apsis_integrator& s, double t1) {
+  require_started(s);
   if (!std::isfinite(t1) || t1 < apsis_time(&s))
     throw input_error(fmt::format(
         "the end of the integration is {} (the time reached is {}); give a finite time that is not before it",
         t1, apsis_time(&s)));
-  if (!s.run) s.run = make_run(*s.method, s.of, s.limits, s.t, s.u, s.steps == 0);
+  if (!s.run) s.run = make_run(*s.method, s.of, s.limits, s.events, s.t, s.u, s.steps == 0);
   try {
-    const bool reached = s.run->advance(t1, [&s](long step, double t, double dt, const numbers& u) {
+    return s.run->advance(t1, [&s](long step, double t, double dt, const numbers& u) {
       return observe(s, s.steps + step, t, dt, u);
     });
-    return reached ? APSIS_OK : APSIS_STOPPED;
   } catch (const numerical_error& failure) {
     throw failure.at(static_cast<long>(s.steps) + s.run->steps() + 1, s.run->t());
   } catch (const callback_error& failure) {
     throw callback_error(
         fmt::format("{} [step {}, t = {:.10g}]", failure.what(), s.steps + s.run->steps() + 1, s.run->t()));
   }
+}
+
+/// Writes dense output, or the state alone without a step of the present settings.
+int write_state(apsis_integrator& s, double t, double* out) {
+  require_started(s);
+  if (!s.run && t != s.t)
+    throw input_error(
+        fmt::format("the time {:.10g} is not in the last step (none has the present settings); give the time "
+                    "reached, {:.10g}",
+                    t, s.t));
+  const numbers u = s.run ? s.run->at(t) : s.u;
+  std::copy(u.begin(), u.end(), out);
+  return APSIS_OK;
 }
 
 }  // namespace
@@ -136,118 +117,6 @@ void apsis_free_integrator(apsis_integrator* integrator) {
   delete integrator;
 }
 
-int apsis_set_data(apsis_integrator* integrator, void* data) {
-  return guarded([=] {
-    idle(integrator).of.data = data;
-    return APSIS_OK;
-  });
-}
-
-int apsis_set_observer(apsis_integrator* integrator, apsis_observer_function* observer) {
-  return guarded([=] {
-    idle(integrator).of.observer = observer;
-    return APSIS_OK;
-  });
-}
-
-int apsis_set_transport(apsis_integrator* integrator, apsis_transport_function* transport) {
-  return set(integrator, [=](auto& s) { s.of.transport = transport; });
-}
-
-int apsis_set_stage(apsis_integrator* integrator, apsis_stage_function* stage) {
-  return set(integrator, [=](auto& s) { s.of.stage = stage; });
-}
-
-int apsis_set_rate(apsis_integrator* integrator, apsis_rate_function* rate) {
-  return set(integrator, [=](auto& s) { s.of.rate = rate; });
-}
-
-int apsis_set_jacobian(apsis_integrator* integrator, apsis_jacobian_function* jacobian) {
-  return set(integrator, [=](auto& s) { s.of.jacobian = jacobian; });
-}
-
-int apsis_set_product(apsis_integrator* integrator, apsis_product_function* product) {
-  return set(integrator, [=](auto& s) { s.of.product = product; });
-}
-
-int apsis_set_curvature(apsis_integrator* integrator, apsis_curvature_function* curvature) {
-  return set(integrator, [=](auto& s) { s.of.curvature = curvature; });
-}
-
-int apsis_set_flow(apsis_integrator* integrator, apsis_flow_function* flow) {
-  return set(integrator, [=](auto& s) { s.of.flow = flow; });
-}
-
-int apsis_set_admissible(apsis_integrator* integrator, apsis_admissible_function* admissible) {
-  return set(integrator, [=](auto& s) { s.of.admissible = admissible; });
-}
-
-int apsis_set_relaxation_time(apsis_integrator* integrator, apsis_time_function* relaxation_time) {
-  return set(integrator, [=](auto& s) { s.of.relaxation_time = relaxation_time; });
-}
-
-int apsis_set_forward_euler_step(apsis_integrator* integrator, apsis_time_function* step) {
-  return set(integrator, [=](auto& s) { s.of.forward_euler_step = step; });
-}
-
-int apsis_set_block_size(apsis_integrator* integrator, size_t size) {
-  return set(integrator, [=](auto& s) {
-    if (size == 0 || s.n % size != 0)
-      throw apsis::input_error(fmt::format(
-          "{} unknowns are not a sequence of blocks of {} (it does not divide them); give a divisor", s.n,
-          size));
-    s.of.block_size = size;
-  });
-}
-
-int apsis_set_dense_limit(apsis_integrator* integrator, size_t unknowns) {
-  return set(integrator, [=](auto& s) { s.of.dense_limit = unknowns; });
-}
-
-int apsis_set_step(apsis_integrator* integrator, double dt) {
-  return set(integrator, [=](auto& s) {
-    if (!(dt >= 0.0) || !std::isfinite(dt))
-      throw apsis::input_error(
-          fmt::format("dt is {} (a length is needed); give dt > 0, or 0 to remove it", dt));
-    s.limits.dt.reset();
-    if (dt > 0.0) s.limits.dt = dt;
-  });
-}
-
-int apsis_set_safety(apsis_integrator* integrator, double safety) {
-  return set(integrator, [=](auto& s) {
-    if (!(safety > 0.0) || !std::isfinite(safety))
-      throw apsis::input_error(
-          fmt::format("the safety is {} (a positive factor is needed); give one", safety));
-    s.limits.safety = safety;
-  });
-}
-
-int apsis_set_tolerance(apsis_integrator* integrator, double relative, double absolute) {
-  return set(integrator, [=](auto& s) {
-    const bool none = relative == 0.0 && absolute == 0.0;
-    set_tolerances(s, relative, none ? numbers() : numbers(s.n, absolute));
-  });
-}
-
-int apsis_set_tolerances(apsis_integrator* integrator, double relative, const double* absolute) {
-  return set(integrator, [=](auto& s) {
-    const double* all = &require(absolute, "the list of absolute tolerances");
-    set_tolerances(s, relative, numbers(all, all + s.n));
-  });
-}
-
-int apsis_set_graded_start(apsis_integrator* integrator, int growth) {
-  return set(integrator, [=](auto& s) {
-    if (growth != 0 && (growth < 2 || growth > apsis::largest_growth))
-      throw apsis::input_error(fmt::format(
-          "the growth of a graded start is {} (the ratio of its times is from 2 to {}); give one in "
-          "this range, or 0 to remove it",
-          growth, apsis::largest_growth));
-    s.limits.growth = growth;
-  });
-}
-
 int apsis_start(apsis_integrator* integrator, double t0, const double* u0) {
   return guarded([=] {
     apsis_integrator& s = idle(integrator);
@@ -259,6 +128,7 @@ int apsis_start(apsis_integrator* integrator, double t0, const double* u0) {
     s.t = t0;
     s.u.swap(u);
     s.steps = s.rejected = 0;
+    s.found.clear();
     s.of.counts.fill(0);
     s.started = true;
     return APSIS_OK;
@@ -269,6 +139,36 @@ int apsis_integrate(apsis_integrator* integrator, double t1) {
   return guarded([=] {
     const in_use kept(integrator);
     return integrate(*kept, t1);
+  });
+}
+
+int apsis_state_at(apsis_integrator* integrator, double t, double* u) {
+  return guarded([=] {
+    double* out = &require(u, "the place of the state");
+    if (require(integrator, handle).of.observing) {
+      // Between two steps, but callbacks of this one may not ask again.
+      integrator->of.observing = false;
+      const int status = guarded([=] { return write_state(*integrator, t, out); });
+      integrator->of.observing = true;
+      return status;
+    }
+    const in_use kept(integrator);
+    return write_state(*kept, t, out);
+  });
+}
+
+int apsis_found_event(const apsis_integrator* integrator, size_t index, size_t* k, double* t) {
+  return guarded([=] {
+    const apsis_integrator& s = require(integrator, handle);
+    const std::size_t earlier = s.found.size();
+    const std::size_t all = earlier + (s.run ? s.run->found().size() : 0);
+    if (index >= all)
+      throw apsis::input_error(
+          fmt::format("there is no event {} (their number is {}); see APSIS_EVENTS", index, all));
+    const auto& one = index < earlier ? s.found[index] : s.run->found()[index - earlier];
+    require(k, "the place of the function") = one.function;
+    require(t, "the place of the time") = one.t;
+    return APSIS_OK;
   });
 }
 
@@ -283,9 +183,11 @@ const double* apsis_state(const apsis_integrator* integrator) {
 }
 
 long long apsis_count(const apsis_integrator* integrator, int counter) {
-  if (integrator == nullptr || counter < 0 || counter > APSIS_FLOW_EVALUATIONS) return -1;
+  if (integrator == nullptr || counter < 0 || counter > APSIS_EVENTS) return -1;
   const auto* run = integrator->run.get();
   if (counter == APSIS_STEPS) return integrator->steps + (run != nullptr ? run->steps() : 0);
   if (counter == APSIS_REJECTED_STEPS) return integrator->rejected + (run != nullptr ? run->rejected() : 0);
+  if (counter == APSIS_EVENTS)
+    return static_cast<long long>(integrator->found.size() + (run != nullptr ? run->found().size() : 0));
   return integrator->of.counts[static_cast<std::size_t>(counter)];
 }

@@ -22,18 +22,44 @@ double weighted_difference(const step_limits& limits, const numbers& u, const nu
   return largest;
 }
 
+/// Returns the event functions of a program.
+event_functions<numbers, double> functions_of(callbacks& of, const event_settings& events) {
+  return {events.count,
+          [&of](double t, const numbers& u, std::span<double> g) {
+            require_success("events", of.events(t, u.size(), u.data(), g.size(), g.data(), of.data));
+          },
+          events.directions, std::vector<bool>(events.ends.begin(), events.ends.end())};
+}
+
 template <class Problem>
 class run_of final : public any_run {
  public:
   run_of(const time_integrator& m, callbacks& of, const step_rule<double>& rule,
-         const std::optional<step_tolerance<numbers, double>>& tolerance, double t, const numbers& u)
+         const std::optional<step_tolerance<numbers, double>>& tolerance, const event_settings& events,
+         double t, const numbers& u)
       : problem_(of), evolution_(m, problem_, rule, tolerance) {
+    evolution_.set_stops(events.stops);
+    evolution_.set_events(functions_of(of, events), [&of](std::size_t k, double at, const numbers& now) {
+      if (of.event_observer == nullptr) return;
+      require_success("event_observer",
+                      of.observe([&] { return of.event_observer(k, at, now.size(), now.data(), of.data); }));
+    });
     evolution_.start(t, u);
   }
 
-  bool advance(double t1, const observer& observe) override {
-    return evolution_.advance(t1, observe) == evolution_end::reached;
+  int advance(double t1, const observer& observe) override {
+    switch (evolution_.advance(t1, observe)) {
+      case evolution_end::stopped:
+        return APSIS_STOPPED;
+      case evolution_end::event:
+        return APSIS_EVENT;
+      case evolution_end::reached:
+        break;
+    }
+    return APSIS_OK;
   }
+  numbers at(double t) override { return evolution_.at(t); }
+  const std::vector<found_event<double>>& found() const override { return evolution_.found(); }
   double t() const override { return evolution_.t(); }
   const numbers& u() const override { return evolution_.u(); }
   long steps() const override { return evolution_.steps(); }
@@ -104,7 +130,7 @@ step_rule<double> rule_of(const callbacks& of, const step_limits& limits, bool f
 }  // namespace
 
 std::unique_ptr<any_run> make_run(const time_integrator& m, callbacks& of, const step_limits& limits,
-                                  double t, const numbers& u, bool fresh) {
+                                  const event_settings& events, double t, const numbers& u, bool fresh) {
   require_collision(m, of);
   const auto rule = rule_of(of, limits, fresh);
   std::optional<step_tolerance<numbers, double>> tolerance;
@@ -117,8 +143,8 @@ std::unique_ptr<any_run> make_run(const time_integrator& m, callbacks& of, const
         "a relaxation time is given and Newton's method solves the stages (it belongs to a stage solver); "
         "remove "
         "it, or give a stage solver by apsis_set_stage()");
-  if (by_newton) return std::make_unique<run_of<newton_blocks>>(m, of, rule, tolerance, t, u);
-  return std::make_unique<run_of<split_problem>>(m, of, rule, tolerance, t, u);
+  if (by_newton) return std::make_unique<run_of<newton_blocks>>(m, of, rule, tolerance, events, t, u);
+  return std::make_unique<run_of<split_problem>>(m, of, rule, tolerance, events, t, u);
 }
 
 }  // namespace apsis::c

@@ -37,6 +37,9 @@ struct callbacks {
   apsis_time_function* relaxation_time = nullptr;
   apsis_admissible_function* admissible = nullptr;
   apsis_observer_function* observer = nullptr;
+  apsis_event_function* events = nullptr;
+  apsis_event_observer_function* event_observer = nullptr;
+  bool observing = false;  ///< whether an observer is running
   std::array<long long, APSIS_FLOW_EVALUATIONS + 1> counts{};
 
   void count(apsis_counter which, long long more = 1) { counts[static_cast<std::size_t>(which)] += more; }
@@ -54,6 +57,17 @@ struct callbacks {
   /// Returns the result of a time_function; +infinity without one.
   double time_of(apsis_time_function* function, const char* name, double t,
                  const std::vector<double>& u) const;
+  /// Calls an observer, with `observing` set, and returns its result.
+  template <class Call>
+  int observe(const Call& call) {
+    struct for_the_time_of_a_call {
+      bool& set;
+      ~for_the_time_of_a_call() { set = false; }
+    };
+    observing = true;
+    const for_the_time_of_a_call scope{observing};
+    return call();
+  }
 };
 
 }  // namespace apsis::c

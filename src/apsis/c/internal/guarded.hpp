@@ -33,4 +33,10 @@ T& require(T* pointer, const char* what) {
   return *pointer;
 }
 
+/// Throws input_error for a function that is NULL, which `what` names.
+template <class Function>
+void require_function(Function* function, const char* what) {
+  if (function == nullptr) throw input_error(std::string(what) + " is NULL (it is called); give one");
+}
+
 }  // namespace apsis::c

@@ -3,6 +3,7 @@
 #include "callbacks.hpp"
 
 #include <apsis/apsis.h>
+#include <apsis/integrate/events.hpp>
 #include <apsis/method/time_integrator.hpp>
 
 #include <atomic>
@@ -25,23 +26,33 @@ struct step_limits {
   int growth = 0;    ///< of a graded start; 0 without
 };
 
+/// Events, and times at which steps end.
+struct event_settings {
+  std::size_t count = 0;
+  std::vector<int> directions, ends;  ///< of each function
+  numbers stops;                      ///< increasing times
+};
+
 /// A problem with the evolution that integrates it.
 class any_run {
  public:
   /// evolution::observer
   using observer = std::function<bool(long step, double t, double dt, const numbers& u)>;
   virtual ~any_run() = default;
-  virtual bool advance(double t1, const observer& observe) = 0;
+  /// evolution::advance(), as an apsis_status.
+  virtual int advance(double t1, const observer& observe) = 0;
+  virtual numbers at(double t) = 0;
   virtual double t() const = 0;
   virtual const numbers& u() const = 0;
   virtual long steps() const = 0;
   virtual long rejected() const = 0;
+  virtual const std::vector<found_event<double>>& found() const = 0;
 };
 
 /// Makes the run of a problem from time and state; `fresh` without a step before. Throws input_error if
 /// settings are missing or contradict each other.
 std::unique_ptr<any_run> make_run(const time_integrator& m, callbacks& of, const step_limits& limits,
-                                  double t, const numbers& u, bool fresh);
+                                  const event_settings& events, double t, const numbers& u, bool fresh);
 
 }  // namespace apsis::c
 
@@ -50,11 +61,13 @@ struct apsis_integrator {
   std::size_t n;
   apsis::c::callbacks of{};
   apsis::c::step_limits limits{};
+  apsis::c::event_settings events{};
   bool started = false;
   /// Time, state and counts when `run` was made, or without one.
   double t = std::numeric_limits<double>::quiet_NaN();
   apsis::c::numbers u{};
   long long steps = 0, rejected = 0;
+  std::vector<apsis::found_event<double>> found{};
   std::unique_ptr<apsis::c::any_run> run{};  ///< of the present settings; made at the next integration
   std::atomic<bool> busy{false};             ///< whether an integration is in progress
 };

@@ -1,0 +1,202 @@
+#include "internal/guarded.hpp"
+#include "internal/idle.hpp"
+#include "internal/integrator_handle.hpp"
+
+#include <apsis/apsis.h>
+#include <apsis/core/graded_start.hpp>
+#include <apsis/integrate/evolution.hpp>
+
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+namespace apsis::c {
+namespace {
+
+/// Ends a run: other settings need another one.
+void end_run(apsis_integrator& s) {
+  if (!s.run) return;
+  s.t = s.run->t();
+  s.u = s.run->u();
+  s.steps += s.run->steps();
+  s.rejected += s.run->rejected();
+  s.found.insert(s.found.end(), s.run->found().begin(), s.run->found().end());
+  s.run.reset();
+}
+
+/// Changes settings by change(integrator).
+template <class Change>
+int set(apsis_integrator* integrator, const Change& change) {
+  return guarded([&] {
+    apsis_integrator& s = idle(integrator);
+    change(s);
+    end_run(s);
+    return APSIS_OK;
+  });
+}
+
+void set_tolerances(apsis_integrator& s, double relative, numbers absolute) {
+  if (!(relative >= 0.0) || !std::isfinite(relative))
+    throw input_error(fmt::format(
+        "the relative tolerance is {} (it is at least 0 and finite); give such a number", relative));
+  for (const double one : absolute)
+    if (!(one > 0.0) || !std::isfinite(one))
+      throw input_error(
+          fmt::format("an absolute tolerance is {} (it is above 0 and finite); give such a number", one));
+  s.limits.relative = relative;
+  s.limits.absolute = std::move(absolute);
+}
+
+}  // namespace
+}  // namespace apsis::c
+
+using namespace apsis::c;
+
+int apsis_set_data(apsis_integrator* integrator, void* data) {
+  return guarded([=] {
+    idle(integrator).of.data = data;
+    return APSIS_OK;
+  });
+}
+
+int apsis_set_observer(apsis_integrator* integrator, apsis_observer_function* observer) {
+  return guarded([=] {
+    idle(integrator).of.observer = observer;
+    return APSIS_OK;
+  });
+}
+
+int apsis_set_transport(apsis_integrator* integrator, apsis_transport_function* transport) {
+  return set(integrator, [=](auto& s) { s.of.transport = transport; });
+}
+
+int apsis_set_stage(apsis_integrator* integrator, apsis_stage_function* stage) {
+  return set(integrator, [=](auto& s) { s.of.stage = stage; });
+}
+
+int apsis_set_rate(apsis_integrator* integrator, apsis_rate_function* rate) {
+  return set(integrator, [=](auto& s) { s.of.rate = rate; });
+}
+
+int apsis_set_jacobian(apsis_integrator* integrator, apsis_jacobian_function* jacobian) {
+  return set(integrator, [=](auto& s) { s.of.jacobian = jacobian; });
+}
+
+int apsis_set_product(apsis_integrator* integrator, apsis_product_function* product) {
+  return set(integrator, [=](auto& s) { s.of.product = product; });
+}
+
+int apsis_set_curvature(apsis_integrator* integrator, apsis_curvature_function* curvature) {
+  return set(integrator, [=](auto& s) { s.of.curvature = curvature; });
+}
+
+int apsis_set_flow(apsis_integrator* integrator, apsis_flow_function* flow) {
+  return set(integrator, [=](auto& s) { s.of.flow = flow; });
+}
+
+int apsis_set_admissible(apsis_integrator* integrator, apsis_admissible_function* admissible) {
+  return set(integrator, [=](auto& s) { s.of.admissible = admissible; });
+}
+
+int apsis_set_relaxation_time(apsis_integrator* integrator, apsis_time_function* relaxation_time) {
+  return set(integrator, [=](auto& s) { s.of.relaxation_time = relaxation_time; });
+}
+
+int apsis_set_forward_euler_step(apsis_integrator* integrator, apsis_time_function* step) {
+  return set(integrator, [=](auto& s) { s.of.forward_euler_step = step; });
+}
+
+int apsis_set_block_size(apsis_integrator* integrator, size_t size) {
+  return set(integrator, [=](auto& s) {
+    if (size == 0 || s.n % size != 0)
+      throw apsis::input_error(fmt::format(
+          "{} unknowns are not a sequence of blocks of {} (it does not divide them); give a divisor", s.n,
+          size));
+    s.of.block_size = size;
+  });
+}
+
+int apsis_set_dense_limit(apsis_integrator* integrator, size_t unknowns) {
+  return set(integrator, [=](auto& s) { s.of.dense_limit = unknowns; });
+}
+
+int apsis_set_step(apsis_integrator* integrator, double dt) {
+  return set(integrator, [=](auto& s) {
+    if (!(dt >= 0.0) || !std::isfinite(dt))
+      throw apsis::input_error(
+          fmt::format("dt is {} (a length is needed); give dt > 0, or 0 to remove it", dt));
+    s.limits.dt.reset();
+    if (dt > 0.0) s.limits.dt = dt;
+  });
+}
+
+int apsis_set_safety(apsis_integrator* integrator, double safety) {
+  return set(integrator, [=](auto& s) {
+    if (!(safety > 0.0) || !std::isfinite(safety))
+      throw apsis::input_error(
+          fmt::format("the safety is {} (a positive factor is needed); give one", safety));
+    s.limits.safety = safety;
+  });
+}
+
+int apsis_set_tolerance(apsis_integrator* integrator, double relative, double absolute) {
+  return set(integrator, [=](auto& s) {
+    const bool none = relative == 0.0 && absolute == 0.0;
+    set_tolerances(s, relative, none ? numbers() : numbers(s.n, absolute));
+  });
+}
+
+int apsis_set_tolerances(apsis_integrator* integrator, double relative, const double* absolute) {
+  return set(integrator, [=](auto& s) {
+    const double* all = &require(absolute, "the list of absolute tolerances");
+    set_tolerances(s, relative, numbers(all, all + s.n));
+  });
+}
+
+int apsis_set_graded_start(apsis_integrator* integrator, int growth) {
+  return set(integrator, [=](auto& s) {
+    if (growth != 0 && (growth < 2 || growth > apsis::largest_growth))
+      throw apsis::input_error(fmt::format(
+          "the growth of a graded start is {} (the ratio of its times is from 2 to {}); give one in "
+          "this range, or 0 to remove it",
+          growth, apsis::largest_growth));
+    s.limits.growth = growth;
+  });
+}
+
+int apsis_set_event_observer(apsis_integrator* integrator, apsis_event_observer_function* observer) {
+  return guarded([=] {
+    idle(integrator).of.event_observer = observer;
+    return APSIS_OK;
+  });
+}
+
+int apsis_set_events(apsis_integrator* integrator, size_t count, apsis_event_function* events,
+                     const int* directions, const int* ends) {
+  return set(integrator, [=](auto& s) {
+    if (count > 0) require_function(events, "the function of the events");
+    const auto list = [count](const int* from) {
+      return from == nullptr ? std::vector<int>() : std::vector<int>(from, from + count);
+    };
+    std::vector<int> both = list(directions), last = list(ends);
+    for (const int one : both)
+      if (one < -1 || one > 1)
+        throw apsis::input_error(
+            fmt::format("the direction of an event is {} (valid: -1, 0, 1); give one", one));
+    s.of.events = events;
+    s.events.count = count;
+    s.events.directions.swap(both);
+    s.events.ends.swap(last);
+  });
+}
+
+int apsis_set_stop_times(apsis_integrator* integrator, size_t count, const double* times) {
+  return set(integrator, [=](auto& s) {
+    const double* all = count == 0 ? nullptr : &require(times, "the list of stop times");
+    numbers stops(all, all + count);
+    apsis::require_increasing(stops);
+    s.events.stops.swap(stops);
+  });
+}

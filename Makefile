@@ -6,6 +6,8 @@ APSIS  := build/release/app/apsis
 export CMAKE_CXX_COMPILER_LAUNCHER ?= $(shell command -v ccache)
 # One more test than processors: some wait for other processes or for time.
 export CTEST_PARALLEL_LEVEL ?= $(shell echo $$(($(CORES) + 1)))
+# NO_INSTALL=1 installs no Debian package: scripts/install-packages.sh then lists the missing ones and continues.
+export NO_INSTALL
 
 # For whole builds: several files are compiled as one, with precompiled headers.
 WHOLE := -DAPSIS_PCH=ON -DCMAKE_UNITY_BUILD=ON
@@ -18,13 +20,13 @@ FORMATTED = $(shell find src app paper validation tests bench examples python -n
 help: ## this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-13s %s\n", $$1, $$2 }' Makefile
 
-run: program ## install packages, build the program, solve the mixed-regime problem by both methods and the reference, draw
+run: program ## install packages (NO_INSTALL=1: none), build the program, solve the paper's mixed-regime problem, draw it
 	$(APSIS) run paper/bgk-mixed --out results/bgk-mixed
 	$(APSIS) run paper/bgk-mixed time.method=md-imex-3-2 --out results/bgk-mixed-second-order
 	$(APSIS) run paper/bgk-mixed-reference --out results/bgk-mixed-reference
 	$(MAKE) --no-print-directory figures
 
-validate: program ## compare the solver with published values of gas flows: results/validate/report.html
+validate: program ## compare the solver with reference values of gas flows: results/validate/report.html
 	$(APSIS) validate --out results/validate
 
 reproduce: program ## check every claim of the paper and redraw its figures: results/reproduce/report.html
@@ -39,7 +41,7 @@ figures: ## redraw the pictures from existing results
 	  "third order=results/bgk-mixed" "explicit reference=results/bgk-mixed-reference"
 	$(APSIS) report results/bgk-mixed
 
-program: ## build only the program, in build/release/app
+program: ## install packages (NO_INSTALL=1: none), build only the program, in build/release/app
 	@scripts/install-packages.sh run
 	cmake --preset release -DAPSIS_TESTS=OFF $(WHOLE) >/dev/null
 	cmake --build build/release --target app/apsis

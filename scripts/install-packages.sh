@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # install-packages.sh GROUP: installs missing Debian packages of a group of packages.txt.
-# Does nothing, and asks for nothing, if all are installed; never removes a package.
+# Does nothing, and asks for nothing, if all are installed; never removes a package. States before it installs what it installs and
+# with whose rights. With NO_INSTALL=1 in the environment it names the missing packages and installs nothing.
 set -euo pipefail
 here=$(dirname "$(readlink -f "$0")")
 
@@ -33,16 +34,23 @@ for package in "${packages[@]}"; do
 done
 [ ${#missing[@]} -eq 0 ] && exit 0
 
+if [ "${NO_INSTALL:-0}" != 0 ]; then
+  echo "install-packages.sh: packages are missing (NO_INSTALL=$NO_INSTALL); the build needs their contents: ${missing[*]}" >&2
+  exit 0
+fi
 root=()
+rights="your rights (root)"
 if [ "$(id -u)" -ne 0 ]; then
   if ! command -v sudo >/dev/null; then
-    echo "install-packages.sh: packages are missing (and neither root nor sudo is at hand) as root run:" \
-      "apt-get install ${missing[*]}" >&2
+    echo "install-packages.sh: packages are missing (and they need root or sudo); as root run:" \
+      "apt-get install ${missing[*]}; or build without installing: make … NO_INSTALL=1" >&2
     exit 2
   fi
   root=(sudo)
+  rights="root's rights, which sudo grants you"
 fi
-echo "installing: ${missing[*]}"
+echo "This installs Debian packages with $rights: ${missing[*]}"
+echo "To install nothing, stop here and add NO_INSTALL=1: make program NO_INSTALL=1"
 "${root[@]}" apt-get update -qq
 "${root[@]}" env DEBIAN_FRONTEND=noninteractive \
   apt-get install -qq -y --no-install-recommends --no-remove -o Dpkg::Use-Pty=0 "${missing[@]}" >/dev/null

@@ -1,5 +1,5 @@
 """install.py BUILD: pip install . into a new virtual environment with the compiled module of BUILD, and a check of the result.
-This is the installation of README.md."""
+This is the installation of docs/linking.md."""
 import os
 import shutil
 import subprocess

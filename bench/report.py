@@ -4,10 +4,11 @@
     bench/report.py [--results results/bench/speed.json] [--docs docs] [--readme README.md]
 
 Copies the results, if there are any, to DOCS/data/speed/PROCESSOR.json.gz. Writes the tables of the newest file there between the
-marks <!-- NAME --> and <!-- end --> of DOCS/speed.md, DOCS/bodies.md, DOCS/device.md, DOCS/scaling.md and DOCS/steady.md, draws DOCS/images/speed-*.png, and writes the table that compares processors
-there and its most important rows into the README.
+marks <!-- NAME --> and <!-- end --> of the pages of PAGES, and tables longer than a screen to DOCS/data/speed/NAME.csv. Draws
+DOCS/images/speed-*.png. Writes the table that compares processors into DOCS/speed.md, and its rows of the front page into the README.
 """
 import argparse
+import csv
 import json
 import re
 import sys
@@ -20,7 +21,11 @@ import scaling_model  # noqa: E402
 from plot.style import COLOURS, MARKERS, plt  # noqa: E402  (one style for all pictures)
 
 
-PAGES = {"bodies": "bodies.md", "device": "device.md", "processes": "scaling.md", "steady": "steady.md"}  # of tables that are not in speed.md
+# Pages of tables; all others belong to MEASURED.
+PAGES = {"bodies": "cut-cells.md", "collisions": "speed.md", "device": "device.md", "dimensions": "speed.md", "flows": "speed.md",
+         "overhead": "speed.md", "processes": "scaling.md", "steady": "steady-method.md", "transit": "speed.md"}
+MEASURED = "speed-measured.md"
+SCREEN = 30  # rows of a page; longer tables are files
 
 
 class ReportError(Exception):
@@ -56,9 +61,25 @@ def measured_on(*results):
             f"kernels {machine['kernels']}, {machine['compiler']}, median of {extent([result['repeats'] for result in results])}")
 
 
-def section(result):
-    return (f"{result['note']}\n\n{markdown(result['columns'], result['rows'])}\n\n"
-            f"*{measured_on(result)}*")
+def section(name, result):
+    """Returns note, table and date. Of a table longer than a screen the page has the rows of the best contestants, if these fit, and
+    the place of the whole."""
+    rows, place = result["rows"], ""
+    if len(rows) > SCREEN:
+        place = f"All {len(rows)} rows are in [data/speed/{name}.csv](data/speed/{name}.csv).\n\n"
+        rows = [row for row in rows if str(row[0]).startswith("best ")]
+    table = f"{markdown(result['columns'], rows)}\n\n" if rows else ""
+    return f"{result['note']}\n\n{table}{place}*{measured_on(result)}*"
+
+
+def write_long_tables(results, folder):
+    """Writes tables that are longer than a screen as FOLDER/NAME.csv, and removes those that no longer are."""
+    for path in folder.glob("*.csv"):
+        path.unlink()
+    for name, result in results.items():
+        if len(result["rows"]) > SCREEN:
+            with open(folder / f"{name}.csv", "w", encoding="utf-8", newline="") as file:
+                csv.writer(file, lineterminator="\n").writerows([result["columns"], *([number(cell) for cell in row] for row in result["rows"])])
 
 
 def replace(path, name, text):
@@ -173,7 +194,7 @@ def summary(results):
 
 
 # Measures in the README; docs/speed.md has all of them.
-FRONT_PAGE = ("flow", "mixed-regime", "ODE model, ε = 0.01")
+FRONT_PAGE = ("mixed-regime run, N = 40, relative to plain loops, orders", "mixed-regime run, best of SUNDIALS and SSP-RK3 with f of any sign")
 # Flows of the table that compares processors.
 FLOWS = ("gas/sod", "gas/couette", "gas/poiseuille", "gas/cavity", "gas/step", "gas/duct")
 
@@ -248,6 +269,49 @@ def draw_ode(result, path):
         axes.axis("off")
     handles, labels = places[0].get_legend_handles_labels()
     places[-1].legend(handles, labels, loc="center", fontsize="small")
+    figure.savefig(path)
+    plt.close(figure)
+
+
+def draw_flows(result, path):
+    """Draws the rates of flows, as shipped and beyond the caches, and the shares of the time of those that are shipped."""
+    at = {name: k for k, name in enumerate(result["columns"])}
+    cases = list(dict.fromkeys(row[0] for row in result["rows"]))[::-1]
+    of_case = {case: [row for row in result["rows"] if row[0] == case] for case in cases}
+    figure, (rates, shares) = plt.subplots(1, 2, figsize=(13.0, 0.28 * len(cases) + 1.5), sharey=True)
+    for k, label in enumerate(("as shipped", "with 4 million numbers")):
+        rates.plot([of_case[case][k][at["point·stages/s"]] for case in cases], range(len(cases)), MARKERS[k], color=COLOURS[k], label=label)
+    rates.set_xscale("log")
+    rates.set_xlabel("point·stages per second")
+    rates.set_yticks(range(len(cases)), cases)
+    rates.legend()
+    left = [0.0] * len(cases)
+    for k, part in enumerate(result["columns"][at["ratio"] + 1:]):
+        widths = [float(of_case[case][0][at[part]].split()[0]) for case in cases]
+        shares.barh(range(len(cases)), widths, left=left, color=COLOURS[k % len(COLOURS)], label=part)
+        left = [a + b for a, b in zip(left, widths)]
+    shares.set_xlabel("share of the time in %")
+    shares.set_xlim(0.0, 100.0)
+    shares.legend(loc="upper center", bbox_to_anchor=(0.5, 1.08), ncols=6, fontsize="small")
+    figure.savefig(path)
+    plt.close(figure)
+
+
+def draw_steady(result, path):
+    """Draws the CPU time to a steady state against the rarefaction, by iterations and in time, which may be an estimate."""
+    at = {name: k for k, name in enumerate(result["columns"])}
+    rows = [row for row in result["rows"] if row[at["δ"]] != "as shipped"]
+    flows = list(dict.fromkeys(row[0] for row in rows))
+    figure, grid = plt.subplots(-(-len(flows) // 3), 3, figsize=(13.0, 2.4 * -(-len(flows) // 3)), sharex=True)
+    for panel, flow in zip(grid.flat, flows):
+        for k, (column, label) in enumerate((("CPU time (s)", "iterations"), ("in time (s)", "steps in time"))):
+            points = [(float(row[at["δ"]]), float(row[at[column]].lstrip("≈ "))) for row in rows if row[0] == flow]
+            panel.loglog(*zip(*points), MARKERS[k] + "-", color=COLOURS[k], label=label)
+        panel.set_title(flow, fontsize="medium")
+        panel.set_ylabel("CPU time in s")
+    for panel in grid[-1]:
+        panel.set_xlabel("δ")
+    grid.flat[0].legend(fontsize="small")
     figure.savefig(path)
     plt.close(figure)
 
@@ -411,7 +475,8 @@ def main():
     forget_superseded(machines, folder)
     results = newest_tables(machines)
     for name, result in results.items():
-        replace(given.docs / PAGES.get(name, "speed.md"), name, section(result))
+        replace(given.docs / PAGES.get(name, MEASURED), name, section(name, result))
+    write_long_tables(results, folder)
     if "processes" in results:
         replace(given.docs / PAGES["processes"], "scaling-model", scaling_model.tables(results["processes"]))
     replace(given.docs / "speed.md", "processors", comparison(machines))
@@ -425,6 +490,9 @@ def main():
                            ("peers-prothero-robinson", "speed-prothero-robinson.png"), ("peers-broadwell", "speed-broadwell.png")):
         if table in results:
             draw_ode(results[table], given.docs / "images" / picture)
+    for table, draw in (("flows", draw_flows), ("steady", draw_steady)):
+        if table in results:
+            draw(results[table], given.docs / "images" / f"speed-{table}.png")
     if "tolerance" in results.get("peers-ode", {"data": {}})["data"]:
         draw_tolerance(results["peers-ode"]["data"]["tolerance"], given.docs / "images" / "speed-tolerance.png")
 

@@ -66,6 +66,28 @@ class SpeedReport(unittest.TestCase):
             self.assertEqual([bool(machine["peers-kaps"]["data"]["points"]) for machine in machines], [True, False])
             self.assertIn("2026-11-26 to 2026-11-28, Test 1", module.measured_on(*machines[0].values()))
 
+    def test_a_table_longer_than_a_screen_is_a_file_and_its_page_has_the_best_rows(self):
+        module = report()
+        rows = [["best of Apsis"], ["best of the others"], *([f"method {k}"] for k in range(module.SCREEN))]
+        with tempfile.TemporaryDirectory() as folder:
+            folder = Path(folder)
+            (folder / "gone.csv").write_text("", encoding="utf-8")
+            module.write_long_tables({"long": result(rows), "short": result(rows[:module.SCREEN])}, folder)
+            self.assertEqual([path.name for path in folder.iterdir()], ["long.csv"])
+            self.assertEqual((folder / "long.csv").read_text(encoding="utf-8").splitlines(), ["method", *(row[0] for row in rows)])
+        text = module.section("long", result(rows))
+        self.assertEqual([line for line in text.splitlines() if line.startswith("| ")], ["| method |", "| best of Apsis |", "| best of the others |"])
+        self.assertIn("(data/speed/long.csv)", text)
+        self.assertEqual(module.section("short", result(rows[:module.SCREEN])).count("method "), module.SCREEN - 2)
+
+    def test_pages_have_the_tables_of_the_newest_measurements(self):
+        module = report()
+        results = module.newest_tables(module.newest_first(ROOT / "docs" / "data" / "speed"))
+        self.assertGreater(len(results), 15)
+        for name, table in results.items():
+            page = ROOT / "docs" / module.PAGES.get(name, module.MEASURED)
+            self.assertIn(f"<!-- {name} -->\n\n{module.section(name, table)}\n\n<!-- end -->", page.read_text(encoding="utf-8"), page)
+
 
 if __name__ == "__main__":
     unittest.main()

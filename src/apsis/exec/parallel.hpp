@@ -25,7 +25,7 @@ int threads_here();
 int thread_number();
 
 /// Loops over fewer numbers are faster on one thread than on several, which exchange them between their
-/// caches in every pass (docs/speed.md, "Threads").
+/// caches in every pass (docs/speed-measured.md, "Threads").
 inline constexpr std::size_t fewest_shared_numbers = 16384;
 /// Replaces fewest_shared_numbers; for tests of threads on small fields.
 void share_loops_from(std::size_t numbers);

@@ -21,6 +21,28 @@ class Pages(unittest.TestCase):
         shown = {name for text in PAGES.values() for name in re.findall(r"\bimages/([\w.-]+)\)", text)}
         self.assertEqual({picture.name for picture in (ROOT / "docs" / "images").iterdir()}, shown)
 
+    def test_every_page_stands_on_one_shelf(self):
+        shelves = read_shelves()
+        self.assertEqual(list(shelves), ["Guide", "Theory", "Supplement"])
+        listed = [page for pages in shelves.values() for page in pages]
+        self.assertEqual(sorted(listed), sorted(set(listed)))
+        docs = {page.resolve() for page in (ROOT / "docs").glob("**/*.md")} - {ROOT / "docs" / "index.md"}
+        self.assertEqual(docs - set(listed), set())
+        self.assertEqual([page for page in listed if not page.is_file()], [])
+
+    def test_the_guide_is_short_and_has_what_every_user_needs(self):
+        guide = read_shelves()["Guide"]
+        self.assertLessEqual(len(guide), 15)
+        self.assertLessEqual(sum(len(page.read_text(encoding="utf-8").split()) for page in guide), 25000)
+        self.assertLess({"first-steps", "initial-data", "boundaries", "dimensions", "scales", "bodies", "results"}, {page.stem for page in guide})
+
+
+def read_shelves():
+    """Returns the pages that each section of docs/index.md lists."""
+    sections = re.split(r"^## (.*)$", PAGES[ROOT / "docs" / "index.md"], flags=re.M)[1:]
+    return {title: [(ROOT / "docs" / page).resolve() for page in re.findall(r"^- \[[^\]]*\]\(([^)]+)\)", text, re.M)]
+            for title, text in zip(sections[::2], sections[1::2])}
+
 
 if __name__ == "__main__":
     unittest.main()

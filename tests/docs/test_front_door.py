@@ -32,6 +32,29 @@ class FrontDoor(unittest.TestCase):
         self.assertIn("cannot do.**", "\n".join(lines[:35]))
 
 
+class Repository(unittest.TestCase):
+    def test_files_follow_the_rules_of_editorconfig(self):
+        kinds = ("cpp", "hpp", "py", "md", "toml", "sh", "cmake", "txt", "json", "yml")
+        for path in (path for kind in kinds for path in ROOT.rglob(f"*.{kind}")):
+            if {"build", "results", "env", ".git"} & set(path.relative_to(ROOT).parts):
+                continue
+            text = path.read_bytes().decode("utf-8")
+            self.assertNotIn("\r", text, path)
+            self.assertNotRegex(text, r"(?m)^\t", path)
+            self.assertTrue(not text or text.endswith("\n"), path)
+            self.assertIsNone(re.search(r"(?m)[ \t]$", text), path)
+
+    def test_the_changelog_sorts_entries_by_their_kind(self):
+        text = (ROOT / "CHANGELOG.md").read_text(encoding="utf-8")
+        self.assertIn("**Stability.**", text.partition("## Unreleased")[0])
+        for version in re.split(r"(?m)^## ", text)[1:]:
+            name = version.splitlines()[0]
+            self.assertRegex(name, r"^(Unreleased|\d+\.\d+\.\d+ \(\d{4}-\d\d-\d\d\))$")
+            kinds = re.findall(r"(?m)^### (.*)$", version)
+            self.assertLessEqual(set(kinds), {"Numerics changed", "Changed", "Fixed", "Added"})
+            self.assertTrue(kinds or "First version." in version, name)
+
+
 class Packages(unittest.TestCase):
     """scripts/install-packages.sh with commands that only record their calls; dpkg-query finds no package."""
 

@@ -25,6 +25,11 @@ class Layers(unittest.TestCase):
         self.assertIn("semidiscrete", rooms["run"])
         self.assertFalse(rooms["output"] & {"config", "run"})  # files know no case
 
+    def test_the_page_for_contributors_lists_the_rooms_in_their_order(self):
+        rooms = list(check_layers.read_rooms((SOURCE / "src/apsis/CMakeLists.txt").read_text(encoding="utf-8")))
+        page = " ".join((SOURCE / "CONTRIBUTING.md").read_text(encoding="utf-8").split())
+        self.assertIn(f"each a library with a README: {', '.join(rooms)}. ", page)
+
     def planted(self, file, text):
         with tempfile.TemporaryDirectory() as folder:
             root = Path(folder)

@@ -281,6 +281,14 @@ def test_a_picture_whose_name_is_a_path_is_refused(tmp_path, capsys):
         assert sorted(p.name for p in tmp_path.iterdir()) == ["picture.json"]
 
 
+def test_a_method_without_a_butcher_form_is_refused(tmp_path, capsys):
+    file = tmp_path / "exponential-2.json"
+    file.write_text(json.dumps({"name": "exponential-2", "A_hat": [[0]]}), encoding="utf-8")  # as the program describes it
+    assert command.main([str(file), "--out", str(tmp_path)]) == 4
+    assert "'exponential-2' cannot be drawn (an exponential method has no Butcher form); give" in capsys.readouterr().err
+    assert sorted(path.name for path in tmp_path.iterdir()) == [file.name]
+
+
 def test_results_without_a_picture_are_refused(tmp_path, monkeypatch, capsys):
     run(tmp_path / "run", "paper/ode")
     (tmp_path / "empty").mkdir()

@@ -47,6 +47,10 @@ def method_description(name: str) -> dict[str, Any]:
 
 
 def of_method(description: dict[str, Any]) -> Iterable[tuple[str, Any]]:
+    """Returns the pictures of a Butcher form. Raises PictureError for methods without one."""
+    if any(description.get(part) is None for part in ("A_hat", "A", "A_dot")):
+        raise PictureError(f"'{description['name']}' cannot be drawn (an exponential method has no Butcher form); give a Runge-Kutta method, "
+                           f"or see 'apsis check {description['name']}'")
     yield f"{description['name']}-tableau", methods.tableau_figure(description)
     yield f"{description['name']}-stability", methods.stability_figure(description)
 

@@ -31,12 +31,14 @@ constexpr int lanes_of_cell = scalar::octet_length;
 /// Numbers that a cell needs in the memory of a block.
 std::size_t shared_by_cell(const gas_model& gas, const kernels::gas_rows& rows) {
   using namespace kernels;
-  const int own = gas.as_ellipsoidal() != nullptr
-                      ? memory_of_central_sums::powers_of(rows, collide_es_bgk::degree)
-                  : gas.as_shakhov() != nullptr
-                      ? rows.points + memory_of_central_sums::powers_of(rows, collide_shakhov::degree)
-                      : rows.points;
-  return static_cast<std::size_t>(most_totals * lanes_of_cell + own);
+  int numbers = most_totals * lanes_of_cell;
+  if (gas.as_ellipsoidal() != nullptr)
+    numbers += memory_of_central_sums::powers_of(rows, collide_es_bgk::degree);
+  else if (gas.as_shakhov() != nullptr)
+    numbers += rows.points + memory_of_central_sums::powers_of(rows, collide_shakhov::degree);
+  else
+    numbers += rows.points;
+  return static_cast<std::size_t>(numbers);
 }
 
 /// Numbers that a cell needs in the memory of the device.

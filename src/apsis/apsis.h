@@ -162,8 +162,9 @@ int apsis_new_integrator(const apsis_method* method, size_t n, apsis_integrator*
 /// Releases an integrator. NULL is ignored.
 void apsis_free_integrator(apsis_integrator* integrator);
 
-/// Every setting may be changed between two calls of apsis_integrate(); NULL removes a callback. In
-/// callbacks, settings are errors (APSIS_INPUT_ERROR), and so are apsis_start() and apsis_integrate().
+/// Every setting may be changed between two calls of apsis_integrate(); NULL removes a callback. Settings
+/// other than data and observers begin the control of step lengths anew. In callbacks, settings are errors
+/// (APSIS_INPUT_ERROR), and so are apsis_start() and apsis_integrate().
 
 /// Sets the last argument of all callbacks, initially NULL.
 int apsis_set_data(apsis_integrator* integrator, void* data);

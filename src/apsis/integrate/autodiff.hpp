@@ -17,32 +17,60 @@ using dual = boost::math::differentiation::autodiff_fvar<Real, 1>;
 template <class Real>
 using nested_dual = boost::math::differentiation::autodiff_fvar<Real, 1, 1>;
 
+/// Whether g(t, u, out) can be called: G depends on time.
+template <class G, class Real>
+concept function_of_time =
+    requires(G& g, const Real& t, std::span<const Real> in, std::span<Real> out) { g(t, in, out); };
+
 /// Exact derivatives of u' = G(u) along given directions, where g(u, out) sets out ← G(u) for any scalar
 /// type: both are std::span of Real, dual<Real> or nested_dual<Real>. Elementary functions must be called
 /// so that they are found for these types: `using std::sin; out[0] = sin(u[0]);`.
+///
+/// If G depends on time, g is g(t, u, out), where t has the scalar type of u, and set_time() gives t. Time is
+/// then a further unknown with derivative θ, which is 1 where time passes along the flow of G, and 0 where it
+/// stands still: Ġ = G'G + θ ∂G/∂t.
 template <class Real, class G>
 class vector_field {
  public:
-  /// Stores g(u, out) as above.
+  /// Whether G depends on time.
+  static constexpr bool timed = function_of_time<G, Real>;
+
+  /// Stores g(u, out) or g(t, u, out) as above.
   explicit vector_field(G g) : g_(std::move(g)) {}
 
-  /// out ← G(u).
-  void value(std::span<const Real> u, std::span<Real> out) { g_(u, out); }
+  /// Sets t and θ of all evaluations that follow; initially 0. No effect unless `timed`.
+  void set_time(Real t, Real theta) {
+    t_ = t;
+    theta_ = theta;
+  }
 
-  /// g ← G(u), g_dot ← Ġ(u) = G'(u) G(u), the second time derivative of a solution.
+  /// out ← G(u).
+  void value(std::span<const Real> u, std::span<Real> out) {
+    if constexpr (timed)
+      g_(t_, u, out);
+    else
+      g_(u, out);
+  }
+
+  /// g ← G(u), g_dot ← Ġ(u) = G'(u) G(u) + θ ∂G/∂t, the second time derivative of a solution.
   void time_derivatives(std::span<const Real> u, std::span<Real> g, std::span<Real> g_dot) {
     value(u, g);
-    first_order(u, g);
-    for (std::size_t i = 0; i < u.size(); ++i) g_dot[i] = out1_[i].derivative(1);
+    flow_product(u, g, g_dot);
   }
 
   /// jx ← G'(u) x.
   void jacobian_product(std::span<const Real> u, std::span<const Real> x, std::span<Real> jx) {
-    first_order(u, x);
+    first_order(u, x, Real(0));
     for (std::size_t i = 0; i < u.size(); ++i) jx[i] = out1_[i].derivative(1);
   }
 
-  /// jx ← G'(u) x and kx ← Ġ'(u) x = (G'(u)² + G''(u)[·, G]) x: the coefficient of s t in
+  /// jk ← G'(u) k + θ ∂G/∂t, the derivative of G along a flow with the rate k.
+  void flow_product(std::span<const Real> u, std::span<const Real> k, std::span<Real> jk) {
+    first_order(u, k, theta_);
+    for (std::size_t i = 0; i < u.size(); ++i) jk[i] = out1_[i].derivative(1);
+  }
+
+  /// jx ← G'(u) x and kx ← Ġ'(u) x = (G'(u)² + G''(u)[·, G] + θ ∂G'/∂t) x: the coefficient of s t in
   /// G(u + s x + t G(u + s x)). One evaluation in dual and one in nested dual numbers.
   void second_product(std::span<const Real> u, std::span<const Real> x, std::span<Real> jx,
                       std::span<Real> kx) {
@@ -53,7 +81,7 @@ class vector_field {
     for (std::size_t i = 0; i < u.size(); ++i) kx[i] = out2_[i].derivative(1, 1);
   }
 
-  /// jx ← G'(u) x and hx ← G''(u)[k, x]: the coefficients of s and s t in G(u + s x + t k).
+  /// jx ← G'(u) x and hx ← G''(u)[k, x] + θ ∂G'/∂t x: the coefficients of s and s t in G(u + s x + t k).
   void curvature(std::span<const Real> u, std::span<const Real> k, std::span<const Real> x,
                  std::span<Real> jx, std::span<Real> hx) {
     second_order(u.size(), [&](std::size_t i, const auto& s, const auto& t, const auto&) {
@@ -77,21 +105,28 @@ class vector_field {
     for (std::size_t i = 0; i < n; ++i) in2_[i] = component(i, s, t, st);
     const std::span<const nested_dual<Real>> in(in2_);
     std::span<nested_dual<Real>> out(out2_);
-    g_(in, out);
+    if constexpr (timed)
+      g_(nested_dual<Real>(t * theta_ + t_), in, out);
+    else
+      g_(in, out);
   }
 
-  /// out1_ ← G(u + s x).
-  void first_order(std::span<const Real> u, std::span<const Real> x) {
+  /// out1_ ← G(u + s x) at the time t + θ s.
+  void first_order(std::span<const Real> u, std::span<const Real> x, Real theta) {
     in1_.resize(u.size());
     out1_.resize(u.size());
     const dual<Real> s(Real(0), true);
     for (std::size_t i = 0; i < u.size(); ++i) in1_[i] = s * x[i] + u[i];
     const std::span<const dual<Real>> in(in1_);
     std::span<dual<Real>> out(out1_);
-    g_(in, out);
+    if constexpr (timed)
+      g_(dual<Real>(s * theta + t_), in, out);
+    else
+      g_(in, out);
   }
 
   G g_;
+  Real t_ = Real(0), theta_ = Real(0);
   std::vector<dual<Real>> in1_, out1_;
   std::vector<nested_dual<Real>> in2_, out2_;
 };
@@ -100,6 +135,9 @@ class vector_field {
 ///   value(u, out)              out ← G(u)
 ///   jacobian_product(u, x, jx)   jx ← G'(u) x; it enters Ġ = G'G, so its error is one of the solution
 ///   curvature(u, k, x, hx)       hx ← G''(u)[k, x]; its error only slows Newton's method
+/// A G that depends on time has two functions more:
+///   set_time(t)                  sets the time of all evaluations that follow
+///   time_derivative(u, out)      out ← ∂G/∂t; it enters Ġ as well
 template <class G, class Real>
 concept differentiated = requires(G& g, std::span<const Real> in, std::span<Real> out) {
   g.value(in, out);
@@ -107,19 +145,46 @@ concept differentiated = requires(G& g, std::span<const Real> in, std::span<Real
   g.curvature(in, in, in, out);
 };
 
+/// Derivatives written by hand for a G that depends on time.
+template <class G, class Real>
+concept differentiated_in_time =
+    differentiated<G, Real> && requires(G& g, Real t, std::span<const Real> in, std::span<Real> out) {
+      g.set_time(t);
+      g.time_derivative(in, out);
+    };
+
 /// The functions of vector_field for derivatives written by hand.
 template <class Real, differentiated<Real> G>
 class given_derivatives {
  public:
+  /// Whether G depends on time.
+  static constexpr bool timed = differentiated_in_time<G, Real>;
+
   /// Stores g with the functions of `differentiated`.
   explicit given_derivatives(G g) : g_(std::move(g)) {}
 
+  /// Sets t and θ of all evaluations that follow; see vector_field.
+  void set_time(Real t, Real theta) {
+    if constexpr (timed) g_.set_time(t);
+    theta_ = theta;
+  }
+
   /// out ← G(u).
   void value(std::span<const Real> u, std::span<Real> out) { g_.value(u, out); }
-  /// g ← G(u), g_dot ← G'(u) G(u).
+  /// g ← G(u), g_dot ← G'(u) G(u) + θ ∂G/∂t.
   void time_derivatives(std::span<const Real> u, std::span<Real> g, std::span<Real> g_dot) {
     g_.value(u, g);
-    g_.jacobian_product(u, g, g_dot);
+    flow_product(u, g, g_dot);
+  }
+  /// jk ← G'(u) k + θ ∂G/∂t.
+  void flow_product(std::span<const Real> u, std::span<const Real> k, std::span<Real> jk) {
+    g_.jacobian_product(u, k, jk);
+    if constexpr (timed) {
+      if (theta_ == Real(0)) return;
+      bent_.resize(u.size());
+      g_.time_derivative(u, bent_);
+      for (std::size_t i = 0; i < u.size(); ++i) jk[i] += theta_ * bent_[i];
+    }
   }
   /// jx ← G'(u) x.
   void jacobian_product(std::span<const Real> u, std::span<const Real> x, std::span<Real> jx) {
@@ -145,6 +210,7 @@ class given_derivatives {
 
  private:
   G g_;
+  Real theta_ = Real(0);
   std::vector<Real> rate_, bent_;
 };
 

@@ -255,6 +255,7 @@ class newton {
     // Near a root a full step reduces R quadratically; when that ends, the remainder is rounding.
     const bool small = step_ <= std::sqrt(std::numeric_limits<Real>::epsilon());
     const bool near = small || norm_ <= Real(32) * noise;
+    if (equation_.negligible(as_span<Real>(std::as_const(v_)), as_span<Real>(delta))) return end_with(delta);
     for (Real t(1); t >= Real(0x1p-40); t /= Real(2)) {
       trial_ = v_ + t * delta;
       const bool admissible = equation_.admissible(as_span<Real>(std::as_const(trial_)));
@@ -281,6 +282,18 @@ class newton {
     }
     if (near) return false;
     fail_to_reduce();
+  }
+
+  /// Adds a negligible correction, unless that leaves the admissible set or what is finite.
+  bool end_with(const column<Real>& delta) {
+    trial_ = v_ + delta;
+    const bool admissible = equation_.admissible(as_span<Real>(std::as_const(trial_)));
+    const Real norm = evaluate(trial_, trial_r_);
+    if ((inside_ && !admissible) || !(norm < std::numeric_limits<Real>::infinity())) return false;
+    v_.swap(trial_);
+    norm_ = norm;
+    inside_ = admissible;
+    return false;
   }
 
   [[noreturn]] void fail_at_start() {

@@ -23,9 +23,10 @@ class stage_equation {
   virtual stage_terms<Real> terms() const = 0;  ///< a, b and u_e
   /// Sets g ← G(v).
   virtual void rate(std::span<const Real> v, std::span<Real> g) = 0;
-  /// Sets jx ← G'(v) x.
-  virtual void rate_product(std::span<const Real> v, std::span<const Real> x, std::span<Real> jx) = 0;
-  /// Sets jx ← G'(v) x and hx ← G''(v)[k, x].
+  /// Sets jk ← G'(v) k, the derivative of G along a flow with the rate k; plus ∂G/∂t where time flows too.
+  virtual void rate_product(std::span<const Real> v, std::span<const Real> k, std::span<Real> jk) = 0;
+  /// Sets jx ← G'(v) x and hx ← G''(v)[k, x], the derivative of rate_product in the direction x for a given
+  /// k.
   virtual void rate_curvature(std::span<const Real> v, std::span<const Real> k, std::span<const Real> x,
                               std::span<Real> jx, std::span<Real> hx) = 0;
   virtual std::size_t size() const = 0;  ///< n
@@ -37,6 +38,13 @@ class stage_equation {
                             std::span<Real> z) = 0;
   /// Whether v is admissible; Newton iterates never leave the admissible set once they are inside.
   virtual bool admissible(std::span<const Real> v) = 0;
+  /// Whether the correction δ of v is so small that v + δ is the root to the accuracy that is needed; without
+  /// this, iterations end at rounding errors.
+  virtual bool negligible(std::span<const Real> v, std::span<const Real> delta) {
+    (void)v;
+    (void)delta;
+    return false;
+  }
 };
 
 /// Linear solver for R'(v) x = −R(v).
@@ -64,7 +72,8 @@ struct newton_report {
 };
 
 /// Solves R(v) = 0 to round-off, starting from the given v: Newton's method with exact derivatives and
-/// backtracking on the maximum norm of R, until no further improvement is possible. With LU, a step is also
+/// backtracking on the maximum norm of R, until no further improvement is possible or the equation declares a
+/// correction negligible. With LU, a step is also
 /// accepted if the next step with the same R' is shorter (the natural monotonicity test: Deuflhard, Newton
 /// Methods for Nonlinear Problems, section 3.3). Instantiated for double and long double.
 ///

@@ -4,12 +4,14 @@
 #include <apsis/core/log.hpp>
 #include <apsis/integrate/array_state.hpp>
 #include <apsis/integrate/autodiff.hpp>
+#include <apsis/integrate/component_tolerances.hpp>
 #include <apsis/integrate/guarded_newton.hpp>
 #include <apsis/integrate/problem.hpp>
 
 #include <cstdio>
 #include <functional>
 #include <limits>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -22,6 +24,7 @@ namespace apsis {
 ///   f(t, u, out)   out ← F(t, u) on states; no_transport{} if F = 0
 ///   g(u, out)      out ← G(u) for any scalar type, on std::span of N numbers:
 ///                  [](const auto& u, auto& out) { out[0] = -10 * u[0] * u[0]; }
+///   g(t, u, out)   instead, for G that depends on time; t has the scalar type of u
 /// g may also be an object with derivatives written by hand (`differentiated`, autodiff.hpp).
 /// newton_problem{f, g} has the state std::vector<double>, make_newton_problem<State>(f, g) any other.
 ///
@@ -50,6 +53,20 @@ class newton_problem {
     return *this;
   }
 
+  /// Ends the stage solves as soon as Newton's correction is below `share` of the tolerance of every unknown,
+  /// instead of at rounding errors; what G conserves stays conserved to rounding. Extrapolated Euler steps
+  /// multiply errors of their solves by up to 300, hence the default. Throws input_error unless 0 < share
+  /// ≤ 1.
+  newton_problem& with_tolerances(component_tolerances<real> tolerances, real share = real(1e-3)) {
+    if (!(share > real(0) && share <= real(1)))
+      throw input_error(
+          "the share of the tolerance is not between 0 and 1 (it is that of stage solves); "
+          "give a small part of 1");
+    equation_.tolerances = std::move(tolerances);
+    equation_.share = share;
+    return *this;
+  }
+
   /// Required by `problem`, with T = F.
   void add_transport(real t, const State& u, std::span<const target<State, real>> targets) {
     accumulate<State>(targets, u, [&]() -> const State& {
@@ -60,9 +77,10 @@ class newton_problem {
   }
 
   /// Required by `problem_with_explicit_collision`, with Q = G.
-  void add_collision(real, const State& u, std::span<const target<State, real>> targets) {
+  void add_collision(real t, const State& u, std::span<const target<State, real>> targets) {
     accumulate<State>(targets, u, [&]() -> const State& {
       load(u);
+      equation_.field.set_time(t, real(0));
       equation_.field.value(v_, equation_.g);
       work_ = u;
       unload(equation_.g, work_);
@@ -76,6 +94,7 @@ class newton_problem {
       work_ = u;
       f_(t, u, work_);
       load(u);
+      equation_.field.set_time(t, real(0));
       equation_.field.value(v_, equation_.g);
       using size_type = decltype(u.size());
       for (std::size_t i = 0; i < v_.size(); ++i) work_[static_cast<size_type>(i)] += equation_.g[i];
@@ -85,22 +104,13 @@ class newton_problem {
 
   /// Sets u ← v. Throws numerical_error as guarded_newton does, or if u is not finite or not admissible; u
   /// is then unchanged.
-  void solve_collision(real, real a, real b, State& u) {
-    load(u);
-    if (a == real(0) && b == real(0)) {
-      require_finite(u, "a stage");
-      if (!equation_.admissible(v_))
-        throw numerical_error(
-            "a stage is not admissible (the method or the time step does not preserve admissibility); "
-            "reduce the time step, or use an SSP method");
-      return;
-    }
-    warn_of_cost();
-    equation_.a = a;
-    equation_.b = b;
-    equation_.explicit_part = v_;
-    report_ = guarded_newton<real>(equation_, v_, options_);
-    unload(v_, u);
+  void solve_collision(real t, real a, real b, State& u) { solve(t, real(0), a, b, u); }
+
+  /// Required by `problem_with_timed_collision`; throws like solve_collision().
+  void solve_timed_collision(real t, real a, real b, State& u)
+    requires field_of<real, G>::timed
+  {
+    solve(t, real(1), a, b, u);
   }
 
   /// Required by `problem_with_transport_check`; evaluates F.
@@ -130,8 +140,11 @@ class newton_problem {
     bool admissible(std::span<const real> v) override { return !admissible_set || admissible_set(v); }
     stage_terms<real> terms() const override { return {a, b, explicit_part}; }
     void rate(std::span<const real> v, std::span<real> out) override { field.value(v, out); }
-    void rate_product(std::span<const real> v, std::span<const real> x, std::span<real> jx) override {
-      field.jacobian_product(v, x, jx);
+    void rate_product(std::span<const real> v, std::span<const real> k, std::span<real> jk) override {
+      field.flow_product(v, k, jk);
+    }
+    bool negligible(std::span<const real> v, std::span<const real> delta) override {
+      return tolerances && tolerances->of_change(v, delta) <= share;
     }
     void rate_curvature(std::span<const real> v, std::span<const real> k, std::span<const real> x,
                         std::span<real> jx, std::span<real> hx) override {
@@ -165,9 +178,31 @@ class newton_problem {
 
     field_of<real, G> field;
     std::function<bool(std::span<const real>)> admissible_set;
+    std::optional<component_tolerances<real>> tolerances;
+    real share = real(0);
     real a = real(0), b = real(0);
     std::vector<real> explicit_part, g, g_dot;
   };
+
+  /// The stage at time t, in which time passes at the rate θ along the flow of G.
+  void solve(real t, real theta, real a, real b, State& u) {
+    load(u);
+    equation_.field.set_time(t, theta);
+    if (a == real(0) && b == real(0)) {
+      require_finite(u, "a stage");
+      if (!equation_.admissible(v_))
+        throw numerical_error(
+            "a stage is not admissible (the method or the time step does not preserve admissibility); "
+            "reduce the time step, or use an SSP method");
+      return;
+    }
+    warn_of_cost();
+    equation_.a = a;
+    equation_.b = b;
+    equation_.explicit_part = v_;
+    report_ = guarded_newton<real>(equation_, v_, options_);
+    unload(v_, u);
+  }
 
   /// Warns once, before the first solve.
   void warn_of_cost() {

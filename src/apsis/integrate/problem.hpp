@@ -105,6 +105,15 @@ bool collides_exactly(const P& p) {
     return false;
 }
 
+/// A problem whose Q depends on time, u' = T(t, u) + Q(t, u). Where time is integrated as part of T, Q̇ has no
+/// ∂Q/∂t, and solve_collision(t, a, b, u) solves the stage. A method without T integrates time as part of Q:
+///   solve_timed_collision(t, a, b, u)   in place: u ← v with v = u + a Q(t, v) + b (Q'(t, v)Q(t, v) +
+///                                       ∂Q(t, v)/∂t), t the time of the stage
+template <class P>
+concept problem_with_timed_collision = problem<P> && requires(P p, typename P::state& v, typename P::real x) {
+  p.solve_timed_collision(x, x, x, v);
+};
+
 /// A problem that reports whether it has transport, so that implicit-only methods are rejected:
 ///   has_transport(t, u)   whether T(t, u) ≠ 0
 template <class P>

@@ -59,7 +59,7 @@ class stepper {
         convex_(is_convex(m_, kind, m_.stages() - (which == solutions::result_and_embedded ? 1 : 0))) {
     const auto butcher = to_butcher(m_);
     // Abscissae: time is a component of u with derivative 1, integrated as part of T if there is one (then Q̇
-    // has no ∂_t term).
+    // has no ∂_t term), otherwise as part of Q (problem_with_timed_collision).
     const auto& a = kind == method_kind::implicit_only ? butcher.A : butcher.A_hat;
     for (std::size_t i = 0; i < m_.stages(); ++i) {
       real c(0);
@@ -197,6 +197,10 @@ class stepper {
 
   void execute(const prepared& now, std::span<const target<state, real>> targets, real t) {
     if (now.what == action::solve_collision) {
+      if constexpr (problem_with_timed_collision<P>) {
+        if (kind_ == method_kind::implicit_only)
+          return problem_.solve_timed_collision(t + now.delay, now.a, now.b, *now.source);
+      }
       problem_.solve_collision(t + now.delay, now.a, now.b, *now.source);
     } else if (now.what == action::add_transport) {
       if constexpr (problem_with_joint_evaluation<P>) {

@@ -72,6 +72,7 @@ class unsquared {
     step_ = largest(delta.head(n_)) / (of_v > Real(0) ? of_v : Real(1));
     if (!(size < std::numeric_limits<Real>::infinity()))
       fail_singular(std::numeric_limits<double>::infinity());
+    if (equation_.negligible(v_of(x_), v_of(delta))) return end_with(delta);
     for (Real t(1); t >= Real(0x1p-40); t /= Real(2)) {
       trial_ = x_ + t * delta;
       const bool inside = admissible(trial_);
@@ -88,6 +89,17 @@ class unsquared {
       return false;
     }
     if (!is_small(delta)) fail("seems to have no root near its explicit part");
+    return false;
+  }
+
+  /// Adds a negligible correction, unless that leaves the admissible set or what is finite.
+  bool end_with(const column& delta) {
+    trial_ = x_ + delta;
+    const bool inside = admissible(trial_);
+    if ((inside_ && !inside) || !residual(trial_, trial_r_)) return false;
+    inside_ = inside;
+    x_.swap(trial_);
+    r_.swap(trial_r_);
     return false;
   }
 

@@ -250,12 +250,13 @@ class newton {
                                                           : krylov_step<Real>(equation_, v_, r_, iteration_);
     too_stiff_ = stiffness > stiffest(equation_);
     if (too_stiff_) return false;
-    const Real size = largest<Real>(v_);
-    step_ = largest<Real>(delta) / (size > Real(0) ? size : Real(1));
+    const Real of_v = largest<Real>(v_);
+    step_ = largest<Real>(delta) / (of_v > Real(0) ? of_v : Real(1));
     // Near a root a full step reduces R quadratically; when that ends, the remainder is rounding.
     const bool small = step_ <= std::sqrt(std::numeric_limits<Real>::epsilon());
     const bool near = small || norm_ <= Real(32) * noise;
-    if (equation_.negligible(as_span<Real>(std::as_const(v_)), as_span<Real>(delta))) return end_with(delta);
+    const Real size = size_of(delta);
+    if (size <= Real(1)) return end_with(delta);
     for (Real t(1); t >= Real(0x1p-40); t /= Real(2)) {
       trial_ = v_ + t * delta;
       const bool admissible = equation_.admissible(as_span<Real>(std::as_const(trial_)));
@@ -271,6 +272,8 @@ class newton {
         r_.swap(trial_r_);
         norm_ = norm;
         inside_ = admissible;
+        if (t == Real(1) && correct && size < std::numeric_limits<Real>::infinity())
+          return repeat(correct, size);
         return !stagnates;
       }
       if (near) {
@@ -284,7 +287,31 @@ class newton {
     fail_to_reduce();
   }
 
-  /// Adds a negligible correction, unless that leaves the admissible set or what is finite.
+  Real size_of(const column<Real>& delta) {
+    return equation_.size_of_correction(as_span<Real>(std::as_const(v_)), as_span<Real>(delta));
+  }
+
+  /// Repeats corrections with the same R' while they become much smaller; returns false at the root.
+  bool repeat(const std::function<column<Real>(const column<Real>&)>& correct, Real size) {
+    for (int k = 0; k < 8; ++k) {
+      const column<Real> next = correct(r_);
+      const Real of_next = size_of(next);
+      if (of_next <= Real(1)) return end_with(next);
+      if (!(of_next <= size / Real(8))) return true;
+      trial_ = v_ + next;
+      const bool admissible = equation_.admissible(as_span<Real>(std::as_const(trial_)));
+      const Real norm = evaluate(trial_, trial_r_);
+      if ((inside_ && !admissible) || !(norm < std::numeric_limits<Real>::infinity())) return true;
+      v_.swap(trial_);
+      r_.swap(trial_r_);
+      norm_ = norm;
+      inside_ = admissible;
+      size = of_next;
+    }
+    return true;
+  }
+
+  /// Adds the last correction, unless that leaves the admissible set or what is finite.
   bool end_with(const column<Real>& delta) {
     trial_ = v_ + delta;
     const bool admissible = equation_.admissible(as_span<Real>(std::as_const(trial_)));

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <span>
 
 namespace apsis {
@@ -38,12 +39,12 @@ class stage_equation {
                             std::span<Real> z) = 0;
   /// Whether v is admissible; Newton iterates never leave the admissible set once they are inside.
   virtual bool admissible(std::span<const Real> v) = 0;
-  /// Whether the correction δ of v is so small that v + δ is the root to the accuracy that is needed; without
-  /// this, iterations end at rounding errors.
-  virtual bool negligible(std::span<const Real> v, std::span<const Real> delta) {
+  /// Size of a correction δ of v in units of the accuracy that is needed: the root is accurate enough after a
+  /// correction of at most 1. +infinity, the default, asks for the root to rounding errors.
+  virtual Real size_of_correction(std::span<const Real> v, std::span<const Real> delta) {
     (void)v;
     (void)delta;
-    return false;
+    return std::numeric_limits<Real>::infinity();
   }
 };
 
@@ -72,10 +73,11 @@ struct newton_report {
 };
 
 /// Solves R(v) = 0 to round-off, starting from the given v: Newton's method with exact derivatives and
-/// backtracking on the maximum norm of R, until no further improvement is possible or the equation declares a
-/// correction negligible. With LU, a step is also
+/// backtracking on the maximum norm of R, until no further improvement is possible. With LU, a step is also
 /// accepted if the next step with the same R' is shorter (the natural monotonicity test: Deuflhard, Newton
-/// Methods for Nonlinear Problems, section 3.3). Instantiated for double and long double.
+/// Methods for Nonlinear Problems, section 3.3). If the equation states the accuracy that is needed,
+/// iterations end there, and repeat corrections with the same R' while each is at most 1/8 of the one before.
+/// Instantiated for double and long double.
 ///
 /// Throws numerical_error if R(v) is not finite at the start, if R'(v) is singular to working precision
 /// (smallest singular value, relative to the terms of R' before they cancel, below about 1e-14 in double: for

@@ -7,6 +7,7 @@
 #include <apsis/integrate/component_tolerances.hpp>
 #include <apsis/integrate/guarded_newton.hpp>
 #include <apsis/integrate/problem.hpp>
+#include <apsis/integrate/unsquared_newton.hpp>
 
 #include <cstdio>
 #include <functional>
@@ -64,6 +65,13 @@ class newton_problem {
           "give a small part of 1");
     equation_.tolerances = std::move(tolerances);
     equation_.share = share;
+    return *this;
+  }
+
+  /// Solves stages by sparse factorizations (sparse_newton): G' has entries at the places of the pattern
+  /// only.
+  newton_problem& with_sparsity(const sparsity_pattern& pattern) {
+    sparse_.emplace(pattern);
     return *this;
   }
 
@@ -143,8 +151,8 @@ class newton_problem {
     void rate_product(std::span<const real> v, std::span<const real> k, std::span<real> jk) override {
       field.flow_product(v, k, jk);
     }
-    bool negligible(std::span<const real> v, std::span<const real> delta) override {
-      return tolerances && tolerances->of_change(v, delta) <= share;
+    real size_of_correction(std::span<const real> v, std::span<const real> delta) override {
+      return tolerances ? tolerances->of_change(v, delta) / share : std::numeric_limits<real>::infinity();
     }
     void rate_curvature(std::span<const real> v, std::span<const real> k, std::span<const real> x,
                         std::span<real> jx, std::span<real> hx) override {
@@ -200,20 +208,23 @@ class newton_problem {
     equation_.a = a;
     equation_.b = b;
     equation_.explicit_part = v_;
-    report_ = guarded_newton<real>(equation_, v_, options_);
+    report_ =
+        sparse_ ? sparse_->solve(equation_, v_, options_) : guarded_newton<real>(equation_, v_, options_);
     unload(v_, u);
   }
 
   /// Warns once, before the first solve.
   void warn_of_cost() {
-    if (options_.solver != linear_solver::dense || warned_ || v_.size() <= most_unknowns_of_newton) return;
+    if (sparse_ || options_.solver != linear_solver::dense || warned_ || v_.size() <= most_unknowns_of_newton)
+      return;
     warned_ = true;
     const double n = static_cast<double>(v_.size());
     char text[320];
     std::snprintf(
         text, sizeof text,
         "a stage has %.0f unknowns, and each of its Newton steps takes about n^3 = %.0e operations (dense "
-        "linear systems); use linear_solver::krylov if G is not stiff, or relaxation_problem, whose "
+        "linear systems); use with_sparsity, linear_solver::krylov if G is not stiff, or relaxation_problem, "
+        "whose "
         "stages are closed formulas",
         n, n * n * n);
     log::warning(text);
@@ -236,6 +247,7 @@ class newton_problem {
   F f_;
   equation equation_;
   newton_options options_;
+  std::optional<sparse_newton<real>> sparse_;
   bool warned_ = false;  ///< of the cost of dense systems
   newton_report report_;
   std::function<real(real, const State&)> forward_euler_;

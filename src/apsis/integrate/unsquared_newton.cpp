@@ -6,6 +6,8 @@
 #include <apsis/integrate/unsquared_newton.hpp>
 
 #include <apsis/core/errors.hpp>
+#include <apsis/integrate/internal/dense_stage_system.hpp>
+#include <apsis/integrate/internal/sparse_stage_system.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -22,13 +24,14 @@ namespace {
 template <class Real>
 class unsquared {
   using column = Eigen::Matrix<Real, Eigen::Dynamic, 1>;
-  using square = Eigen::Matrix<Real, Eigen::Dynamic, Eigen::Dynamic>;
   static constexpr Real rounding = std::numeric_limits<Real>::epsilon();
   static constexpr Real accurate = Real(8);  ///< corrections of a few roundings are not improved any further
 
  public:
-  unsquared(stage_equation<Real>& equation, std::span<Real> start, const newton_options& options)
+  unsquared(stage_equation<Real>& equation, stage_system<Real>& system, std::span<Real> start,
+            const newton_options& options)
       : equation_(equation),
+        system_(system),
         options_(options),
         n_(static_cast<Eigen::Index>(start.size())),
         a_(equation.terms().a),
@@ -72,7 +75,8 @@ class unsquared {
     step_ = largest(delta.head(n_)) / (of_v > Real(0) ? of_v : Real(1));
     if (!(size < std::numeric_limits<Real>::infinity()))
       fail_singular(std::numeric_limits<double>::infinity());
-    if (equation_.negligible(v_of(x_), v_of(delta))) return end_with(delta);
+    const Real needed = size_of(delta);
+    if (needed <= Real(1)) return end_with(delta);
     for (Real t(1); t >= Real(0x1p-40); t /= Real(2)) {
       trial_ = x_ + t * delta;
       const bool inside = admissible(trial_);
@@ -83,6 +87,7 @@ class unsquared {
       inside_ = inside;
       x_.swap(trial_);
       r_.swap(trial_r_);
+      if (t == Real(1) && needed < std::numeric_limits<Real>::infinity()) return repeat(needed);
       if (of_next > accurate || t < Real(1)) return true;
       trial_ = x_ + next;
       if (!inside_ || admissible(trial_)) x_.swap(trial_);
@@ -92,7 +97,27 @@ class unsquared {
     return false;
   }
 
-  /// Adds a negligible correction, unless that leaves the admissible set or what is finite.
+  Real size_of(const column& delta) { return equation_.size_of_correction(v_of(x_), v_of(delta)); }
+
+  /// Repeats corrections with the same M while they become much smaller; returns false at the root.
+  bool repeat(Real size) {
+    for (int k = 0; k < 8; ++k) {
+      const column next = correction(r_);
+      const Real of_next = size_of(next);
+      if (of_next <= Real(1)) return end_with(next);
+      if (!(of_next <= size / Real(8))) return true;
+      trial_ = x_ + next;
+      const bool inside = admissible(trial_);
+      if ((inside_ && !inside) || !residual(trial_, trial_r_)) return true;
+      inside_ = inside;
+      x_.swap(trial_);
+      r_.swap(trial_r_);
+      size = of_next;
+    }
+    return true;
+  }
+
+  /// Adds the last correction, unless that leaves the admissible set or what is finite.
   bool end_with(const column& delta) {
     trial_ = x_ + delta;
     const bool inside = admissible(trial_);
@@ -123,61 +148,24 @@ class unsquared {
 
   /// Factorizes M at x_ and estimates the rounding errors of its unknowns.
   void linearize() {
-    square m = square::Identity(2 * n_, 2 * n_);
-    column unit = column::Zero(n_), jx(n_), hx = column::Zero(n_);
-    square jacobian(n_, n_);
-    for (Eigen::Index i = 0; i < n_; ++i) {
-      unit[i] = Real(1);
-      equation_.rate_curvature(v_of(x_), k_of(x_), v_of(unit), span_of(jx), span_of(hx));
-      unit[i] = Real(0);
-      jacobian.col(i) = jx;
-      if (b_ != Real(0)) m.col(i).head(n_) -= b_ * hx;
-    }
-    m.topRightCorner(n_, n_) = -b_ * jacobian;
-    m.topRightCorner(n_, n_).diagonal().array() -= a_;
-    m.bottomLeftCorner(n_, n_) = -jacobian;
-    if (!m.allFinite()) fail("has no finite derivative");
+    if (!system_.linearize(equation_, x_)) fail("has no finite derivative");
     // Sizes of the terms of the residual, G being a sum of terms about |G'| |v|.
-    const square sizes = jacobian.cwiseAbs();
     column terms(2 * n_);
     terms.head(n_) = x_.head(n_).cwiseAbs() + explicit_part_.cwiseAbs() +
-                     std::abs(a_) * x_.tail(n_).cwiseAbs() + std::abs(b_) * (sizes * x_.tail(n_).cwiseAbs());
+                     std::abs(a_) * x_.tail(n_).cwiseAbs() +
+                     std::abs(b_) * system_.sizes_times(x_.tail(n_).cwiseAbs());
     equation_.rate(v_of(x_), span_of(g_));
-    terms.tail(n_) = x_.tail(n_).cwiseAbs() + g_.cwiseAbs() + sizes * x_.head(n_).cwiseAbs();
-    equilibrate(m);
-    lu_.compute(rows_.asDiagonal() * m * cols_.asDiagonal());
-    const square inverse = cols_.asDiagonal() * lu_.inverse() * rows_.asDiagonal();
-    noise_ = rounding * (inverse.cwiseAbs() * terms + x_.cwiseAbs());
+    terms.tail(n_) = x_.tail(n_).cwiseAbs() + g_.cwiseAbs() + system_.sizes_times(x_.head(n_).cwiseAbs());
+    noise_ = rounding * (system_.spread(terms) + x_.cwiseAbs());
     // A rate need not be more accurate than the residual shows: one that vanishes has no terms, but rounding
     // errors of the linear solve.
-    for (Eigen::Index i = 0; i < n_; ++i) {
-      const auto effects = m.col(n_ + i).head(n_).cwiseAbs();
-      Real invisible = std::numeric_limits<Real>::infinity();
-      for (Eigen::Index j = 0; j < n_; ++j)
-        if (effects[j] > Real(0)) invisible = std::min(invisible, rounding * terms[j] / effects[j]);
-      if (invisible < std::numeric_limits<Real>::infinity())
-        noise_[n_ + i] = std::max(noise_[n_ + i], invisible);
-    }
+    const column invisible = rounding * system_.changes_of_rates(terms.head(n_));
+    for (Eigen::Index i = 0; i < n_; ++i)
+      if (invisible[i] < std::numeric_limits<Real>::infinity())
+        noise_[n_ + i] = std::max(noise_[n_ + i], invisible[i]);
   }
 
-  /// Chooses powers of 2 that bring the largest entries of rows and columns near 1.
-  void equilibrate(const square& m) {
-    rows_ = column::Ones(2 * n_);
-    cols_ = column::Ones(2 * n_);
-    const square sizes = m.cwiseAbs();
-    for (int sweep = 0; sweep < 3; ++sweep) {
-      for (Eigen::Index i = 0; i < 2 * n_; ++i) {
-        rows_[i] = power_of_2(Real(1) / sizes.row(i).cwiseProduct(cols_.transpose()).maxCoeff());
-      }
-      for (Eigen::Index i = 0; i < 2 * n_; ++i)
-        cols_[i] = power_of_2(Real(1) / sizes.col(i).cwiseProduct(rows_).maxCoeff());
-    }
-  }
-  static Real power_of_2(Real x) { return std::exp2(std::round(std::log2(x))); }
-
-  column correction(const column& r) const {
-    return -(cols_.asDiagonal() * lu_.solve(rows_.asDiagonal() * r));
-  }
+  column correction(const column& r) const { return -system_.solve(r); }
 
   /// max |δ_i| in units of the rounding error of unknown i; +infinity if an entry is NaN.
   Real level(const column& delta) const {
@@ -221,12 +209,12 @@ class unsquared {
   }
 
   stage_equation<Real>& equation_;
+  stage_system<Real>& system_;
   newton_options options_;
   Eigen::Index n_;
   Real a_, b_;
   column explicit_part_, x_, r_, trial_, trial_r_, jk_, g_;
-  column rows_, cols_, noise_;      ///< scales of M; rounding errors of the unknowns
-  Eigen::PartialPivLU<square> lu_;  ///< of the scaled M
+  column noise_;  ///< rounding errors of the unknowns
   Real step_ = Real(0);
   int iteration_ = 0;
   bool inside_ = true;
@@ -237,11 +225,50 @@ class unsquared {
 template <class Real>
 newton_report unsquared_newton(stage_equation<Real>& equation, std::span<Real> v,
                                const newton_options& options) {
-  return unsquared<Real>(equation, v, options).solve(v);
+  dense_stage_system<Real> system;
+  return unsquared<Real>(equation, system, v, options).solve(v);
 }
 
 template newton_report unsquared_newton(stage_equation<double>&, std::span<double>, const newton_options&);
 template newton_report unsquared_newton(stage_equation<long double>&, std::span<long double>,
                                         const newton_options&);
+
+template <class Real>
+struct sparse_newton<Real>::parts {
+  explicit parts(const sparsity_pattern& of) : pattern(of), system(of) {}
+  sparsity_pattern pattern;
+  sparse_stage_system<Real> system;
+};
+
+template <class Real>
+sparse_newton<Real>::sparse_newton(const sparsity_pattern& pattern)
+    : parts_(std::make_unique<parts>(pattern)) {}
+template <class Real>
+sparse_newton<Real>::sparse_newton(const sparse_newton& other) : sparse_newton(other.parts_->pattern) {}
+template <class Real>
+sparse_newton<Real>& sparse_newton<Real>::operator=(const sparse_newton& other) {
+  if (this != &other) parts_ = std::make_unique<parts>(other.parts_->pattern);
+  return *this;
+}
+template <class Real>
+sparse_newton<Real>::sparse_newton(sparse_newton&&) noexcept = default;
+template <class Real>
+sparse_newton<Real>& sparse_newton<Real>::operator=(sparse_newton&&) noexcept = default;
+template <class Real>
+sparse_newton<Real>::~sparse_newton() = default;
+
+template <class Real>
+newton_report sparse_newton<Real>::solve(stage_equation<Real>& equation, std::span<Real> v,
+                                         const newton_options& options) {
+  if (v.size() != parts_->pattern.size())
+    throw input_error(
+        fmt::format("the sparsity pattern has {} unknowns and the state {} (they differ in number); "
+                    "give the pattern of the derivative of this state",
+                    parts_->pattern.size(), v.size()));
+  return unsquared<Real>(equation, parts_->system, v, options).solve(v);
+}
+
+template class sparse_newton<double>;
+template class sparse_newton<long double>;
 
 }  // namespace apsis

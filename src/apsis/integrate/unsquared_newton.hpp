@@ -1,7 +1,9 @@
 #pragma once
 
 #include <apsis/integrate/guarded_newton.hpp>
+#include <apsis/integrate/sparsity_pattern.hpp>
 
+#include <memory>
 #include <span>
 
 namespace apsis {
@@ -22,5 +24,28 @@ namespace apsis {
 template <class Real>
 newton_report unsquared_newton(stage_equation<Real>& equation, std::span<Real> v,
                                const newton_options& options);
+
+/// The same for a G' with a sparsity pattern: M is assembled from one product for each group of columns and
+/// factorized as a sparse matrix, with the order of elimination of the first stage. Rounding errors of the
+/// unknowns are estimated from a few random ones instead of |M⁻¹|.
+template <class Real>
+class sparse_newton {
+ public:
+  /// Stores the pattern of G'.
+  explicit sparse_newton(const sparsity_pattern& pattern);
+  sparse_newton(const sparse_newton& other);                 ///< copies the pattern
+  sparse_newton& operator=(const sparse_newton& other);      ///< copies the pattern
+  sparse_newton(sparse_newton&& other) noexcept;             ///< moves
+  sparse_newton& operator=(sparse_newton&& other) noexcept;  ///< moves
+  ~sparse_newton();
+
+  /// Solves a stage like unsquared_newton(); throws input_error if v has another number of unknowns than the
+  /// pattern.
+  newton_report solve(stage_equation<Real>& equation, std::span<Real> v, const newton_options& options);
+
+ private:
+  struct parts;
+  std::unique_ptr<parts> parts_;
+};
 
 }  // namespace apsis

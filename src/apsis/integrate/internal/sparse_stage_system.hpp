@@ -192,12 +192,12 @@ class sparse_stage_system final : public stage_system<Real> {
     const std::size_t n = pattern_.size();
     std::vector<Eigen::Triplet<Real>> places;
     for_each_entry([&](std::size_t i, std::size_t j, std::size_t) {
-      const int row = static_cast<int>(i), column = static_cast<int>(j), below = static_cast<int>(n);
-      places.emplace_back(row, column, Real(1));
+      const int row = static_cast<int>(i), col = static_cast<int>(j), below = static_cast<int>(n);
+      places.emplace_back(row, col, Real(1));
       if (!whole) return;
-      places.emplace_back(below + row, column, Real(1));
-      places.emplace_back(row, below + column, Real(1));
-      if (i == j) places.emplace_back(below + row, below + column, Real(1));
+      places.emplace_back(below + row, col, Real(1));
+      places.emplace_back(row, below + col, Real(1));
+      if (i == j) places.emplace_back(below + row, below + col, Real(1));
     });
     const int size = static_cast<int>(whole ? 2 * n : n);
     matrix made(size, size);

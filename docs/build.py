@@ -2,8 +2,8 @@
 """Builds the site: docs/build.py [--build build/release] [--work build/docs], pages in WORK/html.
 
 The pages of docs are written for GitHub. A copy in WORK/source adds the parts that only the site has: reference pages from the
-program, a page for each room of the library from its headers, new pictures from the blocks executed by execute.py, tables of
-contents from the lists of docs/index.md, and links to pages of the site or to copies of files.
+program, a gallery of all cases, a page for each method and for each room of the library, new pictures from the blocks executed by
+execute.py, tables of contents from the lists of docs/index.md, and links to pages of the site or to copies of files.
 """
 import argparse
 import os
@@ -13,6 +13,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+from gallery import GalleryError, write_gallery
 from headers import Header, read_headers
 from reference import write_reference
 
@@ -80,10 +81,12 @@ def assemble(site: Site, program: Path, work: Path):
     shutil.copytree(ROOT / "docs" / "images", site.source / "images")
     for picture in work.glob("run/*/images/*.png"):
         shutil.copy(picture, site.source / "images" / picture.name)
-    generated = {"Reference": [f"reference/{name}" for name in write_reference(program, site.source / "reference")],
+    site.add("gallery.md", write_gallery(program, work / "gallery", site.source / "images"))
+    reference = write_reference(program, site.source / "reference", site.source / "images")
+    generated = {"Reference": ["gallery", *(f"reference/{name}" for name in reference)],
                  "C++ interface": ["api/index"], "Python interface": ["python-api"]}
-    for page in (site.source / "reference").glob("*.md"):
-        site.add(f"reference/{page.name}", page.read_text(encoding="utf-8"))
+    for page in (site.source / "reference").rglob("*.md"):
+        site.add(str(page.relative_to(site.source)), page.read_text(encoding="utf-8"))
     for file, place in site.places.items():
         if file.endswith(".md") and not place.startswith("api/") and place != "index.md":
             site.add(place, (ROOT / file).read_text(encoding="utf-8"), file)
@@ -151,7 +154,11 @@ def main() -> int:
     if known - {file.name for file in xml.glob("*")}:  # breathe stops at a page whose type was renamed or removed
         shutil.rmtree(work / "doctrees", ignore_errors=True)
     site = Site(work / "source")
-    assemble(site, build / "app" / "apsis", work)
+    try:
+        assemble(site, build / "app" / "apsis", work)
+    except GalleryError as problem:
+        print(f"docs/build.py: the gallery is incomplete ({problem}); correct the case, or the sizes in docs/gallery.py", file=sys.stderr)
+        return 1
     for problem in dict.fromkeys(site.problems):
         print(problem, file=sys.stderr)
     shutil.rmtree(work / "html", ignore_errors=True)

@@ -7,6 +7,11 @@ import textwrap
 from pathlib import Path
 
 SHOWN = 4  # stages up to which the coefficients of a method fit on a page
+KINDS = {"imex": "With transport and collisions", "implicit": "Collisions alone", "explicit": "Explicit", "exponential": "Exponential"}
+TERMS = {"all": "exact in steps far longer than ε: viscosity, deviation from equilibrium, initial layer",
+         "slow": "exact in steps far longer than ε: viscosity and deviation from equilibrium; an initial layer needs a graded start",
+         "none": "not exact: errors may stall at a multiple of ε"}
+DRAWN = ("imex", "implicit", "explicit")  # kinds with a Butcher form, which plot draws
 
 
 class Program:
@@ -62,41 +67,74 @@ def limit(m: dict) -> str:
 
 def methods(program: Program) -> str:
     all_methods = program.list("methods")
-    text = ("# Methods\n\nAll methods of the catalogue, as `apsis list methods` certifies them. *r* is the SSP coefficient: a "
+    text = ("# Methods\n\nAll methods of the catalogue, as `apsis list methods` certifies them; each has a page. *r* is the SSP coefficient: a "
             "step preserves what forward Euler preserves for Δt ≤ r Δt_FE, for every ε. n_F counts evaluations of the transport "
             "per step. [Methods](../methods.md) and [the study](../study.md) define the columns.\n\n")
-    for kind, title in (("imex", "With transport and collisions"), ("implicit", "Collisions alone"), ("explicit", "Explicit")):
+    for kind, title in KINDS.items():
         chosen = [m for m in all_methods if m["kind"] == kind]
         text += f"**{title}**\n\n" + table(
             ["method", "order", "stages", "n_F", "r", "error constant", "recommended for"],
-            [[f"[{m['name']}](#{m['name']})", m["order"], m["stages"], m["explicit_evaluations"], coefficient(m),
+            [[f"[{m['name']}](methods/{m['name']}.md)", m["order"], m["stages"], m["explicit_evaluations"], coefficient(m),
               number(m["error_constant"]), plain(m["purpose"])] for m in chosen])
     text += "## Families\n\nAny number of stages S of the range gives a method, which is certified when it is asked for.\n\n"
     text += table(["family", "S", "what"], [[f"`{f['name']}`", f"{f['lowest']} … {f['highest']}", plain(f["description"])]
                                             for f in program.list("families")])
-    return text + "".join(method(program, m) for m in sorted(all_methods, key=lambda m: m["name"]))
+    return text + "```{toctree}\n:hidden:\n\n" + "\n".join(f"methods/{m['name']}" for m in all_methods) + "\n```\n"
 
 
-def method(program: Program, m: dict) -> str:
+def method(program: Program, m: dict, choices: list[dict]) -> str:
+    """Returns the page of a method: facts, when to use it, steps, coefficients and pictures."""
     document = json.loads(program("show", m["name"], "--format", "json"))
     stability = m.get("stability") or {}
-    text = f"## {m['name']}\n\n{plain(m['title'])}.\n\n" + facts({
+    text = f"# {m['name']}\n\n{plain(m['title'])}.\n\n" + facts({
         "order": f"{m['order']}, error constant {number(m['error_constant'])}",
-        "SSP coefficient": coefficient(m) + (f" (that of the explicit part is {number(m['explicit_radius'])})"
-                                             if m["kind"] == "imex" else ""),
         "type": f"{m['type']}, {'globally stiffly accurate' if m['gsa'] else 'not globally stiffly accurate'}"
                 if m["kind"] != "explicit" else "",
-        "asymptotic preserving": limit(m) if m["kind"] == "imex" else "",
         "cost of a step": f"{m['explicit_evaluations']} evaluations of T, {m['implicit_solves']} implicit solves, "
                           f"{m['buffers']} states in memory",
-        "stability of the implicit part": stability and f"A({rounded_down(stability['angle_degrees'])}°)"
-                                          + (", L-stable" if stability["l_stable"] else ""),
         "embedded solution": m["embedded"] and f"of order {m['embedded']['order']}",
-        "recommended for": plain(m["purpose"]), "source": plain(document["citation"]), "origin": plain(document["origin"]),
-        "coefficients": f"[methods/{m['name']}.toml](../../methods/{m['name']}.toml)"})
+        "source": plain(document["citation"]), "origin": plain(document["origin"]),
+        "coefficients": f"[methods/{m['name']}.toml](../../../methods/{m['name']}.toml)"})
+    text += "## When to use it\n\n" + when_to_use(m, choices)
+    text += "## Steps\n\n" + facts({
+        "SSP coefficient": coefficient(m) + (f" (that of the explicit part is {number(m['explicit_radius'])})" if m["kind"] == "imex" else "")
+                           + (f"; {plain(m['limiting_entry'])}" if m["limiting_entry"] else ""),
+        "stability of the implicit part": stability and f"A({rounded_down(stability['angle_degrees'])}°)"
+                                          + (", L-stable" if stability["l_stable"] else "")})
+    if limits := m.get("cfl_limits"):
+        text += "The largest CFL numbers with linear stability, by the reconstruction:\n\n"
+        text += table([f"`{name}`" for name in limits], [[number(limit) for limit in limits.values()]])
+    if m["kind"] in DRAWN:
+        text += f"![regions of linear stability of {m['name']}](../../images/{m['name']}-stability.png)\n\n"
+    text += "## Coefficients\n\n"
     if m["stages"] <= SHOWN:
         text += "$$\n" + re.sub(r"^%.*\n", "", program("show", m["name"], "--format", "latex")) + "$$\n\n"
+    else:
+        text += f"`apsis show {m['name']}` prints all digits.\n\n"
+    if m["kind"] in DRAWN:
+        text += f"![Butcher form of {m['name']}](../../images/{m['name']}-tableau.png)\n\n"
     return text
+
+
+def when_to_use(m: dict, choices: list[dict]) -> str:
+    """Returns the purpose of a method, where `time.method = "auto"` chooses it, and its limits as certificate data state them."""
+    chosen = [plain(choice["description"]) for choice in choices if choice["name"] == m["name"]]
+    regime = m.get("intermediate_regime") or {}
+    found = facts({"recommended for": plain(m["purpose"]),
+                   "`time.method = \"auto\"` chooses it for": "; ".join(chosen),
+                   "signs": "kept for every step" if coefficient(m) == "any step" else "kept up to the SSP coefficient" if m["ssp_coefficient"] else "not kept",
+                   "asymptotic preserving": limit(m) if m["kind"] in ("imex", "exponential") else "",
+                   "terms of size ε": TERMS.get(regime.get("keeps"), "")})
+    return found + "[The choice of a method](../../methods.md#the-choice-of-a-method) compares it with others.\n\n"
+
+
+def write_methods(program: Program, folder: Path, images: Path):
+    """Writes a page for each method, and its pictures."""
+    all_methods, choices = program.list("methods"), program.list("choices")
+    folder.mkdir(parents=True, exist_ok=True)
+    for m in all_methods:
+        (folder / f"{m['name']}.md").write_text(method(program, m, choices), encoding="utf-8")
+    program("plot", *(m["name"] for m in all_methods if m["kind"] in DRAWN), "--out", str(images))
 
 
 def models(program: Program) -> str:
@@ -118,13 +156,18 @@ def models(program: Program) -> str:
     return text
 
 
+def method_link(name: str, known: set[str]) -> str:
+    """Returns a link to the page of a method of the catalogue; members of families have no page."""
+    return f"[{name}](methods/{name}.md)" if name in known else f"`{name}`"
+
+
 def cases(program: Program) -> str:
-    all_cases = program.list("cases")
+    all_cases, known = program.list("cases"), {m["name"] for m in program.list("methods")}
     text = ("# Cases\n\nThe built-in cases, from `apsis list cases`. `apsis run NAME` runs one, and `key=value` after "
             "the name changes a [key](keys.md).\n\n")
     text += table(["case", "what", "model", "method"],
                   [[f"[{c['name']}](#{c['name'].replace('/', '')})", plain(c["description"]),
-                    f"[{c['model']}](models.md#{c['model']})", f"[{c['method']}](methods.md#{c['method']})"] for c in all_cases])
+                    f"[{c['model']}](models.md#{c['model']})", method_link(c['method'], known)] for c in all_cases])
     for c in all_cases:
         file = program("show", c["name"])
         comment = re.match(r"(?:#.*\n)*", file)[0]
@@ -190,9 +233,10 @@ PAGES = {"commands": commands, "keys": keys, "cases": cases, "methods": methods,
          "claims": claims}
 
 
-def write_reference(program: Path, folder: Path) -> list[str]:
-    """Writes one page for each list; returns their names in the order of PAGES."""
+def write_reference(program: Path, folder: Path, images: Path) -> list[str]:
+    """Writes one page for each list and each method, and pictures of methods; returns the names of the lists in the order of PAGES."""
     folder.mkdir(parents=True, exist_ok=True)
+    write_methods(Program(program), folder / "methods", images)
     for name, page in PAGES.items():
         (folder / f"{name}.md").write_text(page(Program(program)), encoding="utf-8")
     return list(PAGES)

@@ -74,7 +74,7 @@ class Site(unittest.TestCase):
         browser = Browser()
         self.addCleanup(browser.quit)
         inside = self.html.as_uri() + "/"
-        for name in ("index", "first-steps", "tutorials/own-pde", "methods", "study", "reference/methods", "api/integrate", "python-api"):
+        for name in ("index", "first-steps", "tutorials/own-pde", "methods", "study", "reference/methods", "reference/methods/md-imex-6-3", "gallery", "api/integrate", "python-api"):
             for width in (400, 1600):
                 with self.subTest(page=name, width=width):
                     seen = browser.show(self.html / f"{name}.html", width)
@@ -101,6 +101,18 @@ class Site(unittest.TestCase):
             self.assertGreater(len(names), 2)
             for name in names:
                 self.assertIn(name, text)
+
+    def test_every_method_has_a_page_and_every_case_a_picture(self):
+        def listed(what):
+            return subprocess.run([BUILD / "app" / "apsis", "list", what, "--names"], text=True, capture_output=True, check=True).stdout.split()
+
+        for name in listed("methods"):
+            page = (self.html / "reference" / "methods" / f"{name}.html").read_text(encoding="utf-8")
+            self.assertIn("When to use it", page)
+        gallery = (self.html / "gallery.html").read_text(encoding="utf-8")
+        for name in listed("cases"):
+            self.assertIn(f"apsis run {name}", re.sub(r"<[^>]*>", "", gallery))
+            self.assertIn(f"gallery-{name.replace('/', '-')}.png", gallery)
 
     def test_names_of_the_package_are_in_the_python_interface(self):
         sys.path.insert(0, str(BUILD / "python"))

@@ -21,7 +21,10 @@ LIMIT = float(os.environ.get("APSIS_MPI_LIMIT", "600"))
 # Seconds after the end of all processes; beside four busy loops the launcher ends within one.
 PATIENCE_WITH_LAUNCHER = 20.0
 
-ENVIRONMENT = {**os.environ, "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "OMPI_MCA_rmaps_base_oversubscribe": "1",
+# Launchers that start and end simultaneously remove each other's folder of sessions.
+SESSIONS = tempfile.TemporaryDirectory(prefix="ompi-", ignore_cleanup_errors=True)
+
+ENVIRONMENT = {**os.environ, "OMPI_MCA_orte_tmpdir_base": SESSIONS.name, "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "OMPI_MCA_rmaps_base_oversubscribe": "1",
                "OMPI_MCA_hwloc_base_binding_policy": "none", "OMPI_MCA_btl_base_warn_component_unused": "0",
                # Without a right to read the memory of other processes, as in containers.
                "OMPI_MCA_btl_vader_single_copy_mechanism": "none", "OMP_NUM_THREADS": "1"}

@@ -121,7 +121,8 @@ int apsis_start(apsis_integrator* integrator, double t0, const double* u0) {
   return guarded([=] {
     apsis_integrator& s = idle(integrator);
     const double* given = &require(u0, "the initial state");
-    if (!std::isfinite(t0)) throw apsis::input_error("the initial time is not finite; give a number");
+    if (!std::isfinite(t0))
+      throw apsis::input_error("the initial time is not finite (steps begin there); give a number");
     require_finite_state({given, s.n});
     numbers u(given, given + s.n);
     s.run.reset();

@@ -89,7 +89,7 @@ void require_collision(const time_integrator& m, const callbacks& of) {
     throw input_error(
         "a stage solver and derivatives of Q are given (only one of them can solve the stages); remove one");
   if (has_derivatives(of) && of.rate == nullptr)
-    throw input_error("derivatives of Q are given without Q; give it by apsis_set_rate()");
+    throw input_error("derivatives of Q are given without Q (stages need both); give it by apsis_set_rate()");
   if (!has_collision(of)) return;
   if (m.needs.exact_collision && of.flow == nullptr)
     throw input_error("method '" + m.name +

@@ -43,7 +43,8 @@ class step_controller {
   /// input_error unless the tolerance is positive and finite.
   step_controller(Real tolerance, int order) : tolerance_(tolerance), order_(order) {
     if (!(tolerance > Real(0)) || !(tolerance < std::numeric_limits<Real>::infinity()))
-      throw input_error("the tolerance is not a positive number; give one above 0");
+      throw input_error(
+          "the tolerance is not a positive number (errors are compared with it); give one above 0");
   }
 
   /// Returns tolerance and order.

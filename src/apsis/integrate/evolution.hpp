@@ -83,7 +83,8 @@ class evolution {
 
   /// Sets time and state, and discards events. Throws input_error if t is not finite.
   void start(real t, state u) {
-    if (!std::isfinite(t)) throw input_error("the initial time is not finite; give a number");
+    if (!std::isfinite(t))
+      throw input_error("the initial time is not finite (steps begin there); give a number");
     t_ = before_t_ = t;
     u_ = std::move(u);
     steps_ = 0;

@@ -9,7 +9,7 @@
 
 namespace apsis {
 
-/// What kernels need to know about the rows of a gas, in the memory of a device.
+/// Arguments of kernels that describe the rows of a gas, in the memory of a device.
 class device_gas_rows {
  public:
   /// `on` and `molecules` must outlive the object. The gas must be one that kernels can have.

@@ -33,7 +33,7 @@ APSIS_FORMULA small_matrix<N> product_of(const small_matrix<N>& a, const small_m
   return c;
 }
 
-/// The factor L of a symmetric matrix A = L Lᵀ, of which the lower half is read (Cholesky).
+/// The factor L of a symmetric matrix A = L Lᵀ (Cholesky). The lower half of A is read.
 template <int N>
 struct cholesky_factor {
   small_matrix<N> lower;   ///< L

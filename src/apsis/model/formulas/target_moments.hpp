@@ -99,7 +99,7 @@ struct target_correction {
   }
 };
 
-/// What takes a defect away, with the moments of a Gaussian of this variance in d directions.
+/// The polynomial that takes a defect away, with the moments of a Gaussian of this variance in d directions.
 APSIS_FORMULA target_correction correction_of(const target_defect& found, int d, double variance) {
   target_correction by{};
   by.a = -(found.energy - 0.5 * d * found.mass) / (d * variance);

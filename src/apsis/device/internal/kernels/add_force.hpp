@@ -5,7 +5,8 @@
 
 namespace apsis::kernels {
 
-/// acc ← acc + β (−a·∇_v u), as force::add(); eight lanes for each cell, of which each walks along its lines.
+/// acc ← acc + β (−a·∇_v u), as force::add(); eight lanes for each cell. Each of them walks along its own
+/// lines.
 struct add_force {
   static constexpr const char* name = "add_force";  ///< of the kernel
   static constexpr int most_targets = 8;            ///< largest number of targets

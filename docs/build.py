@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Builds the site: docs/build.py [--build build/release] [--work build/docs], pages in WORK/html.
+"""Builds the site: docs/build.py [--build build/release] [--work build/docs] [--cases NAME …], pages in WORK/html.
 
 The pages of docs are written for GitHub. A copy in WORK/source adds the parts that only the site has: reference pages from the
 program, a gallery of all cases, a page for each method and for each room of the library, new pictures from the blocks executed by
@@ -73,7 +73,7 @@ class Site:
         return os.path.relpath(to, os.path.dirname(place) or ".") + mark + anchor
 
 
-def assemble(site: Site, program: Path, work: Path):
+def assemble(site: Site, program: Path, work: Path, cases: list[str] | None):
     """All pages; doxygen has been run."""
     shutil.copytree(ROOT / "docs" / "_static", site.source / "_static")
     unused = shutil.ignore_patterns("*.mjs", "contrib", "*.ttf", "*.woff")
@@ -81,7 +81,7 @@ def assemble(site: Site, program: Path, work: Path):
     shutil.copytree(ROOT / "docs" / "images", site.source / "images")
     for picture in work.glob("run/*/images/*.png"):
         shutil.copy(picture, site.source / "images" / picture.name)
-    site.add("gallery.md", write_gallery(program, work / "gallery", site.source / "images"))
+    site.add("gallery.md", write_gallery(program, work / "gallery", site.source / "images", cases))
     reference = write_reference(program, site.source / "reference", site.source / "images")
     generated = {"Reference": ["gallery", *(f"reference/{name}" for name in reference)],
                  "C++ interface": ["api/index"], "Python interface": ["python-api"]}
@@ -142,6 +142,7 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--build", type=Path, default=ROOT / "build" / "release")
     parser.add_argument("--work", type=Path, default=ROOT / "build" / "docs")
+    parser.add_argument("--cases", nargs="+", help="cases of the gallery; without them all, which takes many minutes")
     given = parser.parse_args()
     build, work = given.build.resolve(), given.work.resolve()
     xml = work / "doxygen" / "xml"
@@ -155,7 +156,7 @@ def main() -> int:
         shutil.rmtree(work / "doctrees", ignore_errors=True)
     site = Site(work / "source")
     try:
-        assemble(site, build / "app" / "apsis", work)
+        assemble(site, build / "app" / "apsis", work, given.cases)
     except GalleryError as problem:
         print(f"docs/build.py: the gallery is incomplete ({problem}); correct the case, or the sizes in docs/gallery.py", file=sys.stderr)
         return 1

@@ -150,13 +150,15 @@ def picture_name(entry: Entry) -> str:
     return f"gallery-{entry.name.replace('/', '-')}.png"
 
 
-def write_gallery(program: Path, work: Path, images: Path) -> str:
-    """Makes all pictures, copies them to a folder, and returns the page. Raises GalleryError."""
+def write_gallery(program: Path, work: Path, images: Path, only: list[str] | None = None) -> str:
+    """Makes all pictures, or those of some cases, copies them to a folder, and returns the page. Raises GalleryError."""
     gallery = Gallery(program, work)
     cases = Program(program).list("cases")
     missing = {case["name"].partition("/")[0] for case in cases} - FOLDERS.keys()
     if missing:
         raise GalleryError(f"no title for {', '.join(sorted(missing))}: add it to FOLDERS of docs/gallery.py")
+    if only is not None:
+        cases = [case for case in cases if case["name"] in only]
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
         entries = list(pool.map(lambda case: gallery.make(case["name"], case["description"]), cases))
     for entry in entries:

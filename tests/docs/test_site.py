@@ -14,6 +14,8 @@ from browser import Browser  # noqa: E402
 
 BUILD = Path(os.environ.get("APSIS_BUILD", ROOT / "build" / "release"))
 WORK = Path(os.environ.get("APSIS_DOCS", ROOT / "build" / "docs"))
+# Cases of the gallery that take seconds; docs/build.py draws all.
+CASES = ["paper/bgk-mixed-fd", "gas/couette", "laws/dam-break"]
 LOADING = {("script", "src"), ("img", "src"), ("iframe", "src"), ("source", "src"), ("object", "data")}
 
 
@@ -41,7 +43,7 @@ def is_elsewhere(link):
 class Site(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        done = subprocess.run([sys.executable, ROOT / "docs" / "build.py", "--build", BUILD, "--work", WORK], text=True,
+        done = subprocess.run([sys.executable, ROOT / "docs" / "build.py", "--build", BUILD, "--work", WORK, "--cases", *CASES], text=True,
                               capture_output=True)
         if done.returncode != 0:
             raise AssertionError(done.stdout[-8000:] + done.stderr[-8000:])
@@ -102,7 +104,7 @@ class Site(unittest.TestCase):
             for name in names:
                 self.assertIn(name, text)
 
-    def test_every_method_has_a_page_and_every_case_a_picture(self):
+    def test_every_method_has_a_page_and_cases_have_pictures(self):
         def listed(what):
             return subprocess.run([BUILD / "app" / "apsis", "list", what, "--names"], text=True, capture_output=True, check=True).stdout.split()
 
@@ -110,7 +112,8 @@ class Site(unittest.TestCase):
             page = (self.html / "reference" / "methods" / f"{name}.html").read_text(encoding="utf-8")
             self.assertIn("When to use it", page)
         gallery = (self.html / "gallery.html").read_text(encoding="utf-8")
-        for name in listed("cases"):
+        self.assertLessEqual(set(CASES), set(listed("cases")))
+        for name in CASES:
             self.assertIn(f"apsis run {name}", re.sub(r"<[^>]*>", "", gallery))
             self.assertIn(f"gallery-{name.replace('/', '-')}.png", gallery)
 

@@ -204,8 +204,8 @@ bool conservative_target(const gas& of, const double* omega, const target_base& 
     return some;
   };
   if (correct_by_moments(of, state, base, shape) && !weigh_all(true)) return true;
-  // Corrections of a base that is no Gaussian take off a factor of about ten each. Where they no longer reduce
-  // a defect, target_accuracy is enough.
+  // Corrections of a base that is no Gaussian take off a factor of about ten each. Where they no longer
+  // reduce a defect, target_accuracy is enough.
   const double ratio = energy_ratio(omega, d, shape.variance),
                enough = std::min(scalar::target_rounding * ratio, largest_bound);
   double best = 1e300;

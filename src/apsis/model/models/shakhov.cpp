@@ -1,5 +1,6 @@
-#include <apsis/core/errors.hpp>
 #include <apsis/model/formulas/shakhov.hpp>
+
+#include <apsis/core/errors.hpp>
 #include <apsis/model/gas_model.hpp>
 #include <apsis/model/gas_target.hpp>
 

@@ -209,9 +209,11 @@ bool conservative_target(const gas& of, const double* omega, const target_base& 
   const double ratio = energy_ratio(omega, d, shape.variance),
                enough = std::min(scalar::target_rounding * ratio, largest_bound);
   double best = 1e300;
-  constexpr int most_corrections = 40;
-  for (int iteration = 0; iteration < most_corrections; ++iteration) {
-    weigh_all(iteration == 0);
+  bool cut = false;
+  // A target that is cut off and needs more than a few is another one: a smaller part may need no cut.
+  const auto most_corrections = [&cut] { return cut ? 12 : 40; };
+  for (int iteration = 0; iteration < most_corrections(); ++iteration) {
+    cut |= weigh_all(iteration == 0);
     std::array<double, 5> after{};
     of.moments(e, 0, 1, after.data());
     const target_defect found = defect_of(after.data(), omega, state, d, shape.variance);
@@ -223,7 +225,7 @@ bool conservative_target(const gas& of, const double* omega, const target_base& 
       if (is_accurate(found, ratio)) return true;
       if (!(size <= largest_bound)) return false;
     }
-    if (iteration + 1 == most_corrections) return is_accurate(found, ratio);
+    if (iteration + 1 >= most_corrections()) return is_accurate(found, ratio);
     best = size;
     scalar::correction_of(found, d, shape.variance).add_to(shape.of_g, d);
   }

@@ -1,4 +1,4 @@
-"""A case on any number of processes and threads has the same results, bit for bit, also across restarts (docs/processes.md)."""
+"""A case on any number of processes and threads has the same results, bit for bit, also across restarts (docs/processes.md, docs/device.md)."""
 import json
 import unittest
 

@@ -48,6 +48,7 @@ index = ElementTree.parse(WORK / "doxygen" / "xml" / "index.xml").getroot()
 nitpick_ignore = [("cpp:identifier", part) for entry in index.iterfind("compound[@kind='namespace']")
                   for part in (entry.findtext("name"), entry.findtext("name").rpartition("::")[2])]
 nitpick_ignore_regex = [
+    ("cpp:identifier", r"scalar::.*|target_shape"),  # formulas have no pages
     ("cpp:identifier", r".*<double>::progress"),  # members of class templates have no page of their own
     (r"py:.*", r"(numpy|collections|pathlib|typing|apsis\._core)\..*|Path|.*Fraction|.*ForwardRef.*|"
      + "|".join(autodoc_type_aliases)),

@@ -48,8 +48,6 @@ class force {
   /// Tells the limiter that β rate() ≤ share α in all calls to come, 0 < share ≤ 1 (initially 1).
   void limit_for_steps(double share) { share_ = share; }
 
-  /// @name Parts of add(), for devices
-  /// @{
   /// Returns a in a cell. Throws numerical_error where it is not finite or larger than its bound.
   std::array<double, 3> acceleration_in(double t, int cell) const;
   /// Returns the layout of rows along a direction of the lattice.
@@ -65,7 +63,6 @@ class force {
   std::size_t sums_of_cell() const { return invariants_ + losses_.size(); }
   /// Sets given() and losses() from the sums of every cell, whose accelerations are at(cell). Collective.
   void balance(std::span<const double> sums, const std::function<std::array<double, 3>(int)>& at) const;
-  /// @}
 
  private:
   struct workspace;

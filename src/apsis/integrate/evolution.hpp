@@ -170,7 +170,9 @@ class evolution {
     for (std::size_t k = 0; k < events_.count; ++k)
       if (events_.is_event(k, sign_of_event(k, g_[k], t_), sign_of_event(k, next_g_[k], t_)))
         here.push_back({k, time_of_event(k)});
-    std::stable_sort(here.begin(), here.end(), [](const auto& a, const auto& b) { return a.t < b.t; });
+    std::sort(here.begin(), here.end(), [](const auto& a, const auto& b) {
+      return a.t < b.t || (a.t == b.t && a.function < b.function);
+    });
     const auto last = std::find_if(here.begin(), here.end(),
                                    [this](const auto& one) { return events_.is_last(one.function); });
     const bool ends = last != here.end();

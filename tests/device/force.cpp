@@ -1,7 +1,6 @@
-#include "device_case.hpp"
+#include "compared_transport.hpp"
 
 #include <apsis/core/errors.hpp>
-#include <apsis/device/internal/device_transport.hpp>
 
 #include <algorithm>
 #include <array>
@@ -78,31 +77,7 @@ TEST(device_force, has_the_bits_of_the_host_in_every_order_of_lanes) {
       host.set_force(changing(*equation));
       there.set_force(changing(*equation));
       EXPECT_EQ(host.forward_euler_step(), there.forward_euler_step());
-      const double step = 0.5 * host.forward_euler_step();
-      field a(mesh.size(), u.components()), b = u, sent(mesh.size(), u.components(), on->memory()), c = sent,
-                                            d = sent, back = a;
-      sent.copy_rows(u);
-      d.copy_rows(u);
-      bit_differences different;
-      for (const double share : {1.0, 0.4}) {
-        host.limit_for_steps(share);
-        there.limit_for_steps(share);
-        const std::array<target<field, double>, 2> on_host = {
-            {{&a, 1.0, share * step, true}, {&b, 0.4, -step, false}}};
-        const std::array<target<field, double>, 2> on_device = {
-            {{&c, 1.0, share * step, true}, {&d, 0.4, -step, false}}};
-        host.add_transport(0.3, u, on_host);
-        there.add_transport(0.3, sent, on_device);
-        back.copy_rows(c);
-        different += different_numbers(mesh, a, back);
-        back.copy_rows(d);
-        different += different_numbers(mesh, b, back);
-        const auto rates = host.budget_rates(), others = there.budget_rates();
-        ASSERT_EQ(rates.size(), others.size());
-        for (std::size_t k = 0; k < rates.size(); ++k)
-          different.compare(rates[k], others[k], [&] { return fmt::format("rate {}", k); });
-      }
-      EXPECT_EQ(different, 0) << of.label();
+      EXPECT_EQ(differences_of_transport(mesh, u, host, there, *on), 0) << of.label();
     }
   }
 }

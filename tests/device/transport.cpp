@@ -1,7 +1,6 @@
-#include "device_case.hpp"
+#include "compared_transport.hpp"
 
 #include <apsis/core/errors.hpp>
-#include <apsis/device/internal/device_transport.hpp>
 
 #include <algorithm>
 #include <array>
@@ -66,33 +65,10 @@ bit_differences differences(const device_case& of, const std::string& scheme, li
   apsis::upwind_transport host(*of.equation, of.space(), edges, apsis::point_values());
   apsis::device_transport there(on, *of.equation, of.space(), edges, apsis::point_values(),
                                 apsis::kernel_of_reconstruction(scheme));
-  const int components = of.equation->components();
   const field u = varied_rows(of.mesh, *of.equation, of.label.starts_with("periodic"));
-  field a(of.mesh.size(), components), b = a, sent(of.mesh.size(), components, on.memory()), c = sent,
-                                       d = sent;
-  for (auto* one : {&c, &d}) one->copy_rows(b);
+  bit_differences different = differences_of_transport(of.mesh, u, host, there, on);
+  field sent(of.mesh.size(), u.components(), on.memory());
   sent.copy_rows(u);
-  const double step = 0.5 * host.forward_euler_step();
-  bit_differences different;
-  for (const double share : {1.0, 0.3}) {
-    host.limit_for_steps(share);
-    there.limit_for_steps(share);
-    const std::array<target<field, double>, 2> on_host = {
-        {{&a, 1.0, share * step, true}, {&b, 0.4, -step, false}}};
-    const std::array<target<field, double>, 2> on_device = {
-        {{&c, 1.0, share * step, true}, {&d, 0.4, -step, false}}};
-    host.add_transport(0.3, u, on_host);
-    there.add_transport(0.3, sent, on_device);
-    field back(of.mesh.size(), components);
-    back.copy_rows(c);
-    different += different_numbers(of.mesh, a, back);
-    back.copy_rows(d);
-    different += different_numbers(of.mesh, b, back);
-    const auto rates = host.budget_rates(), others = there.budget_rates();
-    EXPECT_EQ(rates.size(), others.size());
-    for (std::size_t k = 0; k < std::min(rates.size(), others.size()); ++k)
-      different.compare(rates[k], others[k], [&] { return fmt::format("rate {} at surfaces", k); });
-  }
   const auto seen = host.observe_surfaces(0.4, u), others = there.observe_surfaces(0.4, sent);
   EXPECT_EQ(seen.size(), others.size());
   for (std::size_t k = 0; k < std::min(seen.size(), others.size()); ++k)

@@ -1,0 +1,41 @@
+#pragma once
+
+#include "device_case.hpp"
+
+#include <apsis/device/internal/device_transport.hpp>
+
+#include <algorithm>
+#include <array>
+
+/// The numbers and rates that differ in evaluations with several targets, on the host and on a device, for
+/// steps of two lengths.
+inline bit_differences differences_of_transport(const apsis::grid& mesh, const apsis::field& u,
+                                                apsis::upwind_transport& host, apsis::device_transport& there,
+                                                const apsis::device& on) {
+  using apsis::field, apsis::target;
+  field a(mesh.size(), u.components()), b = a, back = a;
+  field sent(mesh.size(), u.components(), on.memory()), c = sent, d = sent;
+  for (auto* one : {&c, &d}) one->copy_rows(b);
+  sent.copy_rows(u);
+  const double step = 0.5 * host.forward_euler_step();
+  bit_differences different;
+  for (const double share : {1.0, 0.3}) {
+    host.limit_for_steps(share);
+    there.limit_for_steps(share);
+    const std::array<target<field, double>, 2> on_host = {
+        {{&a, 1.0, share * step, true}, {&b, 0.4, -step, false}}};
+    const std::array<target<field, double>, 2> on_device = {
+        {{&c, 1.0, share * step, true}, {&d, 0.4, -step, false}}};
+    host.add_transport(0.3, u, on_host);
+    there.add_transport(0.3, sent, on_device);
+    back.copy_rows(c);
+    different += different_numbers(mesh, a, back);
+    back.copy_rows(d);
+    different += different_numbers(mesh, b, back);
+    const auto rates = host.budget_rates(), others = there.budget_rates();
+    EXPECT_EQ(rates.size(), others.size());
+    for (std::size_t k = 0; k < std::min(rates.size(), others.size()); ++k)
+      different.compare(rates[k], others[k], [&] { return fmt::format("rate {} at surfaces", k); });
+  }
+  return different;
+}

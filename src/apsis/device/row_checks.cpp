@@ -1,6 +1,7 @@
 #include <apsis/device/row_checks.hpp>
 
 #include <apsis/device/internal/device_gas_rows.hpp>
+#include <apsis/device/internal/gas_cells.hpp>
 #include <apsis/device/internal/kernels/check_gas.hpp>
 #include <apsis/device/internal/kernels/compare_rows.hpp>
 #include <apsis/mesh/on_host.hpp>
@@ -22,13 +23,11 @@ class checks_of_gas final : public device_row_checks {
  public:
   checks_of_gas(device& on, const gas_model& gas, const grid& mesh)
       : device_(on),
-        cells_(mesh.fluid()),
+        cells_(gas_cells(mesh)),
         rows_(on, gas.molecules()),
         numbers_(kernel::numbers(gas.molecules().dimensions())),
         checks_(static_cast<std::size_t>(mesh.size()) * static_cast<std::size_t>(numbers_), on.memory()),
-        on_host_(checks_.size()) {
-    if (cells_.empty()) cells_.push_back({0, mesh.size()});
-  }
+        on_host_(checks_.size()) {}
 
   void evaluate(const field& u) override {
     kernel::arguments of{};

@@ -1,6 +1,7 @@
 #include <apsis/device/internal/device_force.hpp>
 
 #include <apsis/core/first_error.hpp>
+#include <apsis/device/internal/gas_cells.hpp>
 #include <apsis/device/internal/kernels/add_force.hpp>
 
 #include <algorithm>
@@ -14,11 +15,6 @@ namespace {
 using kernel = kernels::add_force;
 
 static_assert(kernel::cells == launch_room::cells_of_block);
-
-std::vector<cell_range> cells_of(const grid& mesh) {
-  if (mesh.fluid().empty()) return {{0, mesh.size()}};
-  return mesh.fluid();
-}
 
 int most_lines_of(const force& of, const velocity_lattice& lattice) {
   std::size_t most = 0;
@@ -36,7 +32,7 @@ device_force::device_force(device& on, const gas_model& gas, std::shared_ptr<dom
       host_(gas, space_, std::move(of), edges),
       rows_(on, gas.molecules()),
       weights_(gas.velocities().weights(), on.memory()),
-      cells_(cells_of(space_->mesh())),
+      cells_(gas_cells(space_->mesh())),
       components_(gas.components()),
       most_lines_(most_lines_of(host_, lattice_)),
       room_(on.memory(), cells_,

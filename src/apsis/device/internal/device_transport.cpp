@@ -2,6 +2,7 @@
 
 #include <apsis/core/errors.hpp>
 #include <apsis/core/first_error.hpp>
+#include <apsis/device/internal/gas_cells.hpp>
 #include <apsis/device/internal/kernel_table.hpp>
 #include <apsis/device/internal/kernels/combine.hpp>
 #include <apsis/device/internal/row_launch.hpp>
@@ -18,8 +19,7 @@ using targets_view = std::span<const target<field, double>>;
 /// acc ← (fresh ? 0 : acc) + Σ α u in the cells of the gas.
 void add_terms(device& on, const grid& mesh, std::span<const linear_term<field, double>> terms, bool fresh,
                field& sum) {
-  std::vector<cell_range> cells = mesh.fluid();
-  if (cells.empty()) cells.push_back({0, sum.cells()});
+  const std::vector<cell_range> cells = gas_cells(mesh);
   constexpr auto most = static_cast<std::size_t>(kernels::combine::most);
   for (std::size_t first = 0; first < terms.size(); first += most)
     for (const auto& [begin, end] : cells) {

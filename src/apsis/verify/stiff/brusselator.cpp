@@ -21,7 +21,7 @@ struct formula {
       const auto square = u * u * v;
       f[2 * j] = 1.0 + square - 4.0 * u - 2.0 * spread * u;
       f[2 * j + 1] = 3.0 * u - square - 2.0 * spread * v;
-      for (const std::size_t species : {0, 1}) {
+      for (std::size_t species = 0; species < 2; ++species) {
         const std::size_t k = 2 * j + species;
         const double at_end = species == 0 ? 1.0 : 3.0;
         f[k] += j > 0 ? spread * y[k - 2] : spread * at_end + 0.0 * y[k];

@@ -26,7 +26,7 @@ from blocks import Block, Problem, check_rules, is_excerpt, is_same_output, read
 ROOT = Path(__file__).resolve().parents[1]
 PAGES = ("README.md", "CONTRIBUTING.md", "src/apsis/*/README.md", "docs/**/*.md")
 LIMIT = 900  # seconds per block, with a margin for loaded machines
-REPORTS = ("studies/report.py", "bench/report.py")  # draw pictures from results that take too long for a page
+REPORTS = ("studies/report.py", "bench/pictures.py")  # draw pictures from results that take too long for a page
 
 # Executes blocks from standard input in one namespace, with the output of each in a file, and answers "ok" or the traceback.
 SESSION = """

@@ -139,7 +139,8 @@ typedef int apsis_curvature_function(size_t block, size_t n, const double* u, co
                                      const double* x, double* hx, void* data);
 /// *result ← a positive time: Δt_FE, or the smallest relaxation time ε/C of the state.
 typedef int apsis_time_function(double t, size_t n, const double* u, double* result, void* data);
-/// *result ← 1 if u, a block, is admissible, such as positive, and 0 if it is not.
+/// *result ← 1 if u, a block, is admissible, such as positive, and 0 if it is not. A stage that is not ends
+/// the step with an error; a step to a tolerance is shortened until its stages and its result are.
 typedef int apsis_admissible_function(size_t block, size_t n, const double* u, int* result, void* data);
 /// Observes u after a step of length dt that ended at t; `step` counts from 1 since apsis_start(). A positive
 /// number ends the integration with APSIS_STOPPED.

@@ -272,6 +272,59 @@ TEST(dense_output, meets_the_solution_at_both_ends_of_a_step) {
     }
 }
 
+// A caller who keeps the begins of steps has dense output of the whole interval, also after it.
+TEST(dense_output, is_known_later_from_kept_begins_of_steps) {
+  auto problem = ode_model::as_relaxation<state>(0.01);
+  for (const char* name : {"md-imex-6-3", "dop853"}) {
+    evolution one(apsis::find_integrator(name), problem, rule::unlimited(), within(1e-5));
+    one.start(0.0, {2, 0});
+    struct place {
+      double begin, t;
+      state before, inside;
+    };
+    std::vector<place> kept;
+    state before{2, 0};
+    one.advance(1.0, [&](long, double t, double length, const state& u) {
+      kept.push_back({one.begin_of_step(), t - length / 3, before, one.at(t - length / 3)});
+      before = u;
+      return true;
+    });
+    for (const auto& [begin, t, from, inside] : kept)
+      EXPECT_EQ(one.step_from(begin, from, t), inside) << name;
+    EXPECT_EQ(one.step_from(kept[0].begin, kept[0].before, kept[0].begin), kept[0].before);
+    bad_input::expect_refused(
+        {{[&] { one.step_from(0.5, {2, 0}, 0.4); }, {"the time 0.4 is before the begin of its step (0.5)"}}});
+  }
+}
+
+TEST(evolution, takes_a_given_first_step) {
+  auto problem = ode_model::as_relaxation<state>(0.3);
+  for (const double first : {1e-4, 1e-2}) {
+    auto tolerance = within(1e-3);
+    tolerance.first_step = first;
+    evolution one(apsis::find_integrator("dop853"), problem, rule::unlimited(), tolerance);
+    one.start(0.0, {2, 0});
+    one.advance(1.0, [&](long, double, double length, const state&) {
+      EXPECT_EQ(length, first);
+      return false;
+    });
+  }
+}
+
+TEST(evolution, accepts_a_method_that_is_not_registered) {
+  auto problem = ode_model::as_relaxation<state>(0.3);
+  apsis::method own = apsis::find_method("md-imex-6-3");
+  own.name = "own";
+  evolution by_method(own, problem, rule::unlimited(), within(1e-5)),
+      by_name(apsis::find_integrator("md-imex-6-3"), problem, rule::unlimited(), within(1e-5));
+  for (evolution* one : {&by_method, &by_name}) {
+    one->start(0.0, {2, 0});
+    one->advance(1.0);
+  }
+  EXPECT_EQ(by_method.u(), by_name.u());
+  EXPECT_EQ(by_method.steps(), by_name.steps());
+}
+
 TEST(dense_output, does_not_disturb_the_steps) {
   auto problem = ode_model::as_relaxation<state>(0.01);
   for (const auto& name : {"md-imex-6-3", "imex-bdf-4", "two-step-8-3-narrow", "exponential-2"}) {

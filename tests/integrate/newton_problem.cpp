@@ -233,6 +233,47 @@ TEST(newton_problem, throws_without_an_admissible_root_and_keeps_the_state) {
   });
 }
 
+// Extrapolation subtracts results of different substeps: none of its stages is negative, and yet its steps
+// are.
+TEST(newton_problem, steps_to_a_tolerance_stay_admissible_with_every_method) {
+  for (const bool guarded : {false, true}) {
+    apsis::newton_problem problem(apsis::no_transport{}, [](const auto& u, auto& g) {
+      g[0] = -1e4 * u[0];
+      g[1] = 1e4 * u[0] - u[1];
+    });
+    if (guarded) problem.with_admissible([](std::span<const double> v) { return v[0] >= 0 && v[1] >= 0; });
+    const auto& m = apsis::find_method("extrapolated-euler-4");
+    apsis::stepper march(m, problem, apsis::solutions::result_and_embedded);
+    apsis::step_controller<double> control(1e-2, apsis::estimate_of(m).order);
+    const apsis::component_tolerances<double> distance(1, 1);
+    std::vector<double> u{1, 0};
+    double least = 0;
+    apsis::integrate_to_tolerance(march, u, 0.0, 1.0, apsis::step_rule<double>::unlimited(), control,
+                                  distance, [&](long, double, double, const std::vector<double>& now) {
+                                    least = std::min({least, now[0], now[1]});
+                                  });
+    EXPECT_EQ(least >= 0, guarded) << least;
+    EXPECT_NEAR(u[1], std::exp(-1.0), 1e-2);
+  }
+}
+
+TEST(newton_problem, says_that_no_step_is_admissible) {
+  apsis::newton_problem problem(apsis::no_transport{},
+                                [](const auto& u, auto& g) { g[0] = -1.0 - 0.0 * u[0]; });
+  problem.with_admissible([](std::span<const double> v) { return v[0] >= 0; });
+  const auto& m = apsis::find_method("kutta-4");
+  bad_input::expect_refused({{[&] {
+                                apsis::stepper march(m, problem, apsis::solutions::result_and_embedded);
+                                apsis::step_controller<double> control(1e-2, apsis::estimate_of(m).order);
+                                std::vector<double> u{0};
+                                apsis::integrate_to_tolerance(march, u, 0.0, 1.0,
+                                                              apsis::step_rule<double>::unlimited(), control,
+                                                              apsis::component_tolerances<double>(1, 1));
+                              },
+                              {"the result of a step is not admissible"},
+                              3}});
+}
+
 TEST(newton_problem, accepts_an_inadmissible_explicit_part_if_the_root_is_admissible) {
   const auto g = [](const auto& u, auto& out) { out[0] = 1 - u[0]; };
   apsis::newton_problem problem{no_transport{}, g};

@@ -54,17 +54,21 @@ bool callbacks::is_admissible(std::size_t block, std::span<const double> u) cons
   return result != 0;
 }
 
-void callbacks::require_valid(const std::vector<double>& u) const {
-  require_finite(u, "a stage");
-  if (admissible == nullptr) return;
+std::optional<std::size_t> callbacks::first_inadmissible(const std::vector<double>& u) const {
+  if (admissible == nullptr) return std::nullopt;
   const std::span<const double> all(u);
   for (std::size_t block = 0; block * block_size < u.size(); ++block)
-    if (!is_admissible(block, all.subspan(block * block_size, block_size)))
-      throw numerical_error(
-          "a stage is not admissible (the method or the time step does not preserve admissibility); use Δt ≤ "
-          "r "
-          "Δt_FE with an SSP method",
-          {-1, std::nan(""), u.size() > block_size ? static_cast<long>(block) : -1, std::nan("")});
+    if (!is_admissible(block, all.subspan(block * block_size, block_size))) return block;
+  return std::nullopt;
+}
+
+void callbacks::require_valid(const std::vector<double>& u) const {
+  require_finite(u, "a stage");
+  if (const auto block = first_inadmissible(u))
+    throw numerical_error(
+        "a stage is not admissible (the method or the time step does not preserve admissibility); use Δt ≤ r "
+        "Δt_FE with an SSP method",
+        {-1, std::nan(""), u.size() > block_size ? static_cast<long>(*block) : -1, std::nan("")});
 }
 
 double callbacks::time_of(apsis_time_function* function, const char* name, double t,

@@ -20,6 +20,7 @@ struct step_tolerance {
   Real tolerance;  ///< largest accepted distance
   /// Returns a norm of u − v, which may be relative to u.
   std::function<Real(const State& u, const State& v)> distance;
+  std::optional<Real> first_step{};  ///< longest first step; without it first_step_length() alone sets it
 };
 
 /// Integrates over intervals by a method of any kind, like integrate() and integrate_to_tolerance().
@@ -50,7 +51,9 @@ class independent_march final : public any_march<State, Real> {
   using tolerance = step_tolerance<State, Real>;
   independent_march(March march, const std::optional<tolerance>& tolerated, int order)
       : march_(std::move(march)), tolerated_(tolerated) {
-    if (tolerated) control_.emplace(tolerated->tolerance, order);
+    if (!tolerated) return;
+    control_.emplace(tolerated->tolerance, order);
+    if (tolerated->first_step) control_->start_with(*tolerated->first_step);
   }
 
   void integrate_to(Real t0, Real t1, State& u, const step_rule<Real>& rule,
@@ -92,6 +95,18 @@ class dependent_march final : public any_march<State, Real> {
 
 }  // namespace any_march_parts
 /// @endcond
+
+/// Returns the march of a method of one step, which need not be registered. `p` must outlive it. Throws
+/// input_error if the problem lacks what the method needs.
+template <problem P>
+std::unique_ptr<any_march<typename P::state, typename P::real>> make_march(
+    const method& m, P& p,
+    const std::optional<step_tolerance<typename P::state, typename P::real>>& tolerated = std::nullopt) {
+  using march = any_march_parts::independent_march<stepper<P>, typename P::state, typename P::real>;
+  return std::make_unique<march>(
+      stepper<P>(m, p, tolerated ? solutions::result_and_embedded : solutions::result), tolerated,
+      tolerated ? estimate_of(m).order : 0);
+}
 
 /// Returns the march of an integrator. `p` must outlive it. Throws input_error if the problem lacks what the
 /// method needs, or if a tolerance is given for a method that needs equal steps.

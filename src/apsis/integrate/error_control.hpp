@@ -87,10 +87,21 @@ class step_controller {
   progress now_;
 };
 
+/// Throws numerical_error if the problem has an admissible set and u is not in it.
+template <problem P>
+void require_admissible(P& p, const typename P::state& u) {
+  if constexpr (problem_with_admissible_set<P>) {
+    if (!p.is_admissible(u))
+      throw numerical_error(
+          "the result of a step is not admissible (the method does not preserve admissibility, and shorter "
+          "steps did not either); begin with an admissible state, or use an SSP method");
+  }
+}
+
 /// Takes one accepted step of length `limit` at most: u ← u^{n+1}; returns its length. distance(u, v) is a
 /// norm of u − v chosen by the caller, and `estimate` computes the error in it. A step that fails with a
-/// numerical_error is rejected like one with infinite error; once steps are too small to advance time, that
-/// numerical_error is thrown and u is still u^n.
+/// numerical_error, or whose result is not admissible, is rejected like one with infinite error; once steps
+/// are too small to advance time, that numerical_error is thrown and u is still u^n.
 template <problem P, class Distance>
 typename P::real step_within_tolerance(stepper<P>& method_stepper,
                                        const time_marcher<typename P::real>& march,
@@ -109,6 +120,7 @@ typename P::real step_within_tolerance(stepper<P>& method_stepper,
     }
     try {
       const auto tried = method_stepper.attempt(march.t(), dt, u);
+      require_admissible(method_stepper.problem(), tried.result);
       const real error = estimate(method_stepper.problem(), march.t(), dt, u, tried, distance);
       if (!control.accepts(dt, error)) continue;
     } catch (const numerical_error& why) {

@@ -61,6 +61,10 @@ class evolution {
   evolution(const time_integrator& m, P& p, step_rule<real> rule,
             const std::optional<tolerance>& tolerated = std::nullopt)
       : rule_(rule), march_(make_march(m, p, tolerated)) {}
+  /// The same for a method of one step, which need not be registered.
+  evolution(const method& m, P& p, step_rule<real> rule,
+            const std::optional<tolerance>& tolerated = std::nullopt)
+      : rule_(rule), march_(make_march(m, p, tolerated)) {}
 
   /// Sets the functions of events, and what observes every event, in the order of time. Throws input_error if
   /// a list does not have an entry for each function.
@@ -114,8 +118,17 @@ class evolution {
       throw input_error(fmt::format(
           "the time {:.10g} is not in the last step (from {:.10g} to {:.10g}); give one of this step",
           static_cast<double>(t), static_cast<double>(before_t_), static_cast<double>(t_)));
-    state u = before_;
-    if (t > before_t_) march_->part_of_step(before_t_, t - before_t_, u);
+    return step_from(before_t_, before_, t);
+  }
+
+  /// Returns the solution at t of one step that begins with u at t0 ≤ t: at() of an earlier step, whose
+  /// begin the caller kept. Throws input_error for t < t0, and what a step throws.
+  state step_from(real t0, state u, real t) {
+    if (!(t0 <= t))
+      throw input_error(
+          fmt::format("the time {:.10g} is before the begin of its step ({:.10g}); give a later one",
+                      static_cast<double>(t), static_cast<double>(t0)));
+    if (t > t0) march_->part_of_step(t0, t - t0, u);
     return u;
   }
 

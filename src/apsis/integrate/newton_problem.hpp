@@ -137,6 +137,12 @@ class newton_problem {
     return forward_euler_ ? forward_euler_(t, u) : std::numeric_limits<real>::infinity();
   }
 
+  /// Required by `problem_with_admissible_set`; true unless a set is given.
+  bool is_admissible(const State& u) {
+    load(u);
+    return equation_.admissible(v_);
+  }
+
   /// Report on the last stage solve.
   const newton_report& report() const { return report_; }
 

@@ -122,6 +122,13 @@ concept problem_with_transport_check =
       { p.has_transport(x, u) } -> std::convertible_to<bool>;
     };
 
+/// A problem whose states belong to an admissible set, such as that of positive states:
+///   is_admissible(u)   whether u does. A step to a tolerance is rejected where its result does not
+template <class P>
+concept problem_with_admissible_set = problem<P> && requires(P p, const typename P::state& u) {
+  { p.is_admissible(u) } -> std::convertible_to<bool>;
+};
+
 /// A stage solve that is due as soon as add_transport has completed its target u: the
 /// arguments of solve_collision.
 template <class State, class Real>

@@ -65,6 +65,9 @@ class relaxation_problem {
     return *this;
   }
 
+  /// Required by `problem_with_admissible_set`; true unless a predicate is given.
+  bool is_admissible(const State& u) const { return !admissible_ || admissible_(u); }
+
   /// Required by `problem`.
   void add_transport(real t, const State& u, std::span<const target<State, real>> targets) {
     accumulate<State>(targets, u, [&]() -> const State& {
@@ -166,7 +169,7 @@ class relaxation_problem {
   /// Throws numerical_error unless u is finite and admissible.
   void require_valid(const State& u) const {
     require_finite(u, "a stage");  // implies a finite explicit part: neither weight turns a NaN into a number
-    if (admissible_ && !admissible_(u))
+    if (!is_admissible(u))
       throw numerical_error(
           "a stage is not admissible (the method or the time step does not preserve admissibility); "
           "use Δt ≤ r Δt_FE with an SSP method");

@@ -150,7 +150,8 @@ class time_marcher {
       throw input_error(
           "nothing limits the time step (the transport sets no forward Euler step, or the method is "
           "unconditionally stable); give dt");
-    if (!(t_ + proposed > t_))
+    // Halves of a subnormal step are 0, so that nothing would notice that steps lead nowhere.
+    if (!(t_ + proposed > t_) || proposed < std::numeric_limits<Real>::min())
       throw numerical_error(
           "the time step does not advance time (it is not positive, or smaller than the rounding of t); "
           "check the forward Euler step and the tolerance",

@@ -8,6 +8,7 @@
 
 #include <array>
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -52,6 +53,8 @@ struct callbacks {
   void evaluate_block(std::size_t block, std::span<const double> u, std::span<double> q);
   /// Whether a block is admissible.
   bool is_admissible(std::size_t block, std::span<const double> u) const;
+  /// The first block that is not admissible; none if all are.
+  std::optional<std::size_t> first_inadmissible(const std::vector<double>& u) const;
   /// Throws numerical_error unless all blocks of a stage are admissible and finite.
   void require_valid(const std::vector<double>& u) const;
   /// Returns the result of a time_function; +infinity without one.

@@ -60,6 +60,7 @@ class split_problem {
     of_.evaluate_transport(t, u, work_);
     return !is_zero(work_);
   }
+  bool is_admissible(const state& u) const { return !of_.first_inadmissible(u); }
   double forward_euler_step(double t, const state& u) const {
     return of_.time_of(of_.forward_euler_step, "forward_euler_step", t, u);
   }

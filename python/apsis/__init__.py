@@ -4,6 +4,7 @@
     apsis.open("results/layer").plot()                   a stored run
     apsis.method("md-imex-6-3").certificate.order        methods and what can be said of them
     apsis.integrate(problem, u0, t, method=…, dt=…)      a problem of your own, or a KineticProblem on a mesh
+    apsis.solve_ivp(transport, collision, t_span, y0)    the form and the result object of scipy.integrate.solve_ivp
     apsis.solve_steady(problem, u0).u                    the steady state of a KineticProblem, without steps in time
 
 All quantities are dimensionless.
@@ -12,6 +13,7 @@ from ._core import model_names as models
 from ._core import version as _version
 from .errors import ClaimError, CostWarning, Error, FileError, InputError, NumericalError
 from .general import GeneralProblem
+from .ivp import solve_ivp
 from .kinetic import KineticProblem
 from .methods import Certificate, Method, OrderCondition, method, methods, order_conditions, read_method
 from .problems import RelaxationProblem, Solution, integrate
@@ -23,4 +25,4 @@ __version__: str = _version()
 
 __all__ = ["Case", "Certificate", "ClaimError", "CostWarning", "Error", "FileError", "GeneralProblem", "InputError", "KineticProblem", "Method", "NumericalError",
            "OrderCondition", "RelaxationProblem", "Result", "Solution", "SteadyState", "cases", "integrate", "method", "methods", "models",
-           "open", "order_conditions", "read_method", "run", "solve_steady"]
+           "open", "order_conditions", "read_method", "run", "solve_ivp", "solve_steady"]

@@ -10,8 +10,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _core
 from .arguments import number, real_array, whole_number
+from .derivatives import Derivatives
 from .errors import CostWarning, InputError
-from .general import Derivatives, GeneralProblem
+from .general import GeneralProblem
 from .kinetic import KineticProblem
 from .methods import Method, html_table, method as find_method
 

@@ -3,6 +3,7 @@
 #include <apsis/core/matrix.hpp>
 
 #include <memory>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -38,7 +39,7 @@ inline py::array_t<double> to_array(const matrix<double>& m) {
 
 /// A copy that cannot be written to. A function may keep what it is given, and the state of an integration
 /// moves on.
-inline py::array_t<double> to_fixed_array(const std::vector<double>& numbers,
+inline py::array_t<double> to_fixed_array(std::span<const double> numbers,
                                           const std::vector<py::ssize_t>& shape) {
   py::array_t<double> copy(shape, numbers.data());
   copy.attr("setflags")(py::arg("write") = false);
@@ -49,6 +50,7 @@ void bind_errors(py::module_& m);
 void bind_methods(py::module_& m);
 void bind_integrate(py::module_& m);
 void bind_general(py::module_& m);
+void bind_evolution(py::module_& m);
 void bind_runs(py::module_& m);
 void bind_kinetic(py::module_& m);
 

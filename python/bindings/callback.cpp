@@ -66,7 +66,7 @@ void callback::refuse(py::error_already_set& why, const py::object& returned,
 }
 
 void callback::numbers(const py::object& returned, const std::vector<py::ssize_t>& shape,
-                       std::vector<double>& out) const {
+                       std::span<double> out) const {
   const auto wanted = [&] {
     return fmt::format("an array of real numbers of the shape of u, {},", shape_text(shape));
   };

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -31,7 +32,7 @@ class callback {
   const std::string& name() const { return name_; }
   /// `returned` as real numbers of this shape, in C order. One number may come in any shape of one element.
   void numbers(const py::object& returned, const std::vector<py::ssize_t>& shape,
-               std::vector<double>& out) const;
+               std::span<double> out) const;
   /// `returned` as one real number.
   double number(const py::object& returned) const;
   /// `returned` as a truth value.

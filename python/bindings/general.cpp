@@ -31,29 +31,21 @@ class python_field {
   python_field(const general_functions& of, extents shape) : of_(&of), shape_(std::move(shape)) {}
 
   void value(std::span<const double> u, std::span<double> out) {
-    take(of_->collision, of_->collision(look(u)), out);
+    of_->collision.numbers(of_->collision(look(u)), shape_, out);
   }
   void jacobian_product(std::span<const double> u, std::span<const double> x, std::span<double> jx) {
-    take(of_->product, of_->product(look(u), look(x)), jx);
+    of_->product.numbers(of_->product(look(u), look(x)), shape_, jx);
   }
   void curvature(std::span<const double> u, std::span<const double> k, std::span<const double> x,
                  std::span<double> hx) {
-    take(of_->curvature, of_->curvature(look(u), look(k), look(x)), hx);
+    of_->curvature.numbers(of_->curvature(look(u), look(k), look(x)), shape_, hx);
   }
 
  private:
-  py::array_t<double> look(std::span<const double> u) const {
-    return to_fixed_array(state(u.begin(), u.end()), shape_);
-  }
-  void take(const callback& function, const py::object& returned, std::span<double> out) {
-    numbers_.resize(out.size());
-    function.numbers(returned, shape_, numbers_);
-    std::copy(numbers_.begin(), numbers_.end(), out.begin());
-  }
+  py::array_t<double> look(std::span<const double> u) const { return to_fixed_array(u, shape_); }
 
   const general_functions* of_;
   extents shape_;
-  state numbers_;
 };
 
 /// u' = T(t, u) + Q(u), where Q couples the numbers of a cell only, which are contiguous.
@@ -68,7 +60,7 @@ class general_problem {
     cell_.resize(length_);
     if (of.admissible)
       local_.with_admissible([this, cell](std::span<const double> v) {
-        return of_.admissible->truth((*of_.admissible)(to_fixed_array(state(v.begin(), v.end()), cell)));
+        return of_.admissible->truth((*of_.admissible)(to_fixed_array(v, cell)));
       });
   }
 
@@ -91,6 +83,13 @@ class general_problem {
     state solved = u;
     for_each_cell(solved, [&](state& cell) { local_.solve_collision(t, a, b, cell); });
     u.swap(solved);
+  }
+  bool is_admissible(const state& u) {
+    if (!of_.admissible) return true;
+    state copy = u;
+    bool all = true;
+    for_each_cell(copy, [&](const state& cell) { all = all && local_.is_admissible(cell); });
+    return all;
   }
   bool has_transport(double t, const state& u) { return of_.transport && !is_zero(transport(t, u)); }
   double forward_euler_step(double t, const state& u) const {

@@ -10,6 +10,7 @@ PYBIND11_MODULE(_core, m) {
   apsis::python::bind_methods(m);
   apsis::python::bind_integrate(m);
   apsis::python::bind_general(m);
+  apsis::python::bind_evolution(m);
   apsis::python::bind_runs(m);
   apsis::python::bind_kinetic(m);
 }

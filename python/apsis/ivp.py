@@ -1,0 +1,228 @@
+"""Initial value problems in the form of scipy.integrate.solve_ivp."""
+from __future__ import annotations
+
+import math
+import warnings
+from typing import TYPE_CHECKING, Any, Callable, Sequence
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from . import _core
+from .arguments import number, real_array
+from .errors import CostWarning, InputError, NumericalError
+from .methods import Method, method as find_method
+from .system import System
+
+if TYPE_CHECKING:
+    from scipy.optimize import OptimizeResult
+
+Array = NDArray[np.float64]
+Function = Callable[..., Any]
+
+
+def solve_ivp(transport: Function | None, collision: Function | None, t_span: Sequence[float], y0: ArrayLike, *, method: str | Method = "auto",
+              t_eval: ArrayLike | None = None, dense_output: bool = False, events: Function | Sequence[Function] | None = None,
+              args: Sequence[Any] = (), rtol: ArrayLike = 1e-3, atol: ArrayLike = 1e-6, jac: Any = None, jac_sparsity: Any = None,
+              vectorized: bool = False, first_step: float | None = None, max_step: float = math.inf, dt: float | None = None,
+              forward_euler_step: Function | None = None, admissible: Function | None = None, solver: str = "dense") -> OptimizeResult:
+    """Solves y' = T(t, y) + Q(t, y), y(t0) = y0, T explicitly and Q implicitly, and returns what SciPy's solve_ivp returns.
+
+        scipy.integrate.solve_ivp(f, t_span, y0, method="Radau", jac=J)        becomes
+        apsis.solve_ivp(None, f, t_span, y0, jac=J)                            or, with the part g of f that is not stiff,
+        apsis.solve_ivp(g, lambda t, y: f(t, y) - g(t, y), t_span, y0)
+
+    The functions get read-only arrays of the shape of y0, (n,), which may be kept, and then args:
+
+        transport(t, y)           T, of shape (n,); None: T = 0
+        collision(t, y)           Q, of shape (n,), stiff; None: Q = 0. With vectorized=True it also accepts y of shape (n, k)
+        jac(t, y)                 ∂Q/∂y, an array or a sparse matrix of shape (n, n); or a constant matrix; or None: complex steps
+                                  where Q accepts complex numbers, else differences (GeneralProblem)
+        events                    functions g(t, y) with zeros that are reported; attributes `terminal` (True, or a number of zeros) and
+                                  `direction` as in SciPy. A zero at the start of the integration is not an event
+        forward_euler_step(t, y)  Δt_FE of T: steps are at most r Δt_FE, which preserves what forward Euler steps preserve
+        admissible(y)             whether a state may be so, such as positive: no Newton iterate and no step leaves that set
+
+    Steps keep the estimated error of every y_i below rtol_i |y_i| + atol_i; both may be arrays. With dt all steps have that length and
+    there is no error control. first_step and max_step limit the steps. `method` is a name, a file or a Method of one step; "auto"
+    chooses by the table of `apsis list choices`. jac_sparsity, a matrix of shape (n, n) that is not 0 where ∂Q/∂y may be, and a
+    sparse jac choose sparse factorizations; differences then need one call for each group of columns. A constant matrix, or a sparse
+    jac at (t0, y0), defines the places itself. solver="krylov" iterates without matrices, for Q that is not stiff.
+
+    Returns scipy.optimize.OptimizeResult with t (m,), y (n, m), sol (scipy.integrate.OdeSolution or None), t_events, y_events, nfev
+    (calls of transport and collision), njev (of jac), nlu (linear systems), status (0: end reached, 1: a terminal event, −1: a step
+    failed), message and success; and beyond SciPy's: method, steps, rejected, derivatives.
+
+    The solution inside a step, for t_eval, sol and events, is a step of the method from its begin: it has the order of the method, and is
+    positive where steps are. Each of its values costs a step.
+
+    Raises InputError for arguments that cannot be used, and exceptions of the functions."""
+    scipy = _scipy()
+    listed = _event_functions(events)
+    problem = System(transport, collision, forward_euler_step, admissible, listed, tuple(args), bool(vectorized))
+    span, start = _interval(t_span), _state(y0)
+    wanted = None if t_eval is None else _times(t_eval, span)
+    relative, absolute = _tolerance("rtol", rtol), _tolerance("atol", atol)
+    bounded = forward_euler_step is not None or admissible is not None
+    integrator, reason = _integrator(method, bounded, None if dt is not None else min(relative) or 1e-12)
+    problem.prepare(span, start, jac, jac_sparsity)
+    if np.any(integrator.ddot != 0):
+        problem.require_exact(start, integrator.name)
+    evolution = _core.Evolution(problem, integrator._core, relative, absolute, *_step_lengths(dt, first_step, max_step, forward_euler_step is not None),
+                                _is_krylov(solver, problem, start.size, integrator), problem.places,
+                                [int(np.sign(getattr(e, "direction", 0))) for e in listed], [_endings(e) > 0 for e in listed])
+    record = _Record(evolution, wanted, dense_output, span[0], start)
+    status, message = _march(evolution, record, span, start, listed)
+    found = [[(t, y) for k, t, y in evolution.found if k == number_of] for number_of in range(len(listed))]
+    return scipy.optimize.OptimizeResult(
+        t=np.array(record.t), y=np.array(record.y).reshape(-1, start.size).T.copy(),
+        sol=scipy.integrate.OdeSolution(record.ends, record.steps) if record.steps else None,
+        t_events=[np.array([t for t, _ in of]) for of in found] if listed else None,
+        y_events=[np.array([y for _, y in of]) for of in found] if listed else None, nfev=problem.nfev, njev=problem.njev,
+        nlu=evolution.systems, status=status, message=message, success=status >= 0, method=integrator.name, reason=reason,
+        steps=evolution.steps, rejected=evolution.rejected, derivatives=problem.by)
+
+
+class StepOutput:
+    """The solution inside a step, an interpolant of scipy.integrate.OdeSolution: a function of a time or of an array of times."""
+
+    def __init__(self, evolution: Any, t_old: float, y_old: Array, t: float, y: Array) -> None:
+        self.t_old, self.t, self.t_min, self.t_max = t_old, t, t_old, t
+        self._evolution, self._before, self._after = evolution, y_old, y
+
+    def __call__(self, t: ArrayLike) -> Array:
+        """Returns y(t) of shape (n,), or (n, k) for k times."""
+        times = np.asarray(t, dtype=np.float64)
+        return self._at(float(times)) if times.ndim == 0 else np.array([self._at(float(x)) for x in times]).T
+
+    def _at(self, t: float) -> Array:
+        return self._after.copy() if t == self.t else np.array(self._evolution.step_from(self.t_old, self._before, t))
+
+
+class _Record:
+    """The times and states of a result, and its dense output, collected step by step."""
+
+    def __init__(self, evolution: Any, wanted: list[float] | None, dense: bool, t0: float, y0: Array) -> None:
+        self._evolution, self._wanted, self._dense = evolution, wanted, dense
+        self.t: list[float] = [t0] if wanted is None or wanted[:1] == [t0] else []
+        self.y: list[Array] = [y0] if self.t else []
+        self.ends, self.steps = [t0], list[StepOutput]()
+        self._before = y0
+
+    def add_step(self) -> None:
+        """Adds the last step of the evolution."""
+        begin, t, y = self._evolution.begin_of_step, self._evolution.t, self._evolution.u
+        if self._dense:
+            self.ends.append(t)
+            self.steps.append(StepOutput(self._evolution, begin, self._before, t, y))
+            self._before = y
+        if self._wanted is None:
+            self.t.append(t)
+            self.y.append(y)
+            return
+        for x in self._wanted[len(self.t):]:
+            if x > t:
+                break
+            self.t.append(x)
+            self.y.append(self._evolution.at(x))
+
+
+def _march(evolution: Any, record: _Record, span: tuple[float, float], start: Array, events: list[Function]) -> tuple[int, str]:
+    """Advances to the end, to the last event or to a failure; returns status and message."""
+    evolution.start(span[0], start.tolist())
+    try:
+        while evolution.advance(span[1], record.add_step):
+            last = evolution.found[-1][0]
+            if sum(k == last for k, _, _ in evolution.found) >= _endings(events[last]):
+                return 1, f"event {last} ended the integration"
+    except NumericalError as failure:
+        return -1, str(failure)
+    return 0, "the end of the interval was reached"
+
+
+def _scipy() -> Any:
+    try:
+        import scipy.integrate
+        import scipy.optimize
+    except ImportError as missing:
+        raise InputError("solve_ivp needs SciPy (it returns its result object); install it, such as python3-scipy of Debian") from missing
+    return scipy
+
+
+def _integrator(method: str | Method, bounded: bool, tolerance: float | None) -> tuple[Method, str]:
+    if isinstance(method, Method):
+        return method, ""
+    if not isinstance(method, str):
+        raise InputError(f"method is a {type(method).__name__} (it must be a name, a file or an apsis.Method); see apsis.methods()")
+    if method != "auto":
+        return find_method(method), ""
+    name, reason = _core.choose_method(False, bounded, False, tolerance, None)
+    return find_method(name), reason
+
+
+def _interval(t_span: Sequence[float]) -> tuple[float, float]:
+    times = real_array("t_span", t_span)
+    if times.shape != (2,) or not np.all(np.isfinite(times)):
+        raise InputError("t_span is not two finite times (the integration begins and ends there); give (t0, t1)")
+    if not times[0] < times[1]:
+        raise InputError("t_span does not increase (steps go forward in time); for t1 < t0 integrate -f in the time -t")
+    return float(times[0]), float(times[1])
+
+
+def _state(y0: ArrayLike) -> Array:
+    start = real_array("y0", y0)
+    if start.ndim != 1 or start.size == 0:
+        raise InputError(f"y0 has the shape {start.shape} (a vector is needed); give an array of shape (n,)")
+    if not np.all(np.isfinite(start)):
+        raise InputError("y0 has a number that is not finite (steps begin there); give finite numbers")
+    start.setflags(write=False)
+    return start
+
+
+def _times(t_eval: ArrayLike, span: tuple[float, float]) -> list[float]:
+    times = real_array("t_eval", t_eval)
+    if times.ndim != 1 or np.any(np.diff(times) <= 0) or not np.all((times >= span[0]) & (times <= span[1])):
+        raise InputError("t_eval is not an increasing list of times of t_span (they are taken in their order); sort and limit them")
+    return [float(x) for x in times]
+
+
+def _tolerance(name: str, value: ArrayLike) -> list[float]:
+    found = real_array(name, value)
+    if found.ndim > 1:
+        raise InputError(f"{name} has the shape {found.shape} (one number belongs to an unknown); give a number or an array of shape (n,)")
+    return [float(x) for x in np.atleast_1d(found)]
+
+
+def _step_lengths(dt: float | None, first: float | None, longest: float,
+                  limited: bool) -> tuple[float | None, float | None, float | None]:
+    lengths = (None if dt is None else number("dt", dt, positive=True), None if first is None else number("first_step", first, positive=True),
+               None if number("max_step", longest) == math.inf else number("max_step", longest, positive=True))
+    if dt is not None and (first is not None or lengths[2] is not None):
+        raise InputError("dt and first_step or max_step are given (with dt all steps have that length); remove one of them")
+    if limited and (dt is not None or lengths[2] is not None):
+        raise InputError("forward_euler_step and dt or max_step are given (each limits the length of steps); remove one of them")
+    return lengths
+
+
+def _is_krylov(solver: str, problem: System, n: int, integrator: Method) -> bool:
+    if solver not in ("dense", "krylov"):
+        raise InputError(f"unknown solver {solver!r} (there is no such name); give \"dense\" or \"krylov\"")
+    if solver == "krylov" and problem.places is not None:
+        raise InputError("solver=\"krylov\" has no meaning with jac_sparsity or a sparse jac (systems are factorized); remove one of them")
+    if solver == "dense" and problem.places is None and n > 200 and problem.collision is not None and integrator.kind != "explicit":
+        warnings.warn(f"a stage has {n} unknowns (each of its Newton steps takes about {n:.0e}^3 = {n**3:.0e} operations); give "
+                      "jac_sparsity, or solver=\"krylov\" if Q is not stiff", CostWarning, stacklevel=3)
+    return solver == "krylov"
+
+
+def _event_functions(events: Function | Sequence[Function] | None) -> list[Function]:
+    listed = [] if events is None else [events] if callable(events) else list(events)
+    for k, event in enumerate(listed):
+        if not callable(event):
+            raise InputError(f"event {k} is a {type(event).__name__} (it must be callable); give a function of t and y")
+    return listed
+
+
+def _endings(event: Function) -> int:
+    """The number of zeros of an event after which the integration ends; 0: it never does."""
+    return int(getattr(event, "terminal", False) or 0)

@@ -1,0 +1,291 @@
+"""apsis.solve_ivp: the arguments and results of scipy.integrate.solve_ivp, for stiff problems and for T and Q apart."""
+import math
+
+import apsis
+import numpy as np
+import pytest
+
+scipy_integrate = pytest.importorskip("scipy.integrate", reason="solve_ivp returns objects of SciPy")
+scipy_sparse = pytest.importorskip("scipy.sparse")
+
+
+def robertson(t, y):
+    first, third = -0.04 * y[0] + 1e4 * y[1] * y[2], 3e7 * y[1] ** 2
+    return np.array([first, -first - third, third])
+
+
+def robertson_jacobian(t, y):
+    return np.array([[-0.04, 1e4 * y[2], 1e4 * y[1]], [0.04, -1e4 * y[2] - 6e7 * y[1], -1e4 * y[1]], [0.0, 6e7 * y[1], 0.0]])
+
+
+def van_der_pol(t, y, mu):
+    return np.array([y[1], mu * (1 - y[0] ** 2) * y[1] - y[0]])
+
+
+@pytest.mark.parametrize("jac", [None, robertson_jacobian])
+@pytest.mark.parametrize("rtol", [1e-4, 1e-6, 1e-8])
+def test_one_line_replaces_radau(rtol, jac):
+    atol = rtol * np.array([1e-4, 1e-8, 1e-4])
+    radau = scipy_integrate.solve_ivp(robertson, (0, 1e5), [1.0, 0, 0], method="Radau", jac=robertson_jacobian, rtol=1e-12, atol=1e-20)
+    found = apsis.solve_ivp(None, robertson, (0, 1e5), [1.0, 0, 0], jac=jac, rtol=rtol, atol=atol)
+    assert found.success and found.status == 0 and found.t[-1] == 1e5
+    assert found.derivatives == ("complex steps" if jac is None else "jacobian") and (found.njev > 0) == (jac is not None)
+    # A digit less than the tolerance of one step: errors of steps add up.
+    np.testing.assert_allclose(found.y[:, -1], radau.y[:, -1], rtol=10 * rtol)
+    np.testing.assert_allclose(found.y.sum(axis=0), 1.0, rtol=0, atol=1e-11)  # rounding of some thousand solves
+
+
+def test_the_result_has_what_that_of_scipy_has():
+    def crosses(t, y, mu):
+        return y[0]
+
+    arguments = dict(t_eval=np.linspace(0, 20, 7), events=crosses, dense_output=True, rtol=1e-7, atol=1e-9, args=(10.0,))
+    theirs = scipy_integrate.solve_ivp(van_der_pol, (0, 20), [2.0, 0.0], method="Radau", **arguments)
+    ours = apsis.solve_ivp(None, van_der_pol, (0, 20), [2.0, 0.0], **arguments)
+    assert set(theirs) <= set(ours)
+    for name in ("t", "y", "t_events", "y_events"):
+        assert np.shape(getattr(theirs, name)) == np.shape(getattr(ours, name)), name
+        np.testing.assert_allclose(np.asarray(getattr(ours, name)), np.asarray(getattr(theirs, name)), rtol=1e-4, atol=1e-4, err_msg=name)
+    assert isinstance(ours.sol, scipy_integrate.OdeSolution)
+    times = np.linspace(0, 20, 50).reshape(-1)
+    np.testing.assert_allclose(ours.sol(times), theirs.sol(times), rtol=1e-3, atol=1e-3)
+    np.testing.assert_array_equal(ours.sol(ours.t), ours.y)  # both are the same steps
+    assert type(ours).__mro__[0].__name__ == "OptimizeResult" and ours.nfev > 0 and ours.nlu > 0
+
+
+def test_without_t_eval_the_times_are_the_ends_of_steps():
+    found = apsis.solve_ivp(None, lambda t, y: -y, (0, 1), [1.0], rtol=1e-6, dense_output=True)
+    assert found.t[0] == 0 and found.t[-1] == 1 and np.all(np.diff(found.t) > 0) and len(found.t) == found.steps + 1
+    np.testing.assert_array_equal(found.sol.ts, found.t)
+    np.testing.assert_array_equal(found.sol(found.t), found.y)
+    np.testing.assert_allclose(found.y[0], np.exp(-found.t), rtol=1e-5)
+
+
+# Motion with a phase of time in both parts: T and Q depend on t and y.
+def swing(t, y):
+    return np.array([y[1] + 0.3 * np.sin(2 * t), np.cos(t) * y[0]])
+
+
+def damping(t, y):
+    return np.array([-y[0] ** 3, -(2 + np.sin(t)) * y[1]])
+
+
+@pytest.mark.parametrize("method, order", [("md-imex-3-2", 2), ("md-imex-8-3-mixed", 3), ("md-imex-14-4-accurate", 4), ("ark-436", 4),
+                                           ("extrapolated-euler-4", 4)])
+def test_orders_of_steps_and_of_dense_output(method, order):
+    exact = scipy_integrate.solve_ivp(lambda t, y: swing(t, y) + damping(t, y), (0, 1), [1.0, 0.5], method="DOP853", rtol=1e-13,
+                                      atol=1e-14, dense_output=True)
+    at = 0.37  # inside a step of each length
+    errors = []
+    for dt in (1 / 64, 1 / 128):
+        found = apsis.solve_ivp(swing, damping, (0, 1), [1.0, 0.5], method=method, dt=dt, t_eval=[at, 1.0])
+        errors.append(np.abs(found.y - exact.sol(np.array([at, 1.0]))).max(axis=0))
+    assert np.all(np.log2(errors[0] / errors[1]) > order - 0.5), (errors, order)
+
+
+@pytest.mark.parametrize("method", ["imdrk-9-5", "extrapolated-euler-6", "md-imex-8-3-mixed"])
+@pytest.mark.parametrize("phase", [np.cos, math.cos], ids=["analytic in time", "for real times alone"])
+def test_stiff_sources_that_depend_on_time(method, phase):
+    """Prothero and Robinson: y' = -λ(y − cos t) − sin t stays at cos t for every λ."""
+    def collision(t, y):
+        return -1e5 * (y - phase(t)) - np.sin(t)
+
+    found = apsis.solve_ivp(None, collision, (0, 10), [1.0], method=method, rtol=1e-6, atol=1e-6)
+    assert found.success and found.y[0, -1] == pytest.approx(math.cos(10), abs=1e-5)
+    assert found.steps < 2000  # an explicit method would take 3e5
+
+
+def test_a_ball_bounces_at_events():
+    def hits(t, y):
+        return y[0]
+
+    hits.terminal, hits.direction = True, -1
+    t, y, bounces = 0.0, np.array([10.0, 0.0]), []
+    while len(bounces) < 4:
+        found = apsis.solve_ivp(lambda t, y: np.array([y[1], -9.81]), None, (t, 100), y, method="dop853", events=hits, rtol=1e-10, atol=1e-12)
+        assert found.status == 1 and found.t[-1] == found.t_events[0][0] and abs(found.y[0, -1]) < 1e-9
+        t, y = float(found.t[-1]), np.array([0.0, -0.9 * found.y[1, -1]])
+        bounces.append(t)
+    fall = math.sqrt(2 * 10 / 9.81)
+    expected = fall * (1 + 2 * np.cumsum([0.0, 0.9, 0.81, 0.729]))
+    np.testing.assert_allclose(bounces, expected, rtol=1e-8)
+
+
+def test_directions_and_numbers_of_events():
+    def up(t, y):
+        return y[0]
+
+    def third(t, y):
+        return y[0]
+
+    up.direction, third.terminal = 1, 3
+    found = apsis.solve_ivp(lambda t, y: np.array([y[1], -y[0]]), None, (0, 100), [0.0, 1.0], method="dop853", rtol=1e-10, atol=1e-12,
+                            events=[up, third])
+    # sin t starts at a zero, which is no event.
+    np.testing.assert_allclose(found.t_events[0], [2 * np.pi], rtol=1e-8)
+    np.testing.assert_allclose(found.t_events[1], np.pi * np.arange(1, 4), rtol=1e-8)
+    assert found.status == 1 and found.t[-1] == found.t_events[1][-1] and np.shape(found.y_events[1]) == (3, 2)
+
+
+def decays(t, y):
+    """A fast and a slow decay: y1 is far below the tolerance soon."""
+    return np.array([-1e4 * y[0], 1e4 * y[0] - y[1]])
+
+
+def test_a_method_that_promises_nothing_stays_in_the_admissible_set():
+    arguments = dict(rtol=1e-2, atol=1e-2, method="extrapolated-euler-4")
+    free = apsis.solve_ivp(None, decays, (0, 1), [1.0, 0.0], **arguments)
+    kept = apsis.solve_ivp(None, decays, (0, 1), [1.0, 0.0], admissible=lambda y: np.all(y >= 0), **arguments)
+    assert free.y.min() < 0 <= kept.y.min()
+    assert kept.success and kept.rejected > free.rejected
+
+
+def test_dense_output_is_positive_where_steps_are():
+    # Newton's iterates end within a part of the tolerance, so that signs of 1e-40 need the admissible set.
+    found = apsis.solve_ivp(None, decays, (0, 1), [1.0, 0.0], method="imdrk-9-5", rtol=1e-2, atol=1e-4, dense_output=True,
+                            admissible=lambda y: np.all(y >= 0))
+    inside = found.sol(np.geomspace(1e-7, 1, 400))
+    radau = scipy_integrate.solve_ivp(decays, (0, 1), [1.0, 0.0], method="Radau", rtol=1e-2, atol=1e-4, dense_output=True)
+    assert found.y.min() >= 0 and inside.min() >= 0
+    assert radau.sol(np.geomspace(1e-7, 1, 400)).min() < 0  # the question is one
+
+
+def brusselator(t, y):
+    """The Brusselator with diffusion on a line: u and v in turns."""
+    u, v = y[0::2], y[1::2]
+    n, out = len(u), np.empty_like(y)
+    diffusion = 0.02 * (n + 1) ** 2
+    wide_u, wide_v = np.concatenate([[1.0], u, [1.0]]), np.concatenate([[3.0], v, [3.0]])
+    out[0::2] = 1 + u * u * v - 4 * u + diffusion * (wide_u[2:] - 2 * u + wide_u[:-2])
+    out[1::2] = 3 * u - u * u * v + diffusion * (wide_v[2:] - 2 * v + wide_v[:-2])
+    return out
+
+
+def test_sparse_derivatives_give_the_same_solution_with_fewer_calls():
+    cells = 40
+    x = np.arange(1, cells + 1) / (cells + 1)
+    y0 = np.stack([1 + np.sin(2 * np.pi * x), np.full(cells, 3.0)], axis=-1).ravel()
+    sparsity = scipy_sparse.diags([1, 1, 1, 1, 1], [-2, -1, 0, 1, 2], shape=(80, 80))
+    arguments = dict(method="extrapolated-euler-5", rtol=1e-6, atol=1e-6)
+    dense = apsis.solve_ivp(None, brusselator, (0, 1), y0, **arguments)
+    sparse = apsis.solve_ivp(None, brusselator, (0, 1), y0, jac_sparsity=sparsity, **arguments)
+    np.testing.assert_allclose(sparse.y[:, -1], dense.y[:, -1], rtol=1e-5)
+    assert sparse.nfev < dense.nfev / 5  # five groups of columns instead of 80 columns
+    columns = apsis.solve_ivp(None, lambda t, y: np.array([brusselator(t, one) for one in y.T]).T, (0, 1), y0, vectorized=True, **arguments)
+    np.testing.assert_allclose(columns.y[:, -1], dense.y[:, -1], rtol=1e-5)
+    assert columns.nfev < dense.nfev / 5  # one call for all columns
+
+
+@pytest.mark.parametrize("kind", ["array", "sparse", "function", "sparse function"])
+def test_jacobians_of_every_form(kind):
+    matrix = np.array([[-1e3, 1.0, 0.0], [0.0, -1.0, 0.5], [0.0, 0.0, -1e5]])
+    jac = {"array": matrix, "sparse": scipy_sparse.csr_matrix(matrix), "function": lambda t, y: matrix,
+           "sparse function": lambda t, y: scipy_sparse.csc_matrix(matrix)}[kind]
+    found = apsis.solve_ivp(None, lambda t, y: matrix @ y, (0, 2), [1.0, 1.0, 1.0], method="imdrk-9-5", jac=jac, rtol=1e-8, atol=1e-10)
+    values, vectors = np.linalg.eig(matrix)
+    exact = (vectors @ (np.exp(2 * values) * np.linalg.solve(vectors, np.ones(3)))).real
+    np.testing.assert_allclose(found.y[:, -1], exact, rtol=1e-6, atol=1e-9)
+    assert (found.njev > 0) == ("function" in kind)
+
+
+def test_a_wrong_jacobian_matters_where_it_enters_the_solution():
+    wrong = [[-900.0]]
+    with pytest.raises(apsis.InputError, match="jac is not the derivative of collision at the start"):
+        apsis.solve_ivp(None, lambda t, y: -1000 * y, (0, 1), [1.0], jac=wrong, method="imdrk-9-5")
+    found = apsis.solve_ivp(None, lambda t, y: -1000 * y, (0, 1), [1.0], jac=wrong, method="extrapolated-euler-4")
+    assert found.success and abs(found.y[0, -1]) < 1e-5
+
+
+def test_a_step_that_fails_ends_with_what_was_reached():
+    found = apsis.solve_ivp(lambda t, y: y ** 2, None, (0, 2), [1.0], method="dop853", rtol=1e-8, atol=1e-8)
+    assert not found.success and found.status == -1 and "step" in found.message
+    assert 0.9 < found.t[-1] < 1.0 + 1e-8 and np.all(np.isfinite(found.y))
+    before = found.t < 0.999
+    np.testing.assert_allclose(found.y[0, before], 1 / (1 - found.t[before]), rtol=1e-3)
+
+
+def test_exceptions_of_functions_leave_as_they_are():
+    class Stop(Exception):
+        pass
+
+    def fails(t, y):
+        if t > 0.5:
+            raise Stop
+        return -y
+
+    with pytest.raises(Stop):
+        apsis.solve_ivp(fails, None, (0, 1), [1.0], method="dop853")
+
+
+def test_first_and_longest_steps():
+    found = apsis.solve_ivp(lambda t, y: -y, None, (0, 10), [1.0], method="dop853", first_step=1e-3, max_step=0.25)
+    lengths = np.diff(found.t)
+    assert lengths[0] <= 1e-3 * (1 + 1e-12) and lengths.max() <= 0.25 * (1 + 1e-12)
+
+
+def test_strong_stability_limits_steps():
+    """A solute enters a column and is adsorbed at a high rate: a and b in turns. Its front is half as fast as the liquid."""
+    cells = 50
+
+    def transport(t, y):
+        out = np.zeros_like(y)
+        out[0::2] = cells * (np.concatenate([[1.0], y[:-2:2]]) - y[0::2])
+        return out
+
+    def adsorption(t, y):
+        out = 1e6 * (y[1::2] - y[0::2])
+        return np.stack([out, -out], axis=-1).ravel()
+
+    r = apsis.method("md-imex-10-3-mixed").certificate.ssp_coefficient
+    arguments = dict(method="md-imex-10-3-mixed", jac_sparsity=np.kron(np.eye(cells), np.ones((2, 2))))
+    found = apsis.solve_ivp(transport, adsorption, (0, 1), np.zeros(2 * cells), atol=1e-3, forward_euler_step=lambda t, y: 1 / cells,
+                            **arguments)
+    assert found.success and np.diff(found.t).max() <= r / cells * (1 + 1e-12) and found.steps < 2 * cells / r
+    assert found.y[0::2, -1].sum() / cells == pytest.approx(0.5, abs=1e-3)
+    # Without error control stages are solved to rounding, so that the length of steps alone keeps the bounds, or breaks them.
+    for factor, kept in ((1, True), (4, False)):
+        y = apsis.solve_ivp(transport, adsorption, (0, 1), np.zeros(2 * cells), dt=factor * r / cells, **arguments).y
+        assert (y.min() >= -1e-13 and y.max() <= 1 + 1e-13) == kept
+
+
+REFUSED = [
+    (dict(t_span=(1, 0)), "t_span does not increase"),
+    (dict(t_span=(0, math.inf)), "t_span is not two finite times"),
+    (dict(y0=[[1.0]]), r"y0 has the shape \(1, 1\)"),
+    (dict(y0=[math.nan]), "y0 has a number that is not finite"),
+    (dict(y0=[1j]), "y0 is an array of type complex128"),
+    (dict(t_eval=[0.5, 0.2]), "t_eval is not an increasing list"),
+    (dict(t_eval=[2.0]), "t_eval is not an increasing list"),
+    (dict(rtol=-1), "a tolerance of unknown 0 is negative"),
+    (dict(rtol=0, atol=0), "unknown 0 has no tolerance"),
+    (dict(atol=[1, 2]), "2 tolerances and 1 unknowns"),
+    (dict(dt=0.1, max_step=0.1), "dt and first_step or max_step are given"),
+    (dict(dt=0.0), "dt = 0 is not a positive number"),
+    (dict(max_step=0.1, forward_euler_step=lambda t, y: 1), "forward_euler_step and dt or max_step are given"),
+    (dict(method="Radau"), "unknown method 'Radau'"),
+    (dict(method=3), "method is a int"),
+    (dict(events=[1]), "event 0 is a int"),
+    (dict(events=lambda t, y: None), "event 0 returned None"),
+    (dict(jac=[[1.0, 2.0]]), r"jac is an array of shape \(1, 2\)"),
+    (dict(jac_sparsity=[[1.0], [1.0]]), "jac_sparsity is an array of shape"),
+    (dict(jac="exact"), "jac is an array of shape"),
+    (dict(solver="sparse"), "unknown solver 'sparse'"),
+    (dict(solver="krylov", jac_sparsity=[[1.0]]), "solver=\"krylov\" has no meaning"),
+    (dict(transport=3), "transport is a int"),
+    (dict(collision=lambda t, y: None), "collision returned None"),
+    (dict(collision=lambda t, y: [1.0, 2.0]), r"collision returned an array of shape \(2,\)"),
+    (dict(collision=None, jac=[[1.0]]), "jac or jac_sparsity is given without collision"),
+]
+
+
+@pytest.mark.parametrize("arguments, message", REFUSED, ids=[message[:40] for _, message in REFUSED])
+def test_what_cannot_be_used_is_refused(arguments, message):
+    given = dict(transport=None, collision=lambda t, y: -y, t_span=(0, 1), y0=[1.0]) | arguments
+    with pytest.raises(apsis.InputError, match=message):
+        apsis.solve_ivp(**given)
+
+
+def test_a_place_outside_the_pattern_is_noticed():
+    with pytest.raises(apsis.InputError, match="jac has an entry in row 0 and column 1"):
+        apsis.solve_ivp(None, lambda t, y: np.array([-y[0] + t * y[1], -y[1]]), (0, 1), [1.0, 1.0],
+                        jac=lambda t, y: scipy_sparse.csr_matrix([[-1.0, t], [0.0, -1.0]]), method="extrapolated-euler-4")

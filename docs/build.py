@@ -22,7 +22,8 @@ KATEX = Path("/usr/share/javascript/katex")
 NORMALIZE = Path("/usr/share/javascript/normalize.css/normalize.css")
 # Pages outside docs, and folders that have a page.
 PLACES = {"README.md": "overview.md", "CONTRIBUTING.md": "contributing.md", "CHANGELOG.md": "changelog.md",
-          "bench/README.md": "bench.md", "methods": "reference/methods.md", "cases": "reference/cases.md"}
+          "bench/README.md": "bench.md", "packaging/README.md": "packaging.md", "methods": "reference/methods.md",
+          "cases": "reference/cases.md"}
 LINK = re.compile(r"(\]\()([^)\s]+)(\))")
 ENTRY = re.compile(r"\[([^\]]+)\]\(([^)\s]+\.md)\)")
 

@@ -40,8 +40,8 @@ breathe_default_members = ("members",)
 breathe_show_include = False
 
 autodoc_member_order = "bysource"
-autodoc_type_aliases = {name: name for name in ("Array", "ArrayLike", "Case", "Coefficient", "Face", "Initial", "Interval", "Progress",
-                                                "Quantity", "Tableau", "Velocities")}
+autodoc_type_aliases = {name: name for name in ("Array", "ArrayLike", "Case", "Coefficient", "Face", "Function", "Initial", "Interval", "OptimizeResult",
+                                                "Progress", "Quantity", "Tableau", "Velocities")}
 
 # Names of others, whose documentation is elsewhere.
 index = ElementTree.parse(WORK / "doxygen" / "xml" / "index.xml").getroot()

@@ -43,7 +43,7 @@ def solve_ivp(transport: Function | None, collision: Function | None, t_span: Se
         forward_euler_step(t, y)  Δt_FE of T: steps are at most r Δt_FE, which preserves what forward Euler steps preserve
         admissible(y)             whether a state may be so, such as positive: no Newton iterate and no step leaves that set
 
-    Steps keep the estimated error of every y_i below rtol_i |y_i| + atol_i; both may be arrays. With dt all steps have that length and
+    Steps keep the estimated error of every y_i below ``rtol_i |y_i| + atol_i``; both may be arrays. With dt all steps have that length and
     there is no error control. first_step and max_step limit the steps. `method` is a name, a file or a Method of one step; "auto"
     chooses by the table of `apsis list choices`. jac_sparsity, a matrix of shape (n, n) that is not 0 where ∂Q/∂y may be, and a
     sparse jac choose sparse factorizations; differences then need one call for each group of columns. A constant matrix, or a sparse

@@ -1,0 +1,116 @@
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+#include <cstring>
+
+// The vectors are values of inlined functions alone, so that no call of another object file passes one.
+#if defined(__GNUC__) && !defined(__clang__)
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wpsabi"
+#endif
+
+// A namespace of its own, since apsis::log is a namespace.
+namespace apsis::lane_arithmetic {
+
+/// One number of each of eight systems. Arithmetic is that of eight doubles, which compilers carry out in the
+/// widest vectors of the target (-march=native). The number of lanes is the same for every target.
+/// Comparisons do not exist: lanes would take different branches.
+class lanes {
+ public:
+  static constexpr std::size_t count = 8;  ///< number of systems
+
+  /// Undefined numbers.
+  lanes() = default;
+  /// The same number in all lanes.
+  lanes(double x) : all_(vector{} + x) {}
+
+  /// Returns the eight numbers at a place.
+  static lanes load(const double* from) {
+    lanes x;
+    std::memcpy(&x.all_, from, sizeof x.all_);
+    return x;
+  }
+  /// Stores the eight numbers at a place.
+  void store(double* to) const { std::memcpy(to, &all_, sizeof all_); }
+  /// Returns the number of a lane.
+  double operator[](std::size_t k) const { return all_[k]; }
+
+  lanes& operator+=(const lanes& y) { return *this = *this + y; }  ///< adds in every lane
+  lanes& operator-=(const lanes& y) { return *this = *this - y; }  ///< subtracts in every lane
+  lanes& operator*=(const lanes& y) { return *this = *this * y; }  ///< multiplies in every lane
+
+  friend lanes operator-(const lanes& x) { return lanes(-x.all_); }                          ///< −x
+  friend lanes operator+(const lanes& x, const lanes& y) { return lanes(x.all_ + y.all_); }  ///< x + y
+  friend lanes operator-(const lanes& x, const lanes& y) { return lanes(x.all_ - y.all_); }  ///< x − y
+  friend lanes operator*(const lanes& x, const lanes& y) { return lanes(x.all_ * y.all_); }  ///< xy
+  friend lanes operator/(const lanes& x, const lanes& y) { return lanes(x.all_ / y.all_); }  ///< x/y
+
+  /// |x|
+  friend lanes abs(const lanes& x) { return lanes(x.all_ < 0.0 ? -x.all_ : x.all_); }
+  /// The larger number of each lane; x where y is NaN.
+  friend lanes larger(const lanes& x, const lanes& y) { return lanes(y.all_ > x.all_ ? y.all_ : x.all_); }
+  /// Some of the lanes.
+  class choice {
+    friend class lanes;
+    friend choice where_larger(const lanes& x, const lanes& y);
+    friend void exchange(const choice& of, lanes& x, lanes& y);
+    using mask [[gnu::vector_size(8 * sizeof(double))]] = long long;
+    mask chosen_;
+  };
+  /// The lanes in which |y| > |x|.
+  friend choice where_larger(const lanes& x, const lanes& y) {
+    choice of;
+    of.chosen_ = abs(y).all_ > abs(x).all_;
+    return of;
+  }
+  /// Exchanges x and y in some lanes.
+  friend void exchange(const choice& of, lanes& x, lanes& y) {
+    const vector first = x.all_;
+    x.all_ = of.chosen_ ? y.all_ : first;
+    y.all_ = of.chosen_ ? first : y.all_;
+  }
+
+  /// f(x) in every lane, for a function of doubles.
+  template <class F>
+  friend lanes in_every_lane(const lanes& x, const F& f) {
+    lanes y;
+    for (std::size_t k = 0; k < count; ++k) y.all_[k] = f(x.all_[k]);
+    return y;
+  }
+  friend lanes exp(const lanes& x) {
+    return in_every_lane(x, [](double y) { return std::exp(y); });
+  }  ///< eˣ
+  friend lanes log(const lanes& x) {
+    return in_every_lane(x, [](double y) { return std::log(y); });
+  }  ///< ln x
+  friend lanes sqrt(const lanes& x) {
+    return in_every_lane(x, [](double y) { return std::sqrt(y); });
+  }  ///< √x
+  friend lanes sin(const lanes& x) {
+    return in_every_lane(x, [](double y) { return std::sin(y); });
+  }  ///< sin x
+  friend lanes cos(const lanes& x) {
+    return in_every_lane(x, [](double y) { return std::cos(y); });
+  }  ///< cos x
+  /// xⁿ
+  friend lanes pow(const lanes& x, double n) {
+    return in_every_lane(x, [n](double y) { return std::pow(y, n); });
+  }
+
+ private:
+  using vector [[gnu::vector_size(8 * sizeof(double))]] = double;
+  explicit lanes(const vector& all) : all_(all) {}
+
+  vector all_;
+};
+
+}  // namespace apsis::lane_arithmetic
+
+namespace apsis {
+using lane_arithmetic::lanes;
+}  // namespace apsis
+
+#if defined(__GNUC__) && !defined(__clang__)
+#pragma GCC diagnostic pop
+#endif

@@ -49,6 +49,7 @@ nitpick_ignore = [("cpp:identifier", part) for entry in index.iterfind("compound
                   for part in (entry.findtext("name"), entry.findtext("name").rpartition("::")[2])]
 nitpick_ignore_regex = [
     ("cpp:identifier", r"scalar::.*|target_shape"),  # formulas have no pages
+    ("cpp:identifier", r"lanes"),  # in an inner namespace, from which apsis takes it
     ("cpp:identifier", r".*<double>::progress"),  # members of class templates have no page of their own
     (r"py:.*", r"(numpy|collections|pathlib|typing|apsis\._core)\..*|Path|.*Fraction|.*ForwardRef.*|"
      + "|".join(autodoc_type_aliases)),

@@ -47,7 +47,7 @@ class Derivatives:
         """Returns Q'(u), for u of n numbers an array or a sparse matrix of shape (n, n), and keeps it until u is another."""
         key = u.tobytes()
         if self._known is None or self._known[0] != key:
-            self._known = key, self._all_columns(u) if self._jacobian is None else as_square_matrix("jacobian", self._jacobian(_fixed(u)), u.size)
+            self._known = key, self._all_columns(u) if self._jacobian is None else as_square_matrix("jacobian returned", self._jacobian(_fixed(u)), u.size)
         return self._known[1]
 
     def forget(self) -> None:
@@ -166,13 +166,13 @@ class TimedDerivatives:
         return exact.shape == u.shape and bool(np.all(np.abs(exact - near) <= 1e-4 * _size(near) + 1e-7 * _size(exact)))
 
 
-def as_square_matrix(name: str, found: Any, n: int) -> Any:
-    """`found`, an array or a sparse matrix, as one of n × n real numbers. Raises InputError if it is not."""
+def as_square_matrix(subject: str, found: Any, n: int) -> Any:
+    """`found`, an array or a sparse matrix, as one of n × n real numbers. Raises InputError if it is not: "{subject} an array of …"."""
     if not hasattr(found, "tocsr"):
         found = np.asarray(found)
     if found.dtype.kind not in "biuf" or (found.shape != (n, n) and (hasattr(found, "tocsr") or found.size != n ** 2)):
-        raise InputError(f"{name} is an array of shape {found.shape} and type {found.dtype} (real numbers of shape ({n}, {n}) are needed); "
-                         "give that")
+        raise InputError(f"{subject} an array of shape {found.shape} and type {found.dtype} (real numbers of shape ({n}, {n}) are needed); "
+                         "give such")
     return found.tocsr().astype(np.float64) if hasattr(found, "tocsr") else found.astype(np.float64).reshape(n, n)
 
 

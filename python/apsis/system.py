@@ -46,7 +46,7 @@ class System:
                 raise InputError("jac or jac_sparsity is given without collision (they are those of Q); remove it, or give collision")
             return
         if sparsity is not None:
-            self._restrict_to(as_square_matrix("jac_sparsity", sparsity, y0.size))
+            self._restrict_to(as_square_matrix("jac_sparsity is", sparsity, y0.size))
         jacobian = self._jacobian(jac, interval[0], y0)
         columns = self._all_columns if self._vectorized and self._pattern is None else None
         self._derivatives = TimedDerivatives(self.collision, jacobian, y0, interval, columns)
@@ -95,7 +95,7 @@ class System:
     def _jacobian(self, jac: Any, t0: float, y0: Array) -> Function | None:
         if jac is None:
             return None
-        first = as_square_matrix("jac", jac(t0, y0, *self._args) if callable(jac) else jac, y0.size)
+        first = as_square_matrix("jac returned" if callable(jac) else "jac is", jac(t0, y0, *self._args) if callable(jac) else jac, y0.size)
         if self._pattern is None and hasattr(first, "tocsr"):
             self._restrict_to(first)
         if not callable(jac):
@@ -104,7 +104,7 @@ class System:
 
         def call(t: float, y: Array) -> Any:
             self.njev += 1
-            found = as_square_matrix("jac", jac(t, y, *self._args), y.size)
+            found = as_square_matrix("jac returned", jac(t, y, *self._args), y.size)
             self._require_places(found)
             return found
 

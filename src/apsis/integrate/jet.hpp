@@ -26,40 +26,57 @@ struct jet {
     return combine([&](std::size_t i) { return slope * by[i]; }, f);
   }
 
+  /// −x
   friend jet operator-(const jet& x) {
     return combine([&](std::size_t i) { return -x.by[i]; }, -x.value);
   }
+  /// x + y
   friend jet operator+(const jet& x, const jet& y) {
     return combine([&](std::size_t i) { return x.by[i] + y.by[i]; }, x.value + y.value);
   }
+  /// x − y
   friend jet operator-(const jet& x, const jet& y) {
     return combine([&](std::size_t i) { return x.by[i] - y.by[i]; }, x.value - y.value);
   }
+  /// xy
   friend jet operator*(const jet& x, const jet& y) {
     return combine([&](std::size_t i) { return x.by[i] * y.value + x.value * y.by[i]; }, x.value * y.value);
   }
+  /// x/y
   friend jet operator/(const jet& x, const jet& y) {
     const lanes part = lanes(1.0) / y.value, ratio = x.value * part;
     return combine([&](std::size_t i) { return (x.by[i] - ratio * y.by[i]) * part; }, ratio);
   }
+  /// ax
   friend jet operator*(const lanes& a, const jet& x) { return x.through(a * x.value, a); }
+  /// ax
   friend jet operator*(const jet& x, const lanes& a) { return a * x; }
+  /// x/a
   friend jet operator/(const jet& x, const lanes& a) { return (lanes(1.0) / a) * x; }
+  /// x/a
   friend jet operator/(const jet& x, double a) { return x / lanes(a); }
+  /// ax
   friend jet operator*(double a, const jet& x) { return lanes(a) * x; }
+  /// ax
   friend jet operator*(const jet& x, double a) { return lanes(a) * x; }
 
+  /// eˣ
   friend jet exp(const jet& x) {
     const lanes f = exp(x.value);
     return x.through(f, f);
   }
+  /// ln x
   friend jet log(const jet& x) { return x.through(log(x.value), lanes(1.0) / x.value); }
+  /// √x
   friend jet sqrt(const jet& x) {
     const lanes f = sqrt(x.value);
     return x.through(f, lanes(0.5) / f);
   }
+  /// sin x
   friend jet sin(const jet& x) { return x.through(sin(x.value), cos(x.value)); }
+  /// cos x
   friend jet cos(const jet& x) { return x.through(cos(x.value), -sin(x.value)); }
+  /// xⁿ
   friend jet pow(const jet& x, double n) {
     return x.through(pow(x.value, n), lanes(n) * pow(x.value, n - 1.0));
   }

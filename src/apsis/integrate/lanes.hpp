@@ -105,6 +105,9 @@ class lanes {
   vector all_;
 };
 
+/// ln x, visible where the name would be that of the namespace apsis::log.
+inline lanes log(const lanes& x);
+
 }  // namespace apsis::lane_arithmetic
 
 namespace apsis {

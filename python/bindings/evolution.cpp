@@ -9,8 +9,10 @@
 
 #include <algorithm>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <pybind11/stl.h>
@@ -200,10 +202,10 @@ void bind_evolution(py::module_& m) {
                   std::optional<double> dt, std::optional<double> first, std::optional<double> most,
                   bool krylov,
                   const std::optional<std::pair<std::size_t, std::vector<sparsity_pattern::place>>>& places,
-                  std::vector<int> directions, std::vector<bool> ends) {
+                  const std::vector<int>& directions, std::vector<bool> ends) {
                  return std::make_unique<python_evolution>(
                      of, by, step_lengths{std::move(rtol), std::move(atol), dt, first, most}, krylov, places,
-                     event_functions<state, double>{directions.size(), {}, directions, ends});
+                     event_functions<state, double>{directions.size(), {}, directions, std::move(ends)});
                }),
            py::keep_alive<1, 3>())
       .def("start", &python_evolution::start)

@@ -187,5 +187,16 @@ class Container(unittest.TestCase):
             self.assertTrue(Path(folder, "build", "release", "CPackConfig.cmake").exists())
 
 
+class License(unittest.TestCase):
+    def test_one_license_is_stated_everywhere(self):
+        stated = {"REUSE.toml": tomllib.loads(read("REUSE.toml"))["annotations"][0]["SPDX-License-Identifier"],
+                  "pyproject.toml": tomllib.loads(read("pyproject.toml"))["project"]["license"]["text"],
+                  "CITATION.cff": re.search(r"(?m)^license: (.+)$", read("CITATION.cff"))[1],
+                  "conda": re.search(r"(?m)^  license: (.+)$", CONDA.read_text(encoding="utf-8"))[1],
+                  "spack": re.search(r'license\("([^"]+)"\)', SPACK.read_text(encoding="utf-8"))[1]}
+        self.assertEqual(set(stated.values()), {"BSD-3-Clause"}, stated)
+        self.assertEqual(read("LICENSES/BSD-3-Clause.txt"), read("LICENSE"))
+
+
 if __name__ == "__main__":
     unittest.main()

@@ -93,7 +93,9 @@ TEST_P(every_embedded_row, has_its_certified_order) {
 
 TEST_P(every_embedded_row, estimates_a_term_of_order_q_plus_1) {
   const int q = apsis::find_certificate(GetParam()).embedded->order;
-  const real dt = real(1) / (q > 3 ? 128 : 1024);
+  // Not real(1)/(q > 3 ? 128 : 1024): clang 19.1 subtracts exponents for it, in the wrong bits of a long
+  // double.
+  const real dt = q > 3 ? real(1) / 128 : real(1) / 1024;
   const auto slope = [&](real epsilon, real rest) {
     return std::log2(estimate(GetParam(), epsilon, rest, dt) / estimate(GetParam(), epsilon, rest, dt / 2));
   };

@@ -10,7 +10,7 @@
 #pragma GCC diagnostic ignored "-Wpsabi"
 #endif
 
-// A namespace of its own, since apsis::log is a namespace.
+// A namespace of its own, since log is one of apsis.
 namespace apsis::lane_arithmetic {
 
 /// One number of each of eight systems. Arithmetic is that of eight doubles, which compilers carry out in the
@@ -105,7 +105,7 @@ class lanes {
   vector all_;
 };
 
-/// ln x, visible where the name would be that of the namespace apsis::log.
+/// ln x, declared again where its name would be that of the namespace of messages.
 inline lanes log(const lanes& x);
 
 }  // namespace apsis::lane_arithmetic

@@ -35,7 +35,8 @@ def solve_ivp(transport: Function | None, collision: Function | None, t_span: Se
     The functions get read-only arrays of the shape of y0, (n,), which may be kept, and then args:
 
         transport(t, y)           T, of shape (n,); None: T = 0
-        collision(t, y)           Q, of shape (n,), stiff; None: Q = 0. With vectorized=True it also accepts y of shape (n, k)
+        collision(t, y)           Q, of shape (n,), stiff; None: Q = 0. With vectorized=True T and Q get y of shape (n, k) and return
+                                  that shape, so that one call gives all derivatives
         jac(t, y)                 ∂Q/∂y, an array or a sparse matrix of shape (n, n); or a constant matrix; or None: complex steps
                                   where Q accepts complex numbers, else differences (GeneralProblem)
         events                    functions g(t, y) with zeros that are reported; attributes `terminal` (True, or a number of zeros) and
@@ -43,8 +44,8 @@ def solve_ivp(transport: Function | None, collision: Function | None, t_span: Se
         forward_euler_step(t, y)  Δt_FE of T: steps are at most r Δt_FE, which preserves what forward Euler steps preserve
         admissible(y)             whether a state may be so, such as positive: no Newton iterate and no step leaves that set
 
-    Steps keep the estimated error of every y_i below ``rtol_i |y_i| + atol_i``; both may be arrays. With dt all steps have that length and
-    there is no error control. first_step and max_step limit the steps. `method` is a name, a file or a Method of one step; "auto"
+    Steps keep the estimated error of every y_i below ``rtol_i |y_i| + atol_i``; both may be arrays. With dt all steps have that length,
+    without error control. first_step and max_step limit the steps. `method` is a name, a file or a Method of one step; "auto"
     chooses by the table of `apsis list choices`. jac_sparsity, a matrix of shape (n, n) that is not 0 where ∂Q/∂y may be, and a
     sparse jac choose sparse factorizations; differences then need one call for each group of columns. A constant matrix, or a sparse
     jac at (t0, y0), defines the places itself. solver="krylov" iterates without matrices, for Q that is not stiff.

@@ -41,10 +41,11 @@ figures: ## redraw the pictures from existing results
 	  "third order=results/bgk-mixed" "explicit reference=results/bgk-mixed-reference"
 	$(APSIS) report results/bgk-mixed
 
+# With all libraries, since `cmake --install build/release` installs them.
 program: ## install packages (NO_INSTALL=1: none), build only the program, in build/release/app
 	@scripts/install-packages.sh run
 	cmake --preset release -DAPSIS_TESTS=OFF $(WHOLE) >/dev/null
-	cmake --build build/release --target app/apsis
+	cmake --build build/release --target app/apsis src/apsis/all
 
 test: ## install packages, build all but benchmarks, run all tests except the slow ones
 	@scripts/install-packages.sh test

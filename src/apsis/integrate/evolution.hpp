@@ -122,11 +122,11 @@ class evolution {
   }
 
   /// Returns the solution at t of one step that begins with u at t0 ≤ t: at() of an earlier step, whose
-  /// begin the caller kept. Throws input_error for t < t0, and what a step throws.
+  /// beginning the caller kept. Throws input_error for t < t0, and what a step throws.
   state step_from(real t0, state u, real t) {
     if (!(t0 <= t))
       throw input_error(
-          fmt::format("the time {:.10g} is before the begin of its step ({:.10g}); give a later one",
+          fmt::format("the time {:.10g} is before the beginning of its step ({:.10g}); give a later one",
                       static_cast<double>(t), static_cast<double>(t0)));
     if (t > t0) march_->part_of_step(t0, t - t0, u);
     return u;

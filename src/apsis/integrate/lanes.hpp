@@ -78,21 +78,26 @@ class lanes {
     for (std::size_t k = 0; k < count; ++k) y.all_[k] = f(x.all_[k]);
     return y;
   }
+  /// eˣ
   friend lanes exp(const lanes& x) {
     return in_every_lane(x, [](double y) { return std::exp(y); });
-  }  ///< eˣ
+  }
+  /// ln x
   friend lanes log(const lanes& x) {
     return in_every_lane(x, [](double y) { return std::log(y); });
-  }  ///< ln x
+  }
+  /// √x
   friend lanes sqrt(const lanes& x) {
     return in_every_lane(x, [](double y) { return std::sqrt(y); });
-  }  ///< √x
+  }
+  /// sin x
   friend lanes sin(const lanes& x) {
     return in_every_lane(x, [](double y) { return std::sin(y); });
-  }  ///< sin x
+  }
+  /// cos x
   friend lanes cos(const lanes& x) {
     return in_every_lane(x, [](double y) { return std::cos(y); });
-  }  ///< cos x
+  }
   /// xⁿ
   friend lanes pow(const lanes& x, double n) {
     return in_every_lane(x, [n](double y) { return std::pow(y, n); });

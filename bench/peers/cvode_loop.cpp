@@ -108,8 +108,10 @@ class loop {
   bool works_ = false;
 };
 
-bool integrate_all(const ensemble_task& task, loop&& one, std::span<double> u,
+template <CVRhsFn rate, CVLsJacFn jacobian>
+bool integrate_all(const ensemble_task& task, double rtol, std::span<double> u,
                    std::span<const double> parameters) {
+  loop one(task, rtol, rate, jacobian);
   for (std::size_t s = 0; s * task.unknowns < u.size(); ++s)
     if (!one.integrate(&u[s * task.unknowns], &parameters[s * task.parameters])) return false;
   return true;
@@ -135,13 +137,7 @@ ensemble_task robertson_ensemble() {
                 return std::vector<double>{0.04 * part, 1e4 / part, 3e7 * part};
               },
           .in_lanes = robertson_in_lanes,
-          .by_cvode =
-              [](const ensemble_task& task, double rtol, std::span<double> u,
-                 std::span<const double> parameters) {
-                return cvode_loop::integrate_all(
-                    task, cvode_loop::loop(task, rtol, cvode_loop::robertson, cvode_loop::robertson_jacobian),
-                    u, parameters);
-              }};
+          .by_cvode = cvode_loop::integrate_all<cvode_loop::robertson, cvode_loop::robertson_jacobian>};
 }
 
 ensemble_task ode_model_ensemble() {
@@ -156,13 +152,7 @@ ensemble_task ode_model_ensemble() {
                 return std::vector<double>{1e-4 * cvode_loop::varied(s, systems)};
               },
           .in_lanes = ode_model_in_lanes,
-          .by_cvode =
-              [](const ensemble_task& task, double rtol, std::span<double> u,
-                 std::span<const double> parameters) {
-                return cvode_loop::integrate_all(
-                    task, cvode_loop::loop(task, rtol, cvode_loop::ode_model, cvode_loop::ode_model_jacobian),
-                    u, parameters);
-              }};
+          .by_cvode = cvode_loop::integrate_all<cvode_loop::ode_model, cvode_loop::ode_model_jacobian>};
 }
 
 }  // namespace apsis::bench::peers

@@ -42,7 +42,7 @@ def solve_ivp(transport: Function | None, collision: Function | None, t_span: Se
         events                    functions g(t, y) with zeros that are reported; attributes `terminal` (True, or a number of zeros) and
                                   `direction` as in SciPy. A zero at the start of the integration is not an event
         forward_euler_step(t, y)  Δt_FE of T: steps are at most r Δt_FE, which preserves what forward Euler steps preserve
-        admissible(y)             whether a state may be so, such as positive: no Newton iterate and no step leaves that set
+        admissible(y)             whether y is allowed, such as positive: no Newton iterate and no step leaves this set
 
     Steps keep the estimated error of every y_i below ``rtol_i |y_i| + atol_i``; both may be arrays. With dt all steps have that length,
     without error control. first_step and max_step limit the steps. `method` is a name, a file or a Method of one step; "auto"
@@ -54,8 +54,8 @@ def solve_ivp(transport: Function | None, collision: Function | None, t_span: Se
     (calls of transport and collision), njev (of jac), nlu (linear systems), status (0: end reached, 1: a terminal event, −1: a step
     failed), message and success; and beyond SciPy's: method, steps, rejected, derivatives.
 
-    The solution inside a step, for t_eval, sol and events, is a step of the method from its begin: it has the order of the method, and is
-    positive where steps are. Each of its values costs a step.
+    The solution inside a step, for t_eval, sol and events, is a step of the method from the beginning of that step. It has the order of the
+    method, and is positive where steps are. Each of its values costs a step.
 
     Raises InputError for arguments that cannot be used, and exceptions of the functions."""
     scipy = _scipy()

@@ -9,10 +9,7 @@ import tomllib
 import unittest
 from pathlib import Path
 
-try:
-    import yaml
-except ImportError:
-    yaml = None
+import yaml
 
 ROOT = Path(__file__).resolve().parents[2]
 SPACK = ROOT / "packaging" / "spack" / "packages" / "apsis" / "package.py"
@@ -111,7 +108,6 @@ class Spack(unittest.TestCase):
         self.assertIn(".parents[4]", SPACK.read_text(encoding="utf-8"))
 
 
-@unittest.skipUnless(yaml, "no parser of YAML is installed")
 class Conda(unittest.TestCase):
     def setUp(self):
         self.recipe = yaml.safe_load(CONDA.read_text(encoding="utf-8"))

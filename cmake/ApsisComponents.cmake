@@ -4,8 +4,12 @@
 #   kinetic     the solver of kinetic equations
 #   design      the search for new methods
 #   c           the C interface of integrate, a shared library
+#   sundials    the same for the vectors and linear solvers of SUNDIALS
 # exec cannot be requested as a component; it is the common part of kinetic and design.
-set(apsis_components integrate kinetic design c)
+set(apsis_components integrate kinetic design c sundials)
+# Shared libraries with a C interface and a header of their own.
+set(apsis_c_components c sundials)
+list(JOIN apsis_components " " apsis_all_components)
 foreach(component IN LISTS APSIS_COMPONENTS)
   if(NOT component IN_LIST apsis_components)
     list(JOIN apsis_components ", " valid)
@@ -30,10 +34,31 @@ if("design" IN_LIST apsis_components)
     list(REMOVE_ITEM apsis_components design)
   endif()
 endif()
+if("sundials" IN_LIST apsis_components)
+  # Version 7 calls the library of vectors and matrices `core`.
+  set(apsis_sundials_core generic)
+  find_library(APSIS_SUNDIALS_CORE sundials_core)
+  mark_as_advanced(APSIS_SUNDIALS_CORE)
+  if(APSIS_SUNDIALS_CORE)
+    set(apsis_sundials_core core)
+  endif()
+  if(APSIS_COMPONENTS)
+    find_package(SUNDIALS 6.4 REQUIRED COMPONENTS ${apsis_sundials_core} sunlinsolspgmr)
+    if(NOT "c" IN_LIST apsis_components)
+      list(APPEND apsis_components c)
+    endif()
+  else()
+    find_package(SUNDIALS 6.4 COMPONENTS ${apsis_sundials_core} sunlinsolspgmr)
+  endif()
+  if(NOT SUNDIALS_FOUND)
+    message(STATUS "The component sundials is not built (SUNDIALS was not found)")
+    list(REMOVE_ITEM apsis_components sundials)
+  endif()
+endif()
 
 # In order of dependence.
 set(apsis_parts "")
-foreach(part integrate exec kinetic design c)
+foreach(part integrate exec kinetic design c sundials)
   if(part IN_LIST apsis_components OR (part STREQUAL exec AND apsis_components MATCHES "kinetic|design"))
     list(APPEND apsis_parts ${part})
   endif()
@@ -67,6 +92,7 @@ set(apsis_packages_integrate fmt "Boost 1.74")
 set(apsis_packages_exec hwy Threads)
 set(apsis_packages_kinetic "Boost 1.74" nlohmann_json)
 set(apsis_packages_design "Eigen3 NO_MODULE")
+set(apsis_packages_sundials "SUNDIALS COMPONENTS ${apsis_sundials_core}")
 # Libraries that only sources use: users of static libraries link them.
 set(apsis_link_packages_integrate tomlplusplus)
 set(apsis_link_packages_kinetic tomlplusplus muparser "HDF5 COMPONENTS C")

@@ -13,8 +13,8 @@ foreach(part IN LISTS apsis_parts)
     list(APPEND targets apsis_kinetic)
   endif()
   set(libraries program)
-  if(part STREQUAL c)
-    set(libraries c_library)
+  if(part IN_LIST apsis_c_components)
+    set(libraries ${part}_library)
   endif()
   install(TARGETS ${targets} EXPORT apsisTargets-${part}
           ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT development
@@ -23,6 +23,11 @@ foreach(part IN LISTS apsis_parts)
   if(part STREQUAL c)
     install(FILES ${PROJECT_SOURCE_DIR}/src/apsis/apsis.h ${PROJECT_SOURCE_DIR}/src/apsis/apsis.f90
             DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/apsis COMPONENT development)
+  elseif(part IN_LIST apsis_c_components)
+    install(FILES ${PROJECT_SOURCE_DIR}/src/apsis/apsis_${part}.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/apsis
+            COMPONENT development)
+  endif()
+  if(part IN_LIST apsis_c_components)
     set(rooms "")  # its other headers are internal
   endif()
   foreach(room IN LISTS rooms)
@@ -51,6 +56,9 @@ write_basic_package_version_file(${PROJECT_BINARY_DIR}/apsisConfigVersion.cmake
   COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/apsisConfig.cmake ${PROJECT_BINARY_DIR}/apsisConfigVersion.cmake
         DESTINATION ${apsis_package_dir} COMPONENT development)
+if("sundials" IN_LIST apsis_parts)
+  install(FILES ${PROJECT_SOURCE_DIR}/cmake/FindSUNDIALS.cmake DESTINATION ${apsis_package_dir} COMPONENT development)
+endif()
 if("design" IN_LIST apsis_parts AND NOT BUILD_SHARED_LIBS)
   install(FILES ${PROJECT_SOURCE_DIR}/cmake/FindIpopt.cmake DESTINATION ${apsis_package_dir} COMPONENT development)
 endif()

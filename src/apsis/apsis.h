@@ -40,6 +40,9 @@ const char* apsis_version(void);
 /// Returns the message of the last error of this thread, "problem (reason); suggestion."; "" before the
 /// first. Valid until the next error of this thread.
 const char* apsis_error_message(void);
+/// Stores the message of an error as the last one of this thread and returns `status`: for libraries that
+/// extend this interface.
+int apsis_store_error(int status, const char* message);
 
 // Methods ---------------------------------------------------------------------------------------------------
 

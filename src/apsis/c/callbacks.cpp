@@ -8,15 +8,6 @@
 
 namespace apsis::c {
 
-void throw_refusal(const char* name, int returned) {
-  if (returned < 0)
-    throw callback_error(
-        fmt::format("the callback '{}' failed (it returned {}); check the callback", name, returned));
-  throw numerical_error(fmt::format(
-      "the callback '{}' rejects a state (it returned {}); reduce the time step, or check the callback", name,
-      returned));
-}
-
 void callbacks::evaluate_transport(double t, const std::vector<double>& u, std::vector<double>& out) {
   out.resize(u.size());
   if (transport == nullptr) {

@@ -1,8 +1,7 @@
 #pragma once
 
-#include "guarded.hpp"
-
 #include <apsis/apsis.h>
+#include <apsis/c/guarded.hpp>
 #include <apsis/core/errors.hpp>
 #include <apsis/integrate/array_state.hpp>
 
@@ -13,15 +12,6 @@
 #include <vector>
 
 namespace apsis::c {
-
-/// Throws what a nonzero result of a callback means: numerical_error if it is positive, callback_error if it
-/// is negative.
-[[noreturn]] void throw_refusal(const char* name, int returned);
-
-/// Checks the result of the callback called `name`.
-inline void require_success(const char* name, int returned) {
-  if (returned != 0) throw_refusal(name, returned);
-}
 
 /// The functions of a program, and how often they were called.
 struct callbacks {

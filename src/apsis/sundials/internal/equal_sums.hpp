@@ -1,0 +1,36 @@
+#pragma once
+
+#include <array>
+
+#include <sundials/sundials_nvector.h>
+
+namespace apsis::sundials {
+
+/// Replaces the scalar product and the norms with sums of a vector by those below, which do not depend on how
+/// the vector is divided among threads or processes. Vectors cloned from it inherit them.
+void use_equal_sums(N_Vector v);
+
+/// Returns Σ x_i y_i: the products, rounded, are divided into parts that are multiples of a power of two and
+/// whose sums are exact in any order (S. M. Rump, T. Ogita, S. Oishi, Accurate floating-point summation,
+/// SIAM J. Sci. Comput. 31 (2008), 189–224; J. Demmel, H. D. Nguyen, ARITH 21 (2013), 163–172). What is left
+/// out is below 2^−53 max |x_i y_i|. Takes about eight passes over memory. NaN if memory is lacking.
+double equal_dot_product(N_Vector x, N_Vector y);
+/// Returns √(Σ (x_i w_i)²/n), summed in the same way.
+double equal_wrms_norm(N_Vector x, N_Vector w);
+/// Returns √(Σ (x_i w_i)²), summed in the same way.
+double equal_wl2_norm(N_Vector x, N_Vector w);
+
+/// Work vectors for the sums of this thread while it exists, so that they are not allocated for each sum.
+class sums_without_allocation {
+ public:
+  /// Stores three vectors, which must outlive this object and which no one else may use.
+  explicit sums_without_allocation(const std::array<N_Vector, 3>& work);
+  ~sums_without_allocation();
+  sums_without_allocation(const sums_without_allocation&) = delete;
+  sums_without_allocation& operator=(const sums_without_allocation&) = delete;
+
+ private:
+  std::array<N_Vector, 3> before_;
+};
+
+}  // namespace apsis::sundials

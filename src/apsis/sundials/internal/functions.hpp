@@ -1,0 +1,48 @@
+#pragma once
+
+#include "nvector.hpp"
+
+#include <apsis/apsis_sundials.h>
+
+#include <array>
+#include <cstddef>
+
+namespace apsis::sundials {
+
+/// The functions of a program, and how often they were called.
+struct functions {
+  void* data = nullptr;
+  apsis_sundials_rate_function *transport = nullptr, *collision = nullptr;
+  apsis_sundials_product_setup* product_setup = nullptr;
+  apsis_sundials_product_function* product = nullptr;
+  apsis_sundials_jacobian_function* jacobian = nullptr;
+  apsis_sundials_preconditioner_setup* preconditioner_setup = nullptr;
+  apsis_sundials_preconditioner_solve* preconditioner = nullptr;
+  apsis_sundials_stage_function* stage = nullptr;
+  apsis_sundials_time_function *forward_euler_step = nullptr, *relaxation_time = nullptr;
+  apsis_sundials_root_function* roots = nullptr;
+  apsis_sundials_observer* observer = nullptr;
+  SUNLinearSolver solver = nullptr;  ///< of the program; NULL for one of the integrator
+  SUNMatrix matrix = nullptr;
+  SUNContext context = nullptr;
+  bool observing = false;  ///< whether an observer is running
+  std::array<long long, APSIS_SUNDIALS_EVENTS + 1> counts{};
+
+  void count(apsis_sundials_counter which, long long more = 1) {
+    counts[static_cast<std::size_t>(which)] += more;
+  }
+
+  /// out ← T(t, y); 0 without T. Throws numerical_error if T is not finite.
+  void evaluate_transport(double t, N_Vector y, N_Vector out);
+  /// out ← Q(t, y); 0 without Q. Throws numerical_error if Q is not finite.
+  void evaluate_collision(double t, N_Vector y, N_Vector out);
+  /// The same for a state that Newton's method tries: whether Q is finite there and accepts the state.
+  bool try_collision(double t, N_Vector y, N_Vector out);
+  /// Returns the result of a time_function; +infinity without one.
+  double time_of(apsis_sundials_time_function* function, const char* name, double t, N_Vector y) const;
+};
+
+/// Whether all elements are finite, up to sums of 1e308.
+bool is_finite(N_Vector v);
+
+}  // namespace apsis::sundials

@@ -1,0 +1,65 @@
+#pragma once
+
+#include "functions.hpp"
+#include "nvector_problem.hpp"
+
+#include <apsis/apsis_sundials.h>
+#include <apsis/integrate/evolution.hpp>
+#include <apsis/method/time_integrator.hpp>
+
+#include <atomic>
+#include <cstddef>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <vector>
+
+namespace apsis::sundials {
+
+/// Limits of the steps.
+struct step_limits {
+  std::optional<double> dt, first_step;
+  double safety = 1.0;
+  int growth = 0;  ///< of a graded start; 0 without
+};
+
+/// Events, and times at which steps end.
+struct event_settings {
+  std::size_t count = 0;
+  std::vector<int> directions, ends;  ///< of each function
+  std::vector<double> stops;          ///< increasing times
+};
+
+/// A problem with the evolution that integrates it.
+struct run {
+  /// Starts from time and state of an integrator, which must outlive this object. Throws like make_march().
+  run(apsis_sundials& s, const step_rule<double>& rule);
+
+  nvector_problem problem;
+  evolution<nvector_problem> solution;
+};
+
+/// Makes the run of an integrator from its time and state. Throws input_error if settings are missing or
+/// contradict each other.
+std::unique_ptr<run> make_run(apsis_sundials& s);
+/// Returns an integrator that no callback and no other thread uses. Throws input_error if one does.
+apsis_sundials& idle(apsis_sundials* integrator);
+/// Keeps time, state and counts of the run, and ends it: other settings need another one.
+void end_run(apsis_sundials& s);
+
+}  // namespace apsis::sundials
+
+struct apsis_sundials {
+  const apsis::time_integrator* method;
+  apsis::sundials::nvector u;  ///< state when `running` was made, or without one
+  double t = std::numeric_limits<double>::quiet_NaN();
+  std::array<apsis::sundials::nvector, 3> work{};  ///< of the sums
+  apsis::sundials::functions of{};
+  apsis::sundials::stage_accuracy accuracy{};
+  apsis::sundials::step_limits limits{};
+  apsis::sundials::event_settings events{};
+  long long steps = 0, rejected = 0;
+  std::vector<apsis::found_event<double>> found{};
+  std::unique_ptr<apsis::sundials::run> running{};  ///< of the present settings; made at the next integration
+  std::atomic<bool> busy{false};                    ///< whether an integration is in progress
+};

@@ -1,0 +1,228 @@
+#include "internal/stage_newton.hpp"
+
+#include <apsis/c/guarded.hpp>
+#include <apsis/core/errors.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace apsis::sundials {
+namespace {
+
+constexpr double rounding = std::numeric_limits<double>::epsilon();
+
+/// Part of the tolerance that a stage solve may spend. Extrapolated Euler steps multiply errors of their
+/// solves by up to 300.
+constexpr double share = 1e-3;
+
+/// Stages for which a Jacobian serves as preconditioner, unless Newton's method becomes slow.
+constexpr int oldest = 20;
+
+constexpr int most_iterations = 100;
+
+}  // namespace
+
+void set_weights(double relative, N_Vector absolute, N_Vector y, N_Vector w) {
+  N_VAbs(y, w);
+  N_VLinearSum(relative, w, 1.0, absolute, w);
+  N_VInv(w, w);
+}
+
+bool satisfies(const nvector& constraints, N_Vector y, N_Vector mask) {
+  return !constraints || N_VConstrMask(constraints.get(), y, mask);
+}
+
+stage_newton::stage_newton(functions& of, const stage_accuracy& accuracy, const nvector& like)
+    : of_(of),
+      accuracy_(accuracy),
+      systems_(of, like),
+      now_{like.another(), like.another(), like.another(), like.another(), like.another()},
+      next_{like.another(), like.another(), like.another(), like.another(), like.another()},
+      weights_(like.another()),
+      work_(like.another()) {}
+
+void stage_newton::require(int returned, const char* problem) {
+  if (refusal& refused = systems_.at().refused()) {
+    const refusal kept = std::exchange(refused, {});
+    c::require_success(kept.name, kept.returned);
+  }
+  if (returned != 0)
+    throw numerical_error(
+        fmt::format("{} (the linear solver of a stage returned {}); reduce the time step, improve the "
+                    "preconditioner, or allow more iterations",
+                    problem, returned));
+}
+
+/// Sets k and r. Returns whether Q accepts the state and is finite; throws what a failed callback means.
+bool stage_newton::evaluate(const stage& s, iterate& at) {
+  N_Vector v = at.v.get(), k = at.k.get(), r = at.r.get();
+  at.admissible = satisfies(accuracy_.constraints, v, work_.get());
+  if (!of_.try_collision(s.t, v, k)) return false;
+  int returned = systems_.at().move_to(s.t, v, k);
+  N_VLinearSum(1.0, s.u, s.a, k, r);
+  if (s.b != 0.0 && returned == 0) {
+    returned = systems_.at().product(k, at.jk.get());
+    N_VLinearSum(1.0, r, s.b, at.jk.get(), r);
+  }
+  if (returned > 0) systems_.at().refused() = {};
+  if (returned < 0) require(returned, "the Jacobian has no products");
+  if (returned != 0) return false;
+  if (s.timed && s.b != 0.0) add_time_derivative(s, at);
+  N_VLinearSum(1.0, r, -1.0, v, r);
+  at.residual = N_VWrmsNorm(r, weights_.get());
+  return std::isfinite(at.residual);
+}
+
+/// r ← r + b ∂Q/∂t, by a central difference.
+void stage_newton::add_time_derivative(const stage& s, iterate& at) {
+  const double h = std::cbrt(rounding) * std::max(std::abs(s.t), 1.0);
+  for (const double side : {1.0, -1.0}) {
+    of_.evaluate_collision(s.t + side * h, at.v.get(), work_.get());
+    N_VLinearSum(1.0, at.r.get(), s.b * side / (2.0 * h), work_.get(), at.r.get());
+  }
+}
+
+/// Prepares the preconditioner where J is, with new or with earlier data of it.
+void stage_newton::prepare(const stage& s, bool fresh) {
+  require(systems_.prepare(s.a, s.b, fresh), "the matrix of Newton's method cannot be factorized");
+  known_a_ = s.a;
+  known_b_ = s.b;
+  fresh_ = fresh;
+  if (fresh) age_ = 1;
+}
+
+/// Sets δ for the residual of an iterate, where J is, to a hundredth of its size or a tenth of the accuracy.
+/// `expected` is the size that δ may have.
+void stage_newton::correct(const stage& s, iterate& at, double expected) {
+  constexpr double least = 0.1;
+  // J² has the square of the stiffness: (I − γJ)⁻² of another state would mix slow and fast components by
+  // more than it damps the fast ones.
+  if (s.b != 0.0) prepare(s, true);
+  systems_.set_curvature(curved_, at.jk.get());
+  double tolerance = std::max(least, 1e-3 * expected);
+  for (;;) {
+    of_.count(APSIS_SUNDIALS_NEWTON_ITERATIONS);
+    const int returned = systems_.solve(at.r.get(), at.delta.get(), weights_.get(), unit_ * tolerance);
+    at.size = N_VWrmsNorm(at.delta.get(), weights_.get()) / unit_;
+    if (linear_systems::is_progress(returned) && std::isfinite(at.size)) {
+      // A solver does nothing where the residual is below its tolerance.
+      if (systems_.is_exact() || tolerance <= std::max(least, 0.1 * at.size)) return;
+      tolerance = std::max(least, std::min(1e-2 * at.size, 1e-4 * tolerance));
+      continue;
+    }
+    systems_.require_solvable();
+    if (fresh_) require(returned != 0 ? returned : -1, "a linear system of Newton's method is not solved");
+    systems_.at().refused() = {};
+    prepare(s, true);
+  }
+}
+
+/// Computes δ of the present iterate again, with a preconditioner of its own and second derivatives.
+void stage_newton::correct_again(const stage& s) {
+  require(systems_.at().move_to(s.t, now_.v.get(), now_.k.get()), "the Jacobian has no products");
+  if (s.b == 0.0) prepare(s, true);
+  curved_ = true;
+  correct(s, now_, now_.size);
+}
+
+/// Whether δ is so small that it may consist of rounding errors.
+bool stage_newton::is_small(const iterate& at) const {
+  return at.size <= noise_ ||
+         (!accuracy_.absolute && N_VMaxNorm(at.delta.get()) <= 1e-12 * N_VMaxNorm(at.v.get()));
+}
+
+/// Whether the iterate is accurate after its correction: the error of a sequence of corrections that decrease
+/// by θ is θ/(1 − θ) of the last one; or corrections are rounding errors, which no longer decrease.
+bool stage_newton::is_done(double before) const {
+  if (!std::isfinite(before)) return now_.size <= 1.0;
+  const double theta = now_.size / before;
+  return (now_.size <= 1.0 && theta <= 0.5) || (theta < 1.0 && now_.size * theta / (1.0 - theta) <= 1.0) ||
+         (theta > 0.5 && is_small(now_));
+}
+
+/// Moves to the next iterate by a part of δ. Returns whether there is one.
+bool stage_newton::advance(const stage& s) {
+  for (double length = 1.0; length >= 0x1p-20; length /= 2.0) {
+    N_VLinearSum(1.0, now_.v.get(), length, now_.delta.get(), next_.v.get());
+    if (!evaluate(s, next_) || (now_.admissible && !next_.admissible)) continue;
+    fresh_ = false;
+    correct(s, next_, now_.size);
+    if (next_.size <= (1.0 - length / 4.0) * now_.size ||
+        next_.residual <= (1.0 - 1e-4 * length) * now_.residual || (length == 1.0 && is_small(now_))) {
+      std::swap(now_, next_);
+      return true;
+    }
+  }
+  return false;
+}
+
+/// Adds the last correction, unless that leaves the constraints.
+void stage_newton::finish(const stage& s) {
+  N_VLinearSum(1.0, now_.v.get(), 1.0, now_.delta.get(), next_.v.get());
+  next_.admissible = satisfies(accuracy_.constraints, next_.v.get(), work_.get());
+  if (is_finite(next_.v.get()) && (next_.admissible || !now_.admissible)) std::swap(now_.v, next_.v);
+  if (!satisfies(accuracy_.constraints, now_.v.get(), work_.get()))
+    throw numerical_error(fmt::format(
+        "a stage at t = {:.10g} has no solution that satisfies the constraints (Newton's method ends outside "
+        "of them); reduce the time step, or use an unconditionally SSP method",
+        s.t));
+}
+
+void stage_newton::solve(double t, bool timed, double a, double b, nvector& u) {
+  const stage s{t, a, b, timed, u.get()};
+  of_.count(APSIS_SUNDIALS_STAGE_SOLVES);
+  if (accuracy_.absolute) {
+    set_weights(accuracy_.relative, accuracy_.absolute.get(), u.get(), weights_.get());
+    unit_ = share;
+    noise_ = std::max(10.0, 1e-12 / share * N_VWrmsNorm(u.get(), weights_.get()));
+  } else {
+    const double largest = N_VMaxNorm(u.get());
+    N_VConst(1e-6 * (largest > 0.0 ? largest : 1.0), work_.get());
+    set_weights(1.0, work_.get(), u.get(), weights_.get());
+    unit_ = rounding;
+    noise_ = 1e-9 / rounding;
+  }
+  now_.v = u;
+  fresh_ = false;
+  if (!evaluate(s, now_))
+    throw numerical_error(fmt::format(
+        "Q or its derivative at t = {:.10g} is not finite, or rejects the explicit part of a stage; reduce "
+        "the time step, or check the callbacks",
+        t));
+  const bool old = age_ == 0 || age_ > oldest;
+  if (b == 0.0 && (old || a != known_a_ || b != known_b_)) prepare(s, old);
+  ++age_;
+  curved_ = false;
+  correct(s, now_, 1e-4 / rounding * (accuracy_.absolute ? 0.0 : 1.0));
+  double before = std::numeric_limits<double>::infinity();
+  for (int k = 0; !is_done(before); ++k) {
+    if (k == most_iterations)
+      throw numerical_error(
+          fmt::format("Newton's method does not converge in a stage at t = {:.10g} (after {} iterations); "
+                      "reduce the time step",
+                      t, k));
+    before = now_.size;
+    const bool improves = s.b != 0.0 ? !curved_ : !fresh_;
+    const bool moved = advance(s);
+    if (moved && now_.size <= 0.5 * before) continue;
+    if (improves) {
+      correct_again(s);
+      before = std::numeric_limits<double>::infinity();
+    } else if (!moved) {
+      throw numerical_error(
+          fmt::format("Newton's method finds no better state in a stage at t = {:.10g} (its correction is "
+                      "{:.3g} times the accuracy "
+                      "that is needed); reduce the time step",
+                      t, now_.size));
+    }
+  }
+  systems_.require_solvable();
+  finish(s);
+  u.swap(now_.v);
+}
+
+}  // namespace apsis::sundials

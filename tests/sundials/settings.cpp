@@ -1,0 +1,322 @@
+// Events, dense output, stops, observers, callbacks that fail, and what is refused.
+#include <apsis/core/errors.hpp>
+
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <sundials/line.hpp>
+#include <sundials/support.hpp>
+#include <sunlinsol/sunlinsol_dense.h>
+#include <sunlinsol/sunlinsol_spgmr.h>
+#include <sunmatrix/sunmatrix_dense.h>
+#include <support/bad_input.hpp>
+
+namespace sundials_settings_test {
+
+namespace {
+
+using namespace sundials_test;
+
+/// u' = cos t + Q, Q = −(u − v)/ε, v' = −Q: callbacks that fail from a time on.
+struct script {
+  double epsilon = 0.1;
+  double from = std::numeric_limits<double>::infinity();  ///< time of the first answer below
+  int answer = 0;
+  double value = 0.0;  ///< what T adds then
+  apsis_sundials* called = nullptr;
+  std::vector<int> statuses{};
+  std::vector<double> seen{};
+};
+
+int transport(double t, N_Vector, N_Vector out, void* data) {
+  const auto& now = *static_cast<const script*>(data);
+  N_VGetArrayPointer(out)[0] = std::cos(t) + (t >= now.from ? now.value : 0.0);
+  N_VGetArrayPointer(out)[1] = 0.0;
+  return t >= now.from ? now.answer : 0;
+}
+
+int collision(double, N_Vector y, N_Vector out, void* data) {
+  const double* u = N_VGetArrayPointer(y);
+  const double rate = (u[0] - u[1]) / static_cast<const script*>(data)->epsilon;
+  N_VGetArrayPointer(out)[0] = -rate;
+  N_VGetArrayPointer(out)[1] = rate;
+  return 0;
+}
+
+/// The exact solution of the stage: w = u − v has the rate −2w/ε.
+int stage(double, double a, double b, N_Vector y, void* data) {
+  double* u = N_VGetArrayPointer(y);
+  double of_u = 0, of_e = 0;
+  apsis_relaxation_weights(a, b, 2.0 / static_cast<const script*>(data)->epsilon, &of_u, &of_e);
+  const double mean = (u[0] + u[1]) / 2, half = (u[0] - u[1]) / 2 * of_u;
+  u[0] = mean + half;
+  u[1] = mean - half;
+  return 0;
+}
+
+integrator of_script(const std::string& name, script& data) {
+  auto s = make(name, transport, collision, 0.0, serial({1, 0}).get(), &data);
+  expect_ok(apsis_sundials_set_step(s.get(), 1.0 / 64));
+  return s;
+}
+
+/// The mean of u and v is (1 + sin t)/2.
+int mean_minus_most(double t, N_Vector y, double* g, void*) {
+  const double* u = N_VGetArrayPointer(y);
+  g[0] = (u[0] + u[1]) / 2 - 0.8;
+  g[1] = std::sin(20 * t);
+  return 0;
+}
+
+void rethrow(int status) {
+  if (status >= 0) return;
+  EXPECT_EQ(status, APSIS_INPUT_ERROR);
+  throw apsis::input_error(apsis_error_message());
+}
+
+}  // namespace
+
+TEST(sundials_settings, find_events_and_end_at_them) {
+  script data;
+  auto s = of_script("ark-436", data);
+  const int directions[] = {1, 0}, ends[] = {1, 0};
+  expect_ok(apsis_sundials_set_events(s.get(), 2, mean_minus_most, directions, ends));
+  const auto y = serial({0, 0});
+  double reached = 0;
+  EXPECT_EQ(apsis_sundials_evolve(s.get(), 1.0, y.get(), &reached), APSIS_EVENT);
+  // The solution has an error of the fourth order in 1/64.
+  EXPECT_NEAR(reached, std::asin(0.6), 1e-8);
+  EXPECT_NEAR((values(y.get())[0] + values(y.get())[1]) / 2, 0.8, 1e-14);
+  const auto events = static_cast<std::size_t>(apsis_sundials_count(s.get(), APSIS_SUNDIALS_EVENTS));
+  ASSERT_EQ(events, 5U);  // four multiples of π/20 before 0.6435
+  for (std::size_t i = 0; i < 4; ++i) {
+    std::size_t k = 9;
+    double t = 0;
+    expect_ok(apsis_sundials_found_event(s.get(), i, &k, &t));
+    EXPECT_EQ(k, 1U);
+    EXPECT_NEAR(t, M_PI / 20 * static_cast<double>(i + 1), 1e-14);
+  }
+  expect_ok(apsis_sundials_set_events(s.get(), 0, nullptr, nullptr, nullptr));
+  expect_ok(apsis_sundials_evolve(s.get(), 1.0, y.get(), &reached));
+  EXPECT_EQ(reached, 1.0);
+  EXPECT_EQ(apsis_sundials_count(s.get(), APSIS_SUNDIALS_EVENTS), 5);
+}
+
+TEST(sundials_settings, give_dense_output_of_the_order_of_the_method) {
+  const auto error_at_middle = [](int steps) {
+    script data;
+    auto s = of_script("ark-436", data);
+    expect_ok(apsis_sundials_set_step(s.get(), 1.0 / steps));
+    expect_ok(apsis_sundials_evolve(s.get(), 1.0, nullptr, nullptr));
+    const auto y = serial({0, 0});
+    const double t = 1.0 - 0.6 / steps;
+    expect_ok(apsis_sundials_state_at(s.get(), t, y.get()));
+    return std::abs((values(y.get())[0] + values(y.get())[1]) - 1.0 - std::sin(t));
+  };
+  EXPECT_GT(std::log2(error_at_middle(8) / error_at_middle(16)), 3.7);
+}
+
+TEST(sundials_settings, call_the_observer_which_may_look_back_and_end) {
+  script data;
+  auto s = of_script("md-imex-6-3", data);
+  data.called = s.get();
+  expect_ok(
+      apsis_sundials_set_observer(s.get(), [](long long step, double t, double dt, N_Vector y, void* of) {
+        auto& now = *static_cast<script*>(of);
+        EXPECT_EQ(t, static_cast<double>(step) / 64);
+        EXPECT_EQ(dt, 1.0 / 64);
+        now.seen.push_back(N_VGetArrayPointer(y)[0]);
+        const auto at = serial({0, 0});
+        now.statuses.push_back(apsis_sundials_state_at(now.called, t, at.get()));
+        EXPECT_EQ(values(at.get()), values(y));
+        now.statuses.push_back(apsis_sundials_set_step(now.called, 1.0));
+        now.statuses.push_back(apsis_sundials_evolve(now.called, 2.0, nullptr, nullptr));
+        return step == 5 ? 1 : 0;
+      }));
+  const auto y = serial({0, 0});
+  double reached = 0;
+  EXPECT_EQ(apsis_sundials_evolve(s.get(), 1.0, y.get(), &reached), APSIS_STOPPED);
+  EXPECT_EQ(reached, 5.0 / 64);
+  ASSERT_EQ(data.seen.size(), 5U);
+  EXPECT_EQ(data.seen.back(), values(y.get())[0]);
+  for (std::size_t i = 0; i < data.statuses.size(); ++i)
+    EXPECT_EQ(data.statuses[i], i % 3 == 0 ? APSIS_OK : APSIS_INPUT_ERROR);
+}
+
+TEST(sundials_settings, end_steps_at_stop_times_and_continue_with_other_settings) {
+  script data;
+  auto s = of_script("md-imex-6-3", data);
+  const double stops[] = {0.3, 0.7};
+  expect_ok(apsis_sundials_set_stop_times(s.get(), 2, stops));
+  expect_ok(apsis_sundials_set_observer(s.get(), [](long long, double t, double, N_Vector, void* of) {
+    static_cast<script*>(of)->seen.push_back(t);
+    return 0;
+  }));
+  expect_ok(apsis_sundials_evolve(s.get(), 0.5, nullptr, nullptr));
+  expect_ok(apsis_sundials_set_step(s.get(), 1.0 / 32));
+  expect_ok(apsis_sundials_evolve(s.get(), 1.0, nullptr, nullptr));
+  for (const double stop : stops) EXPECT_EQ(std::count(data.seen.begin(), data.seen.end(), stop), 1) << stop;
+  EXPECT_EQ(apsis_sundials_count(s.get(), APSIS_SUNDIALS_STEPS), static_cast<long long>(data.seen.size()));
+  expect_ok(apsis_sundials_reset(s.get(), 0.0, serial({1, 0}).get()));
+  EXPECT_EQ(apsis_sundials_time(s.get()), 0.0);
+  EXPECT_EQ(apsis_sundials_count(s.get(), APSIS_SUNDIALS_STEPS), 0);
+}
+
+TEST(sundials_settings, report_callbacks_that_fail_with_step_and_time) {
+  script data{.from = 0.5, .answer = -7};
+  const auto s = of_script("md-imex-6-3", data);
+  const auto y = serial({0, 0});
+  double reached = 0;
+  EXPECT_EQ(apsis_sundials_evolve(s.get(), 1.0, y.get(), &reached), APSIS_CALLBACK_ERROR);
+  const std::string message = apsis_error_message();
+  EXPECT_EQ(message.find("the callback 'transport' failed (it returned -7)"), 0U) << message;
+  EXPECT_NE(message.find("[step 33, t = 0.5]"), std::string::npos) << message;
+  EXPECT_EQ(reached, 0.5);
+  EXPECT_TRUE(std::isfinite(values(y.get())[0]));
+  data.answer = 0;
+  data.value = std::nan("");
+  EXPECT_EQ(apsis_sundials_evolve(s.get(), 1.0, nullptr, nullptr), APSIS_NUMERICAL_ERROR);
+  EXPECT_NE(std::string(apsis_error_message()).find("'transport' at t = 0.5"), std::string::npos)
+      << apsis_error_message();
+  data.value = 0.0;
+  expect_ok(apsis_sundials_evolve(s.get(), 1.0, nullptr, nullptr));
+}
+
+TEST(sundials_settings, solve_stages_by_the_program_with_the_same_result) {
+  for (const double epsilon : {1.0, 1e-3, 1e-6}) {
+    script data{.epsilon = epsilon};
+    const auto by_newton = of_script("md-imex-6-3", data), by_program = of_script("md-imex-6-3", data);
+    expect_ok(apsis_sundials_set_stage(by_program.get(), stage));
+    const auto first = serial({0, 0}), second = serial({0, 0});
+    expect_ok(apsis_sundials_evolve(by_newton.get(), 1.0, first.get(), nullptr));
+    expect_ok(apsis_sundials_evolve(by_program.get(), 1.0, second.get(), nullptr));
+    // Differences of the linear Q are exact to rounding, which the quotient multiplies by 1e5.
+    for (std::size_t i = 0; i < 2; ++i)
+      EXPECT_NEAR(values(first.get())[i], values(second.get())[i], 1e-9) << epsilon;
+    EXPECT_EQ(apsis_sundials_count(by_program.get(), APSIS_SUNDIALS_NEWTON_ITERATIONS), 0);
+  }
+}
+
+TEST(sundials_settings, end_runs_that_are_too_stiff_without_a_preconditioner) {
+  // Slow components of the solution would have errors of 1e-5 (measured).
+  script data{.epsilon = 1e-9};
+  const auto s = of_script("md-imex-6-3", data);
+  EXPECT_EQ(apsis_sundials_evolve(s.get(), 1.0, nullptr, nullptr), APSIS_NUMERICAL_ERROR);
+  EXPECT_NE(std::string(apsis_error_message()).find("too stiff for GMRES without a preconditioner"),
+            std::string::npos)
+      << apsis_error_message();
+}
+
+TEST(sundials_settings, integrate_collisions_that_depend_on_time) {
+  // Without T, implicit methods integrate time as part of Q: u' = −(u − cos t)/ε + …, whose solution is cos
+  // t.
+  const auto error_of = [](const std::string& name, int steps) {
+    double epsilon = 0.2;
+    const auto rate = [](double t, N_Vector y, N_Vector out, void* of) {
+      const double* u = N_VGetArrayPointer(y);
+      N_VGetArrayPointer(out)[0] = -(u[0] - std::cos(t)) / *static_cast<double*>(of) - std::sin(t);
+      return 0;
+    };
+    const auto y = serial({1});
+    auto s = make(name, nullptr, rate, 0.0, y.get(), &epsilon);
+    expect_ok(apsis_sundials_set_step(s.get(), 2.0 / steps));
+    expect_ok(apsis_sundials_evolve(s.get(), 2.0, y.get(), nullptr));
+    return std::abs(values(y.get())[0] - std::cos(2.0));
+  };
+  EXPECT_GT(std::log2(error_of("imdrk-3-3", 20) / error_of("imdrk-3-3", 40)), 2.7);
+  EXPECT_GT(std::log2(error_of("md-imex-6-3", 160) / error_of("md-imex-6-3", 320)), 2.7);
+}
+
+TEST(sundials_settings, are_refused_with_a_reason) {
+  script data;
+  const auto s = of_script("md-imex-6-3", data);
+  const auto y = serial({1, 0});
+  const auto m = find("md-imex-6-3");
+  const std::unique_ptr<std::remove_pointer_t<SUNMatrix>, decltype(&SUNMatDestroy)> a(
+      SUNDenseMatrix(2, 2, context()), SUNMatDestroy);
+  using solver = std::unique_ptr<std::remove_pointer_t<SUNLinearSolver>, decltype(&SUNLinSolFree)>;
+  const solver dense(SUNLinSol_Dense(y.get(), a.get(), context()), SUNLinSolFree);
+  const solver gmres(SUNLinSol_SPGMR(y.get(), SUN_PREC_NONE, 5, context()), SUNLinSolFree);
+  apsis_sundials* made = nullptr;
+  const auto create = [&](const char* name, N_Vector start, double t0) {
+    return [&made, name = std::string(name), start, t0] {
+      rethrow(apsis_sundials_create(find(name).get(), transport, collision, t0, start, context(), &made));
+    };
+  };
+  const auto evolve_after = [&](const std::function<int(apsis_sundials*)>& change) {
+    return [&data, change] {
+      const auto one = of_script("md-imex-6-3", data);
+      expect_ok(change(one.get()));
+      rethrow(apsis_sundials_evolve(one.get(), 1.0, nullptr, nullptr));
+    };
+  };
+  auto without_a_sum = serial({1, 0});
+  without_a_sum->ops->nvlinearsum = nullptr;
+  const int wrong[] = {2};
+  const double decreasing[] = {0.5, 0.2};
+  bad_input::expect_refused(
+      {{[&] { rethrow(apsis_sundials_create(nullptr, transport, collision, 0, y.get(), context(), &made)); },
+        {"the method is NULL"}},
+       {[&] { rethrow(apsis_sundials_create(m.get(), transport, collision, 0, y.get(), nullptr, &made)); },
+        {"the context is NULL"}},
+       {[&] { rethrow(apsis_sundials_create(m.get(), transport, collision, 0, nullptr, context(), &made)); },
+        {"the initial state is NULL"}},
+       {create("md-imex-6-3", serial({std::nan(""), 1}).release(), 0.0), {"the initial state is not finite"}},
+       {create("md-imex-6-3", y.get(), std::nan("")), {"the initial time is not finite"}},
+       {create("md-imex-6-3", without_a_sum.get(), 0.0), {"'nvlinearsum'"}},
+       {create("exponential-2", y.get(), 0.0), {"'exponential-2'", "exactly"}},
+       {[&] { rethrow(apsis_sundials_set_linear_solver(s.get(), dense.get(), nullptr)); },
+        {"needs a matrix"}},
+       {[&] { rethrow(apsis_sundials_set_linear_solver(s.get(), gmres.get(), a.get())); }, {"iterative"}},
+       {[&] { rethrow(apsis_sundials_set_linear_solver(s.get(), nullptr, a.get())); },
+        {"without a linear solver"}},
+       {[&] { rethrow(apsis_sundials_set_step(s.get(), -1.0)); }, {"dt is -1"}},
+       {[&] { rethrow(apsis_sundials_set_first_step(s.get(), -1.0)); }, {"the first step is -1"}},
+       {[&] { rethrow(apsis_sundials_set_safety(s.get(), 0.0)); }, {"safety is 0"}},
+       {[&] { rethrow(apsis_sundials_set_tolerance(s.get(), -1.0, 1.0)); }, {"relative tolerance is -1"}},
+       {[&] { rethrow(apsis_sundials_set_tolerance(s.get(), 1.0, 0.0)); }, {"absolute tolerance is 0"}},
+       {[&] { rethrow(apsis_sundials_set_tolerances(s.get(), 1.0, serial({1, 0}).get())); },
+        {"an absolute tolerance is not positive"}},
+       {[&] { rethrow(apsis_sundials_set_constraints(s.get(), serial({3, 0}).get())); }, {"constraint"}},
+       {[&] { rethrow(apsis_sundials_set_graded_start(s.get(), 1)); }, {"growth", "from 2 to 64"}},
+       {[&] { rethrow(apsis_sundials_set_events(s.get(), 1, nullptr, nullptr, nullptr)); },
+        {"function of events"}},
+       {[&] { rethrow(apsis_sundials_set_events(s.get(), 1, mean_minus_most, wrong, nullptr)); },
+        {"direction 0"}},
+       {[&] { rethrow(apsis_sundials_set_stop_times(s.get(), 2, decreasing)); }, {"do not increase"}},
+       {[&] { rethrow(apsis_sundials_evolve(s.get(), -1.0, nullptr, nullptr)); },
+        {"end of the integration is -1"}},
+       {[&] { rethrow(apsis_sundials_state_at(s.get(), 0.5, y.get())); }, {"not in the last step"}},
+       {[&] {
+          size_t k = 0;
+          double t = 0;
+          rethrow(apsis_sundials_found_event(s.get(), 0, &k, &t));
+        },
+        {"there is no event 0"}},
+       {evolve_after([](auto* one) { return apsis_sundials_set_step(one, 0.0); }),
+        {"the step size is unknown"}},
+       {evolve_after([](auto* one) {
+          return apsis_sundials_set_forward_euler_step(one, line_test::forward_euler_step);
+        }),
+        {"dt and a forward Euler step"}},
+       {evolve_after([](auto* one) { return apsis_sundials_set_graded_start(one, 4); }),
+        {"no relaxation time"}},
+       {evolve_after(
+            [](auto* one) { return apsis_sundials_set_relaxation_time(one, line_test::forward_euler_step); }),
+        {"a relaxation time", "stage solver"}},
+       {evolve_after([&](auto* one) { return apsis_sundials_set_linear_solver(one, dense.get(), a.get()); }),
+        {"there is no Jacobian"}},
+       {evolve_after([](auto* one) {
+          apsis_sundials_set_stage(one, stage);
+          return apsis_sundials_set_products(one, nullptr, line_test::product);
+        }),
+        {"a stage solver and parts of Newton's method"}}});
+  EXPECT_EQ(made, nullptr);
+}
+
+}  // namespace sundials_settings_test

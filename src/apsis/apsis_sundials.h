@@ -17,6 +17,12 @@
 #include <sundials/sundials_matrix.h>
 #include <sundials/sundials_nvector.h>
 #include <sundials/sundials_types.h>
+#include <sundials/sundials_version.h>
+#if SUNDIALS_VERSION_MAJOR > 7 || (SUNDIALS_VERSION_MAJOR == 7 && SUNDIALS_VERSION_MINOR >= 5)
+#include <sundials/sundials_stepper.h>
+/// Defined where SUNDIALS has steppers: version 7.5 and later.
+#define APSIS_SUNDIALS_HAS_STEPPERS
+#endif
 
 /// Version of the binary interface, part of the name of the library file. It changes with every change that a
 /// compiled program could notice; additions leave it as it is.
@@ -158,6 +164,9 @@ int apsis_sundials_set_stop_times(apsis_sundials* integrator, size_t count, cons
 /// which may be NULL, also after an error: those of the last accepted step. Returns APSIS_OK, APSIS_STOPPED,
 /// APSIS_EVENT or an error: ARKStepEvolve with ARK_NORMAL.
 int apsis_sundials_evolve(apsis_sundials* integrator, sunrealtype tout, N_Vector y, sunrealtype* treached);
+/// The same for one step, which is the first of those to tout: ARKStepEvolve with ARK_ONE_STEP. The observer
+/// sees it.
+int apsis_sundials_one_step(apsis_sundials* integrator, sunrealtype tout, N_Vector y, sunrealtype* treached);
 /// Returns the time reached; NaN for NULL.
 sunrealtype apsis_sundials_time(const apsis_sundials* integrator);
 /// Writes the solution at a time of the last step to y, with the order of the method and its positivity, as
@@ -184,6 +193,13 @@ enum apsis_sundials_counter {
 };
 /// Returns a counter, one of apsis_sundials_counter; −1 for NULL and for an unknown counter.
 long long apsis_sundials_count(const apsis_sundials* integrator, int counter);
+
+#ifdef APSIS_SUNDIALS_HAS_STEPPERS
+/// Sets *stepper to a SUNStepper that evolves, steps, resets and stops the integrator, and evaluates T + Q,
+/// as other integrators of SUNDIALS combine them. It does not integrate backward, and has no forcing.
+/// SUNStepper_Destroy() releases it, before the integrator. Its last flag is an apsis_status.
+int apsis_sundials_make_stepper(apsis_sundials* integrator, SUNStepper* stepper);
+#endif
 
 /// Returns a copy of y whose scalar products and norms do not depend on how the vector is divided among
 /// threads or processes: their sums are exact until the last rounding. N_VDestroy() releases it. A linear

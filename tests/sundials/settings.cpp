@@ -167,6 +167,52 @@ TEST(sundials_settings, end_steps_at_stop_times_and_continue_with_other_settings
   EXPECT_EQ(apsis_sundials_count(s.get(), APSIS_SUNDIALS_STEPS), 0);
 }
 
+TEST(sundials_settings, take_one_step_after_the_other) {
+  script data;
+  auto s = of_script("md-imex-6-3", data), whole = of_script("md-imex-6-3", data);
+  expect_ok(apsis_sundials_set_step(s.get(), 0.3));
+  expect_ok(apsis_sundials_set_step(whole.get(), 0.3));
+  const auto y = serial({0, 0}), other = serial({0, 0});
+  double reached = 0;
+  // The interval is divided into equal steps anew: 1/4 of 1, then 1/3 of 3/4.
+  for (int k = 1; k <= 4; ++k) {
+    expect_ok(apsis_sundials_one_step(s.get(), 1.0, y.get(), &reached));
+    EXPECT_EQ(reached, 0.25 * k);
+  }
+  expect_ok(apsis_sundials_evolve(whole.get(), 1.0, other.get(), nullptr));
+  EXPECT_EQ(values(y.get()), values(other.get()));
+  EXPECT_EQ(apsis_sundials_count(s.get(), APSIS_SUNDIALS_STEPS), 4);
+}
+
+#ifdef APSIS_SUNDIALS_HAS_STEPPERS
+TEST(sundials_settings, are_those_of_a_stepper_of_sundials) {
+  script data;
+  auto s = of_script("md-imex-6-3", data);
+  SUNStepper stepper = nullptr;
+  expect_ok(apsis_sundials_make_stepper(s.get(), &stepper));
+  const auto y = serial({0, 0}), rate = serial({0, 0});
+  double reached = 0;
+  EXPECT_EQ(SUNStepper_OneStep(stepper, 1.0, y.get(), &reached), SUN_SUCCESS);
+  EXPECT_EQ(reached, 1.0 / 64);
+  EXPECT_EQ(SUNStepper_Evolve(stepper, 1.0, y.get(), &reached), SUN_SUCCESS);
+  EXPECT_EQ(reached, 1.0);
+  suncountertype steps = 0;
+  EXPECT_EQ(SUNStepper_GetNumSteps(stepper, &steps), SUN_SUCCESS);
+  EXPECT_EQ(steps, 64);
+  EXPECT_EQ(SUNStepper_FullRhs(stepper, 0.0, serial({1, 0}).get(), rate.get(), SUN_FULLRHS_OTHER),
+            SUN_SUCCESS);
+  EXPECT_EQ(values(rate.get()), (std::vector<double>{1.0 - 10.0, 10.0}));
+  EXPECT_EQ(SUNStepper_Reset(stepper, 0.0, serial({1, 0}).get()), SUN_SUCCESS);
+  data.from = 0.0;
+  data.answer = -1;
+  EXPECT_NE(SUNStepper_Evolve(stepper, 1.0, y.get(), &reached), SUN_SUCCESS);
+  int flag = 0;
+  SUNStepper_GetLastFlag(stepper, &flag);
+  EXPECT_EQ(flag, APSIS_CALLBACK_ERROR);
+  SUNStepper_Destroy(&stepper);
+}
+#endif
+
 TEST(sundials_settings, report_callbacks_that_fail_with_step_and_time) {
   script data{.from = 0.5, .answer = -7};
   const auto s = of_script("md-imex-6-3", data);

@@ -87,7 +87,8 @@ int status_of(evolution_end end) {
   return APSIS_OK;
 }
 
-int advance(apsis_sundials& s, double t1) {
+/// Integrates to t1, or for one step.
+int advance(apsis_sundials& s, double t1, bool once) {
   if (!std::isfinite(t1) || t1 < apsis_sundials_time(&s))
     throw input_error(fmt::format(
         "the end of the integration is {} (the time reached is {}); give a finite time that is not before it",
@@ -95,14 +96,35 @@ int advance(apsis_sundials& s, double t1) {
   const sums_without_allocation sums({s.work[0].get(), s.work[1].get(), s.work[2].get()});
   if (!s.running) s.running = make_run(s);
   try {
-    return status_of(s.running->solution.advance(t1, [&s](long step, double t, double dt, const nvector& u) {
-      return observe(s, s.steps + step, t, dt, u);
-    }));
+    bool stopped = false;
+    const auto end = s.running->solution.advance(t1, [&](long step, double t, double dt, const nvector& u) {
+      stopped = !observe(s, s.steps + step, t, dt, u);
+      return !stopped && !once;
+    });
+    return end == evolution_end::stopped && !stopped ? APSIS_OK : status_of(end);
   } catch (const numerical_error& failure) {
     throw failure.at(static_cast<long>(s.steps) + s.running->solution.steps() + 1, s.running->solution.t());
   } catch (const c::callback_error& failure) {
     throw c::callback_error(fmt::format("{} [step {}, t = {:.10g}]", failure.what(),
                                         s.steps + s.running->solution.steps() + 1, s.running->solution.t()));
+  }
+}
+
+/// The same for an integrator that is not in use, whose time and state are copied also after an error.
+int integrate(apsis_sundials* integrator, double t1, N_Vector y, double* reached, bool once) {
+  const in_use kept(integrator);
+  apsis_sundials& s = *kept;
+  const auto copy_out = [&] {
+    if (reached != nullptr) *reached = apsis_sundials_time(&s);
+    if (y != nullptr) N_VScale(1.0, (s.running ? s.running->solution.u() : s.u).get(), y);
+  };
+  try {
+    const int status = advance(s, t1, once);
+    copy_out();
+    return status;
+  } catch (...) {
+    copy_out();
+    throw;
   }
 }
 
@@ -191,21 +213,11 @@ int apsis_sundials_reset(apsis_sundials* integrator, sunrealtype t, N_Vector y) 
 }
 
 int apsis_sundials_evolve(apsis_sundials* integrator, sunrealtype tout, N_Vector y, sunrealtype* treached) {
-  return guarded([=] {
-    const in_use kept(integrator);
-    const auto copy_out = [&] {
-      if (treached != nullptr) *treached = apsis_sundials_time(integrator);
-      if (y != nullptr) N_VScale(1.0, ((*kept).running ? (*kept).running->solution.u() : (*kept).u).get(), y);
-    };
-    try {
-      const int status = advance(*kept, tout);
-      copy_out();
-      return status;
-    } catch (...) {
-      copy_out();
-      throw;
-    }
-  });
+  return guarded([=] { return integrate(integrator, tout, y, treached, false); });
+}
+
+int apsis_sundials_one_step(apsis_sundials* integrator, sunrealtype tout, N_Vector y, sunrealtype* treached) {
+  return guarded([=] { return integrate(integrator, tout, y, treached, true); });
 }
 
 int apsis_sundials_state_at(apsis_sundials* integrator, sunrealtype t, N_Vector y) {

@@ -1,0 +1,85 @@
+// Compiled where SUNDIALS has steppers (version 7.5 and later), which others of its integrators can combine.
+#include "internal/integrator_handle.hpp"
+
+#include <apsis/c/guarded.hpp>
+#include <apsis/core/errors.hpp>
+
+#include <string>
+
+#ifdef APSIS_SUNDIALS_HAS_STEPPERS
+
+namespace apsis::sundials {
+namespace {
+
+apsis_sundials* content_of(SUNStepper stepper) {
+  void* content = nullptr;
+  SUNStepper_GetContent(stepper, &content);
+  return static_cast<apsis_sundials*>(content);
+}
+
+/// Keeps the apsis_status as the last flag of the stepper, and returns success or failure.
+SUNErrCode outcome(SUNStepper stepper, int status) {
+  SUNStepper_SetLastFlag(stepper, status);
+  return status >= 0 ? SUN_SUCCESS : SUN_ERR_EXT_FAIL;
+}
+
+SUNErrCode evolve(SUNStepper stepper, sunrealtype tout, N_Vector y, sunrealtype* t) {
+  return outcome(stepper, apsis_sundials_evolve(content_of(stepper), tout, y, t));
+}
+
+SUNErrCode one_step(SUNStepper stepper, sunrealtype tout, N_Vector y, sunrealtype* t) {
+  return outcome(stepper, apsis_sundials_one_step(content_of(stepper), tout, y, t));
+}
+
+/// f ← T + Q.
+SUNErrCode full_rate(SUNStepper stepper, sunrealtype t, N_Vector y, N_Vector f, SUNFullRhsMode) {
+  return outcome(stepper, c::guarded([=] {
+                   apsis_sundials& s = *content_of(stepper);
+                   s.of.evaluate_transport(t, y, f);
+                   nvector rate = s.u.another();
+                   s.of.evaluate_collision(t, y, rate.get());
+                   N_VLinearSum(1.0, f, 1.0, rate.get(), f);
+                   return APSIS_OK;
+                 }));
+}
+
+SUNErrCode reset(SUNStepper stepper, sunrealtype t, N_Vector y) {
+  return outcome(stepper, apsis_sundials_reset(content_of(stepper), t, y));
+}
+
+SUNErrCode set_stop_time(SUNStepper stepper, sunrealtype t) {
+  return outcome(stepper, apsis_sundials_set_stop_times(content_of(stepper), 1, &t));
+}
+
+SUNErrCode get_steps(SUNStepper stepper, suncountertype* steps) {
+  *steps = static_cast<suncountertype>(apsis_sundials_count(content_of(stepper), APSIS_SUNDIALS_STEPS));
+  return SUN_SUCCESS;
+}
+
+void require_success(SUNErrCode returned) {
+  if (returned != SUN_SUCCESS)
+    throw input_error("SUNDIALS does not make a stepper (it returned " + std::to_string(returned) +
+                      "); check its context");
+}
+
+}  // namespace
+}  // namespace apsis::sundials
+
+int apsis_sundials_make_stepper(apsis_sundials* integrator, SUNStepper* stepper) {
+  using namespace apsis::sundials;
+  return apsis::c::guarded([=] {
+    apsis::c::require(stepper, "the place of the stepper") = nullptr;
+    SUNStepper made = nullptr;
+    require_success(SUNStepper_Create(idle(integrator).of.context, &made));
+    for (const SUNErrCode returned :
+         {SUNStepper_SetContent(made, integrator), SUNStepper_SetEvolveFn(made, evolve),
+          SUNStepper_SetOneStepFn(made, one_step), SUNStepper_SetFullRhsFn(made, full_rate),
+          SUNStepper_SetReInitFn(made, reset), SUNStepper_SetResetFn(made, reset),
+          SUNStepper_SetStopTimeFn(made, set_stop_time), SUNStepper_SetGetNumStepsFn(made, get_steps)})
+      require_success(returned);
+    *stepper = made;
+    return APSIS_OK;
+  });
+}
+
+#endif

@@ -129,6 +129,11 @@ module apsis
     type(c_ptr) function apsis_error_message() bind(c)
       import :: c_ptr
     end function
+    integer(c_int) function apsis_store_error(status, message) bind(c)
+      import :: c_char, c_int
+      integer(c_int), value :: status
+      character(kind=c_char), intent(in) :: message(*)
+    end function
 
     integer(c_size_t) function apsis_catalogue_size() bind(c)
       import :: c_size_t

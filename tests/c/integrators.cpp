@@ -119,6 +119,15 @@ TEST(c_integrators, report_callbacks_that_fail_with_step_and_time) {
   EXPECT_EQ(apsis_integrate(s.get(), 1), APSIS_OK) << apsis_error_message();  // from the last accepted step
 }
 
+TEST(c_integrators, store_errors_of_libraries_that_extend_the_interface) {
+  EXPECT_EQ(apsis_store_error(APSIS_FILE_ERROR, "a file is missing (it was removed); restore it"),
+            APSIS_FILE_ERROR);
+  EXPECT_STREQ(apsis_error_message(), "a file is missing (it was removed); restore it");
+  std::thread([] { EXPECT_STREQ(apsis_error_message(), ""); }).join();
+  EXPECT_EQ(apsis_store_error(-99, nullptr), -99);
+  EXPECT_STREQ(apsis_error_message(), "");
+}
+
 TEST(c_integrators, name_the_callback_that_gives_nan) {
   script data{.from = 0.5, .value = std::nan("")};
   const auto s = of_script("md-imex-6-3", data);

@@ -1,9 +1,9 @@
+#include "internal/guarded.hpp"
 #include "internal/idle.hpp"
 #include "internal/integrator_handle.hpp"
+#include "internal/method_handle.hpp"
 
 #include <apsis/apsis.h>
-#include <apsis/c/guarded.hpp>
-#include <apsis/c/method_handle.hpp>
 
 #include <algorithm>
 #include <cmath>

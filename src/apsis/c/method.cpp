@@ -1,6 +1,7 @@
+#include "internal/guarded.hpp"
+#include "internal/method_handle.hpp"
+
 #include <apsis/apsis.h>
-#include <apsis/c/guarded.hpp>
-#include <apsis/c/method_handle.hpp>
 #include <apsis/core/suggest.hpp>
 #include <apsis/method/export.hpp>
 #include <apsis/method/precision.hpp>

@@ -1,4 +1,4 @@
-#include <apsis/c/method_handle.hpp>
+#include "internal/method_handle.hpp"
 
 #include <apsis/integrate/step_estimate.hpp>
 #include <apsis/method/certificate.hpp>

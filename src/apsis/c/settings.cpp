@@ -1,8 +1,8 @@
+#include "internal/guarded.hpp"
 #include "internal/idle.hpp"
 #include "internal/integrator_handle.hpp"
 
 #include <apsis/apsis.h>
-#include <apsis/c/guarded.hpp>
 #include <apsis/core/graded_start.hpp>
 #include <apsis/integrate/evolution.hpp>
 

@@ -1,7 +1,7 @@
 #include "internal/integrator_handle.hpp"
 
-#include <apsis/c/guarded.hpp>
-#include <apsis/c/method_handle.hpp>
+#include <apsis/c/internal/guarded.hpp>
+#include <apsis/c/internal/method_handle.hpp>
 #include <apsis/core/errors.hpp>
 
 #include <cmath>

@@ -1,6 +1,6 @@
 #include "internal/integrator_handle.hpp"
 
-#include <apsis/c/guarded.hpp>
+#include <apsis/c/internal/guarded.hpp>
 #include <apsis/core/errors.hpp>
 
 #include <string>

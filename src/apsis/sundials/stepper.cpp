@@ -1,7 +1,7 @@
 // Compiled where SUNDIALS has steppers (version 7.5 and later), which others of its integrators can combine.
 #include "internal/integrator_handle.hpp"
 
-#include <apsis/c/guarded.hpp>
+#include <apsis/c/internal/guarded.hpp>
 #include <apsis/core/errors.hpp>
 
 #include <string>

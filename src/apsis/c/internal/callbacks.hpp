@@ -1,7 +1,8 @@
 #pragma once
 
+#include "guarded.hpp"
+
 #include <apsis/apsis.h>
-#include <apsis/c/guarded.hpp>
 #include <apsis/core/errors.hpp>
 #include <apsis/integrate/array_state.hpp>
 

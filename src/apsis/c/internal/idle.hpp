@@ -1,9 +1,9 @@
 #pragma once
 
+#include "guarded.hpp"
 #include "integrator_handle.hpp"
 
 #include <apsis/apsis.h>
-#include <apsis/c/guarded.hpp>
 
 namespace apsis::c {
 

@@ -4,8 +4,9 @@
 #   kinetic     the solver of kinetic equations
 #   design      the search for new methods
 #   c           the C interface of integrate, a shared library
+#   petsc       the time stepper "apsis" of PETSc, a shared library
 # exec cannot be requested as a component; it is the common part of kinetic and design.
-set(apsis_components integrate kinetic design c)
+set(apsis_components integrate kinetic design c petsc)
 foreach(component IN LISTS APSIS_COMPONENTS)
   if(NOT component IN_LIST apsis_components)
     list(JOIN apsis_components ", " valid)
@@ -30,10 +31,23 @@ if("design" IN_LIST apsis_components)
     list(REMOVE_ITEM apsis_components design)
   endif()
 endif()
+# The private headers that time steppers need change with every minor version.
+set(apsis_petsc_versions 3.18...<3.19)
+if("petsc" IN_LIST apsis_components)
+  if(APSIS_COMPONENTS)
+    find_package(PETSc ${apsis_petsc_versions} REQUIRED)
+  else()
+    find_package(PETSc ${apsis_petsc_versions})
+  endif()
+  if(NOT PETSc_FOUND)
+    message(STATUS "The component petsc is not built (PETSc ${apsis_petsc_versions} was not found)")
+    list(REMOVE_ITEM apsis_components petsc)
+  endif()
+endif()
 
 # In order of dependence.
 set(apsis_parts "")
-foreach(part integrate exec kinetic design c)
+foreach(part integrate exec kinetic design c petsc)
   if(part IN_LIST apsis_components OR (part STREQUAL exec AND apsis_components MATCHES "kinetic|design"))
     list(APPEND apsis_parts ${part})
   endif()
@@ -67,6 +81,7 @@ set(apsis_packages_integrate fmt "Boost 1.74")
 set(apsis_packages_exec hwy Threads)
 set(apsis_packages_kinetic "Boost 1.74" nlohmann_json)
 set(apsis_packages_design "Eigen3 NO_MODULE")
+set(apsis_packages_petsc "PETSc ${apsis_petsc_versions}")
 # Libraries that only sources use: users of static libraries link them.
 set(apsis_link_packages_integrate tomlplusplus)
 set(apsis_link_packages_kinetic tomlplusplus muparser "HDF5 COMPONENTS C")

@@ -15,6 +15,8 @@ foreach(part IN LISTS apsis_parts)
   set(libraries program)
   if(part STREQUAL c)
     set(libraries c_library)
+  elseif(part STREQUAL petsc)
+    set(libraries petsc_library)
   endif()
   install(TARGETS ${targets} EXPORT apsisTargets-${part}
           ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT development
@@ -24,6 +26,10 @@ foreach(part IN LISTS apsis_parts)
     install(FILES ${PROJECT_SOURCE_DIR}/src/apsis/apsis.h ${PROJECT_SOURCE_DIR}/src/apsis/apsis.f90
             DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/apsis COMPONENT development)
     set(rooms "")  # its other headers are internal
+  elseif(part STREQUAL petsc)
+    install(FILES ${PROJECT_SOURCE_DIR}/src/apsis/apsis_petsc.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/apsis COMPONENT development)
+    install(FILES ${PROJECT_SOURCE_DIR}/cmake/FindPETSc.cmake DESTINATION ${apsis_package_dir} COMPONENT development)
+    set(rooms "")
   endif()
   foreach(room IN LISTS rooms)
     install(DIRECTORY ${PROJECT_SOURCE_DIR}/src/apsis/${room} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/apsis
@@ -61,7 +67,7 @@ if(NOT PROJECT_IS_TOP_LEVEL)
   return()
 endif()
 # Debian packages (cpack): apsis, the program; libapsis-dev, for programs that use the library; and libapsis-cN with the
-# library of the C interface, which such programs need to run.
+# library of the C interface, which such programs need to run; libapsis-petscN with the time stepper of PETSc.
 file(STRINGS ${PROJECT_SOURCE_DIR}/scripts/packages.txt run_lines REGEX "^run ")
 string(REGEX MATCHALL "[a-z0-9+-]+-dev" development_packages "${run_lines}")
 if(NOT "design" IN_LIST apsis_parts)
@@ -81,6 +87,15 @@ if(TARGET apsis_c)
   set(CPACK_DEBIAN_C_LIBRARY_PACKAGE_SECTION libs)
   set(CPACK_DEBIAN_C_LIBRARY_PACKAGE_SHLIBDEPS ON)
   string(APPEND development_packages ", libapsis-c${abi} (= ${PROJECT_VERSION})")
+endif()
+if(TARGET apsis_petsc)
+  get_target_property(abi apsis_petsc SOVERSION)
+  list(APPEND CPACK_COMPONENTS_ALL petsc_library)
+  set(CPACK_DEBIAN_PETSC_LIBRARY_PACKAGE_NAME libapsis-petsc${abi})
+  set(CPACK_DEBIAN_PETSC_LIBRARY_PACKAGE_SECTION libs)
+  set(CPACK_DEBIAN_PETSC_LIBRARY_PACKAGE_SHLIBDEPS ON)
+  # With PETSc, which other users of the library do not need.
+  set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SUGGESTS "libapsis-petsc${abi} (= ${PROJECT_VERSION}), petsc-dev")
 endif()
 set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)

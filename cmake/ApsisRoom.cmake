@@ -6,7 +6,7 @@
 # PUBLIC and PRIVATE as in target_link_libraries; INSIDE is for packages of headers that only sources include, which users
 # of the installed library therefore do not need. The component is kinetic if not given; a room of a component that is
 # not built (ApsisComponents.cmake) is skipped. C_INTERFACE names the header of a room with a C interface: always a shared
-# library, with static rooms inside, the symbols of its exported.map alone, and the APSIS_ABI_VERSION of the header in its name.
+# library, with static rooms inside, the symbols of its exported.map alone, and the APSIS_ABI_VERSION (or APSIS_PETSC_ABI_VERSION) of the header in its name.
 
 add_library(apsis_options INTERFACE)
 target_compile_features(apsis_options INTERFACE cxx_std_20)
@@ -56,9 +56,9 @@ if(APSIS_PCH)
     <boost/multiprecision/cpp_bin_float.hpp> <fmt/format.h> <fmt/ranges.h>)
 endif()
 
-# Names and exports of a library with a C interface; `header` defines APSIS_ABI_VERSION.
+# Names and exports of a library with a C interface; `header` defines APSIS_ABI_VERSION, or one of its own.
 function(apsis_c_library name header)
-  file(STRINGS ${header} version REGEX "^#define APSIS_ABI_VERSION [0-9]+$")
+  file(STRINGS ${header} version REGEX "^#define APSIS_(PETSC_)?ABI_VERSION [0-9]+$")
   string(REGEX MATCH "[0-9]+$" version "${version}")
   set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${header})
   set(map ${CMAKE_CURRENT_SOURCE_DIR}/${name}/exported.map)

@@ -21,6 +21,13 @@ dpkg-deb -c "$development" | grep 'libapsis_c\.so ->' >/dev/null
 dpkg-deb -f "$development" Depends | grep -q "$(dpkg-deb -f "$c_library" Package) (= $(dpkg-deb -f "$c_library" Version))"
 if dpkg-deb -c "$program" | grep libapsis_c; then exit 1; fi
 
+# The time stepper of PETSc is one too, which other users of the library do not need.
+if petsc_library=$(ls "$work"/libapsis-petsc[0-9]*_*.deb 2>/dev/null); then
+  grep -q libpetsc <<<"$(dpkg-deb -f "$petsc_library" Depends)"
+  dpkg-deb -c "$petsc_library" | grep 'libapsis_petsc\.so\.[0-9]* ->' >/dev/null
+  if dpkg-deb -f "$development" Depends | grep petsc; then exit 1; fi
+fi
+
 dpkg-deb -x "$program" "$work/root"
 cd "$work"
 apsis=$work/root/usr/bin/apsis

@@ -125,11 +125,11 @@ TEST(events, are_located) {
     EXPECT_EQ(found.count, 1);
     return found.t;
   };
-  const double t = locate("-ts_adapt_type none -snes_stol 1e-12", 1.0 / 128);
+  const double t = locate("-ts_adapt_type none -snes_stol 1e-12", 1.0 / 512);
   const double expected =
       locate("-ts_type arkimex -ts_arkimex_type 5 -ts_adapt_type none -snes_rtol 1e-13", 1.0 / 1024);
   EXPECT_GT(t, 0.0);
-  // The error of 128 steps.
+  // The error of 512 steps.
   EXPECT_NEAR(t, expected, 1e-4);
 }
 

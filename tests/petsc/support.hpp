@@ -98,7 +98,7 @@ class run {
  public:
   /// Takes over the DM.
   explicit run(DM dm) : dm_(dm) {
-    require(TSCreate(PETSC_COMM_WORLD, &ts_));
+    require(TSCreate(PetscObjectComm(reinterpret_cast<PetscObject>(dm)), &ts_));
     require(TSSetDM(ts_, dm_));
     require(DMCreateGlobalVector(dm_, &u_));
     require(TSSetExactFinalTime(ts_, TS_EXACTFINALTIME_MATCHSTEP));
@@ -147,10 +147,25 @@ class run {
   Vec u_ = nullptr;
 };
 
+/// The processes of new runs.
+inline MPI_Comm& processes() {
+  static MPI_Comm now = PETSC_COMM_WORLD;
+  return now;
+}
+
+/// Returns body(), whose runs every process does alone: references, without waiting for other processes.
+template <class Body>
+auto alone(const Body& body) {
+  processes() = PETSC_COMM_SELF;
+  auto out = body();
+  processes() = PETSC_COMM_WORLD;
+  return out;
+}
+
 /// Returns a DM of n points of a line with some components.
 inline DM line(int n, int components, DMBoundaryType ends) {
   DM dm = nullptr;
-  require(DMDACreate1d(PETSC_COMM_WORLD, ends, n, components, 1, nullptr, &dm));
+  require(DMDACreate1d(processes(), ends, n, components, 1, nullptr, &dm));
   require(DMSetUp(dm));
   return dm;
 }

@@ -67,12 +67,10 @@ PetscErrorCode set_from_options(TS ts, PetscOptionItems* PetscOptionsObject) {
     choose("-ts_apsis_curvature", "Use the derivative of the Jacobian in Newton's method",
            now.stages.curvature);
     choose("-ts_apsis_constant_jacobian", "Evaluate the Jacobian of Q once", now.stages.constant_jacobian);
+    PetscReal step = now.forward_euler_step.value_or(0.0);
     check(PetscOptionsReal("-ts_apsis_ssp_step", "Forward Euler step of the RHSFunction that limits steps",
-                           "TSApsisSetForwardEulerStep", now.forward_euler_step, &now.forward_euler_step,
-                           &given));
-    if (given == PETSC_TRUE && !(now.forward_euler_step > 0.0))
-      throw input_error(fmt::format("-ts_apsis_ssp_step is {:g} (it is not positive); give a positive time",
-                                    now.forward_euler_step));
+                           "TSApsisSetForwardEulerStep", step, &step, &given));
+    if (given == PETSC_TRUE) now.forward_euler_step = step;
     self.forget();
   });
 }

@@ -99,14 +99,15 @@ void ts_apsis::prepare() {
   stages_.detach();
   stepper_.emplace(*method_, problem_, estimate ? solutions::result_and_embedded : solutions::result);
   estimates_ = estimate;
-  if (settings_.forward_euler != nullptr || settings_.forward_euler_step > 0.0)
-    stepper_->require_ssp_coefficient();
+  if (settings_.forward_euler_step && !(*settings_.forward_euler_step > 0.0))
+    throw input_error(fmt::format("-ts_apsis_ssp_step is {:g} (it is not positive); give a positive time",
+                                  *settings_.forward_euler_step));
+  if (settings_.forward_euler != nullptr || settings_.forward_euler_step) stepper_->require_ssp_coefficient();
 }
 
 /// Returns the step length min(dt, r Δt_FE).
 double ts_apsis::limited(double dt) {
-  double longest = settings_.forward_euler_step > 0.0 ? settings_.forward_euler_step
-                                                      : std::numeric_limits<double>::infinity();
+  double longest = settings_.forward_euler_step.value_or(std::numeric_limits<double>::infinity());
   if (settings_.forward_euler != nullptr) {
     PetscReal of_program = 0.0;
     check(

@@ -23,7 +23,7 @@ struct ts_settings {
   std::string method = "md-imex-8-3-mixed";
   bool fully_implicit = false;
   stage_settings stages{};
-  double forward_euler_step = 0.0;  ///< a constant Δt_FE; 0 without
+  std::optional<double> forward_euler_step{};  ///< a constant Δt_FE
   TSApsisForwardEulerStep* forward_euler = nullptr;
   void* forward_euler_context = nullptr;
 };

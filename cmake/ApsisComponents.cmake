@@ -5,11 +5,16 @@
 #   design      the search for new methods
 #   c           the C interface of integrate, a shared library
 #   sundials    the same for the vectors and linear solvers of SUNDIALS
+#   petsc       the time stepper "apsis" of PETSc, a shared library
 # exec cannot be requested as a component; it is the common part of kinetic and design.
-set(apsis_components integrate kinetic design c sundials)
-# Shared libraries with a C interface and a header of their own.
-set(apsis_c_components c sundials)
+set(apsis_components integrate kinetic design c sundials petsc)
 list(JOIN apsis_components " " apsis_all_components)
+# Components for programs of a framework: shared libraries with a header of their own, which only those find that request them.
+set(apsis_framework_components sundials petsc)
+set(apsis_framework_packages SUNDIALS PETSc)
+set(apsis_debian_package_sundials libsundials-dev)
+set(apsis_debian_package_petsc petsc-dev)
+set(apsis_c_components c ${apsis_framework_components})
 foreach(component IN LISTS APSIS_COMPONENTS)
   if(NOT component IN_LIST apsis_components)
     list(JOIN apsis_components ", " valid)
@@ -55,10 +60,23 @@ if("sundials" IN_LIST apsis_components)
     list(REMOVE_ITEM apsis_components sundials)
   endif()
 endif()
+# The private headers that time steppers need change with every minor version.
+set(apsis_petsc_versions 3.18...<3.19)
+if("petsc" IN_LIST apsis_components)
+  if(APSIS_COMPONENTS)
+    find_package(PETSc ${apsis_petsc_versions} REQUIRED)
+  else()
+    find_package(PETSc ${apsis_petsc_versions})
+  endif()
+  if(NOT PETSc_FOUND)
+    message(STATUS "The component petsc is not built (PETSc ${apsis_petsc_versions} was not found)")
+    list(REMOVE_ITEM apsis_components petsc)
+  endif()
+endif()
 
 # In order of dependence.
 set(apsis_parts "")
-foreach(part integrate exec kinetic design c sundials)
+foreach(part integrate exec kinetic design c sundials petsc)
   if(part IN_LIST apsis_components OR (part STREQUAL exec AND apsis_components MATCHES "kinetic|design"))
     list(APPEND apsis_parts ${part})
   endif()
@@ -93,6 +111,7 @@ set(apsis_packages_exec hwy Threads)
 set(apsis_packages_kinetic "Boost 1.74" nlohmann_json)
 set(apsis_packages_design "Eigen3 NO_MODULE")
 set(apsis_packages_sundials "SUNDIALS COMPONENTS ${apsis_sundials_core}")
+set(apsis_packages_petsc "PETSc ${apsis_petsc_versions}")
 # Libraries that only sources use: users of static libraries link them.
 set(apsis_link_packages_integrate tomlplusplus)
 set(apsis_link_packages_kinetic tomlplusplus muparser "HDF5 COMPONENTS C")

@@ -7,7 +7,7 @@ function(write_project call more)
 endfunction()
 
 write_project("find_package(apsis REQUIRED COMPONENTS kinetics)" "")
-configure_fails("unknown component 'kinetics' (there is no such component); valid: integrate, kinetic, design, c, sundials"
+configure_fails("unknown component 'kinetics' (there is no such component); valid: integrate, kinetic, design, c, sundials, petsc"
                 ${WORK}/refused ${WORK}/refused/build -DCMAKE_PREFIX_PATH=${WORK}/prefix)
 
 write_project("find_package(apsis REQUIRED COMPONENTS kinetic)" "")

@@ -21,6 +21,14 @@ dpkg-deb -c "$development" | grep 'libapsis_c\.so ->' >/dev/null
 dpkg-deb -f "$development" Depends | grep -q "$(dpkg-deb -f "$c_library" Package) (= $(dpkg-deb -f "$c_library" Version))"
 if dpkg-deb -c "$program" | grep libapsis_c; then exit 1; fi
 
+# Libraries for frameworks are others, which other users of the library do not need.
+for framework in sundials petsc; do
+  library=$(ls "$work"/libapsis-$framework[0-9]*_*.deb 2>/dev/null) || continue
+  grep -q "lib$framework" <<<"$(dpkg-deb -f "$library" Depends)"
+  dpkg-deb -c "$library" | grep "libapsis_$framework\.so\.[0-9]* ->" >/dev/null
+  if dpkg-deb -f "$development" Depends | grep "$framework"; then exit 1; fi
+done
+
 dpkg-deb -x "$program" "$work/root"
 cd "$work"
 apsis=$work/root/usr/bin/apsis

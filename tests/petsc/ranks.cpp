@@ -1,0 +1,88 @@
+#include "problems.hpp"
+
+#include <string>
+
+/// Runs on all processes, with few steps: a busy machine takes milliseconds for each sum over processes.
+namespace petsc_ranks {
+
+using namespace petsc_runs;
+
+outcome solve_exchange(const std::string& text, double epsilon, int steps) {
+  const options now("-snes_stol 1e-12 -ksp_rtol 1e-10 " + text);
+  run one(line(16, 2, DM_BOUNDARY_PERIODIC));
+  exchange problem{.epsilon = epsilon};
+  problem.enter(one);
+  return one.solve(0.25, 0.25 / steps);
+}
+
+TEST(ranks, observe_the_orders_of_methods) {
+  const auto reference = alone([] {
+    return solve_exchange("-ts_adapt_type none -ts_type arkimex -ts_arkimex_type 5 -snes_rtol 1e-13", 0.5,
+                          500)
+        .u;
+  });
+  struct {
+    const char* method;
+    double order;
+  } const all[] = {{"md-imex-4-2", 2}, {"md-imex-8-3-mixed", 3}, {"ark-436", 4}, {"imdrk-3-3", 3}};
+  for (const auto& [method, order] : all) {
+    const auto error = [&, name = std::string(method)](int steps) {
+      return distance(solve_exchange("-ts_adapt_type none -ts_apsis_method " + name, 0.5, steps).u,
+                      reference);
+    };
+    // Steps are finite; some methods gain an order.
+    const double found = std::log2(error(8) / error(16));
+    EXPECT_GT(found, order - 0.4) << method;
+    EXPECT_LT(found, order + 1.2) << method;
+  }
+}
+
+// Sums over processes have other rounding errors, and block Jacobi other blocks.
+TEST(ranks, leave_the_solution_to_the_tolerance_of_stage_solves) {
+  for (const double epsilon : {1e-2, 1e-9})
+    for (const char* text : {"-ts_adapt_type none", "-ts_adapt_type basic -ts_rtol 1e-3 -ts_atol 1e-3",
+                             "-ts_adapt_type none -ts_exact_final_time interpolate -ts_dt 0.04",
+                             "-ts_adapt_type none -snes_fd_color",
+                             "-ts_adapt_type none -ts_apsis_pc assembled -pc_type bjacobi -sub_pc_type lu"}) {
+      if (epsilon < 1e-8 && std::string(text).find("assembled") != std::string::npos)
+        continue;  // not for this ε
+      const auto together = solve_exchange(text, epsilon, 8);
+      const auto single = alone([&] { return solve_exchange(text, epsilon, 8); });
+      EXPECT_LT(distance(together.u, single.u), 1e-8) << epsilon << " " << text;
+      EXPECT_EQ(together.steps, single.steps) << text;
+      EXPECT_DOUBLE_EQ(together.t, single.t) << text;
+    }
+}
+
+TEST(ranks, solve_diffusion_with_neighbours_on_other_processes) {
+  const auto solve = [] {
+    const options now("-ts_adapt_type none -snes_stol 1e-11 -ksp_rtol 1e-8");
+    run one(line(20, 2, DM_BOUNDARY_NONE));
+    brusselator problem;
+    problem.enter(one);
+    return one.solve(0.5, 0.1).u;
+  };
+  EXPECT_LT(distance(solve(), alone(solve)), 1e-8);
+}
+
+TEST(ranks, agree_on_steps_that_a_process_rejects) {
+  const options now("-ts_adapt_type none -ts_max_steps 1");
+  run one(line(16, 2, DM_BOUNDARY_PERIODIC));
+  exchange problem;
+  problem.enter(one);
+  int calls = 0;
+  require(TSSetApplicationContext(one.ts(), &calls));
+  require(
+      TSSetFunctionDomainError(one.ts(), [](TS ts, PetscReal, Vec, PetscBool* accepted) -> PetscErrorCode {
+        void* context = nullptr;
+        require(TSGetApplicationContext(ts, static_cast<void*>(&context)));
+        *accepted = ++*static_cast<int*>(context) > 1 ? PETSC_TRUE : PETSC_FALSE;
+        return 0;
+      }));
+  require(TSSetExactFinalTime(one.ts(), TS_EXACTFINALTIME_STEPOVER));
+  const auto done = one.solve(1, 0.04);
+  EXPECT_EQ(done.rejected, 1);
+  EXPECT_NEAR(done.t, 0.01, 1e-15);
+}
+
+}  // namespace petsc_ranks

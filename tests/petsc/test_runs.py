@@ -1,0 +1,99 @@
+"""Runs of PETSc with the type "apsis" on 1, 2 and 4 processes, and of a program that loads the library as a plug-in.
+
+The programs are named by variables of the environment, which CMakeLists.txt sets.
+"""
+import os
+import re
+import subprocess
+import sys
+import unittest
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "mpi"))
+from processes import ENVIRONMENT, LIMIT  # noqa: E402
+
+RUNS, ALONE = os.environ["APSIS_PETSC_RUNS"], os.environ["APSIS_PETSC_ALONE"]
+LIBRARY, LIBRARY_FILE = os.environ["APSIS_PETSC_LIBRARY"], os.environ["APSIS_PETSC_LIBRARY_FILE"]
+
+LEFT = r"objects were never freed|\[ *\d+\] *\d+ bytes"
+
+
+def output_of(count, *command, code=0):
+    """Standard output of a program on some processes, which must end with this exit code."""
+    launcher = [] if count == 1 else ["mpirun", "-n", str(count)]
+    done = subprocess.run([*launcher, *command], env=ENVIRONMENT, capture_output=True, text=True, timeout=LIMIT)
+    if done.returncode != code:
+        raise AssertionError(f"{command} on {count} processes ends with {done.returncode}:\n{done.stdout[-6000:]}\n{done.stderr[-6000:]}")
+    return done.stdout + (done.stderr if code else "")
+
+
+class Runs(unittest.TestCase):
+    def passes_without_objects_left(self, count, tests):
+        text = output_of(count, RUNS, "-malloc_dump", "-objects_dump", "-options_left", "no", "--gtest_color=no", "--gtest_filter=" + tests)
+        self.assertRegex(text, r"\[  PASSED  \] \d+ tests")
+        # -objects_dump and -malloc_dump list what PetscFinalize() finds.
+        self.assertNotRegex(text, LEFT)
+
+    def test_all_tests_pass_on_one_process_and_leave_no_object(self):
+        self.passes_without_objects_left(1, "*")
+
+    def test_tests_of_several_processes_pass_on_two_and_four(self):
+        for count in 2, 4:
+            with self.subTest(processes=count):
+                self.passes_without_objects_left(count, "ranks.*:refusals.*:errors_of_the_program.*:other_types.*")
+
+    def test_the_check_for_objects_finds_one_that_is_left(self):
+        text = output_of(1, RUNS, "-malloc_dump", "-objects_dump", "--gtest_filter=none", "-leave_an_object")
+        self.assertRegex(text, LEFT)
+
+
+class PlugIn(unittest.TestCase):
+    def norm(self, count, *options):
+        text = output_of(count, ALONE, *options)
+        return text.split(":")[0], float(re.search(r"t = 0.5, norm ([\d.]+)", text)[1])
+
+    def test_a_program_that_knows_nothing_of_apsis_uses_its_methods(self):
+        _, expected = self.norm(1, "-ts_type", "arkimex", "-ts_adapt_type", "none")
+        for count, method in (1, "md-imex-8-3-mixed"), (2, "ark-436"), (4, "md-imex-8-3-mixed"):
+            found, norm = self.norm(count, "-dll_append", LIBRARY, "-ts_type", "apsis", "-ts_apsis_method", method)
+            self.assertEqual(found, "apsis")
+            # Methods of order 3 or more, with steps that resolve the waves.
+            self.assertAlmostEqual(norm, expected, delta=2e-4)
+
+    def test_its_methods_differ(self):
+        found = {self.norm(1, "-dll_append", LIBRARY, "-ts_type", "apsis", "-ts_apsis_method", method)[1]
+                 for method in ("md-imex-4-2", "ssp2-222", "md-imex-8-3-mixed")}
+        self.assertEqual(len(found), 3)
+
+    def test_the_name_of_the_library_without_a_suffix_suffices(self):
+        self.assertEqual(self.norm(1, "-dll_append", str(Path(LIBRARY).with_suffix("")), "-ts_type", "apsis")[0], "apsis")
+
+    def test_without_the_library_the_type_is_unknown(self):
+        self.assertIn("apsis", output_of(1, ALONE, "-ts_type", "apsis", code=86))
+
+    def test_an_unknown_method_ends_the_program_with_the_nearest_name(self):
+        text = output_of(1, ALONE, "-dll_append", LIBRARY, "-ts_type", "apsis", "-ts_apsis_method", "md-imex-8-3-mixd", code=62)
+        self.assertIn("'md-imex-8-3-mixed'", text)
+
+    def test_a_view_names_the_method(self):
+        text = output_of(1, ALONE, "-dll_append", LIBRARY, "-ts_type", "apsis", "-ts_view", "-ts_apsis_method", "md-imex-6-3")
+        for line in ("method md-imex-6-3: ", "order 3, 6 stages, kind imex, RHSFunction explicit", "SSP coefficient"):
+            self.assertIn(line, text)
+
+    def test_help_lists_the_options(self):
+        text = output_of(1, ALONE, "-dll_append", LIBRARY, "-ts_type", "apsis", "-help")
+        for option in "method", "fully_implicit", "pc", "curvature", "constant_jacobian", "ssp_step":
+            self.assertIn(f"-ts_apsis_{option}", text)
+
+
+class Exports(unittest.TestCase):
+    def test_the_library_exports_the_functions_of_its_header_alone(self):
+        text = subprocess.run(["nm", "-D", "--defined-only", LIBRARY_FILE], capture_output=True, text=True, check=True).stdout
+        found = {line.split()[-1].partition("@")[0] for line in text.splitlines() if line.split()[1] in "TWV"}
+        header = (Path(__file__).resolve().parents[2] / "src/apsis/apsis_petsc.h").read_text(encoding="utf-8")
+        declared = set(re.findall(r"^PetscErrorCode (\w+)\(", header, re.M))
+        self.assertEqual(found, declared)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -91,6 +91,20 @@ TEST(krylov_iterations, do_not_grow_with_stiffness) {
   }
 }
 
+TEST(linear_problems, take_one_newton_iteration_a_stage) {
+  const auto solve = [](const std::string& more) {
+    const options now(third_order + more);
+    run one(line(24, 2, DM_BOUNDARY_PERIODIC));
+    exchange problem{.epsilon = 1e-6, .nonlinear = false};
+    problem.enter(one);
+    return one.solve(0.25, 0.25 / 64);
+  };
+  const auto newton = solve(" -snes_stol 1e-12"), linear = solve(" -snes_type ksponly -ksp_rtol 1e-12");
+  EXPECT_EQ(linear.newton, 8 * 64);
+  EXPECT_GT(newton.newton, 8 * 64);
+  EXPECT_LT(distance(linear.u, newton.u), 1e-8);
+}
+
 /// Diffusion in a plane, by hundreds of unknowns: 1 − γJ with algebraic multigrid.
 PetscErrorCode diffuse(TS ts, PetscReal, Vec u, Vec rate, Vec out, void* context) {
   const double factor = *static_cast<double*>(context);

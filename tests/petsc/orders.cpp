@@ -110,4 +110,17 @@ TEST(methods_for_stiff_parts, have_their_order_if_the_stiff_part_depends_on_time
   EXPECT_GT(std::log2(error(40) / error(80)), 2.7);
 }
 
+// In implicit-explicit methods, time is integrated with T.
+TEST(implicit_explicit_methods, have_their_order_if_the_stiff_part_depends_on_time) {
+  const auto error = [](int steps) {
+    const options now("-ts_adapt_type none -ts_apsis_method md-imex-8-3-mixed -snes_stol 1e-13");
+    run one(line(4, 1, DM_BOUNDARY_NONE));
+    require(TSSetIFunction(one.ts(), nullptr, follow_cosine, nullptr));
+    require(TSSetIJacobian(one.ts(), nullptr, nullptr, derivative_of_following, nullptr));
+    require(VecSet(one.u(), 1));
+    return std::abs(one.solve(1, 1.0 / steps).u[0] - std::cos(1.0));
+  };
+  EXPECT_GT(std::log2(error(160) / error(320)), 2.7);
+}
+
 }  // namespace petsc_orders

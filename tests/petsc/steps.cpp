@@ -149,6 +149,21 @@ TEST(roll_back, restores_the_state_before_the_step) {
   EXPECT_LT(distance(gathered(one.u()), third), 1e-10);
 }
 
+TEST(reset, lets_a_run_begin_anew) {
+  const options now("-ts_adapt_type none");
+  run one(line(24, 2, DM_BOUNDARY_PERIODIC));
+  exchange problem{.epsilon = 0.01};
+  problem.enter(one);
+  const auto first = one.solve(0.1, 0.01);
+  require(TSReset(one.ts()));
+  require(TSSetTime(one.ts(), 0));
+  require(TSSetStepNumber(one.ts(), 0));
+  problem.enter(one);
+  const auto second = one.solve(0.1, 0.01);
+  EXPECT_EQ(second.steps, first.steps);
+  EXPECT_LT(distance(second.u, first.u), 1e-12);
+}
+
 /// Rejects states with an entry above the limit, as a problem without such states does.
 PetscErrorCode limit_states(TS, PetscReal, Vec u, PetscBool* accepted) {
   PetscReal largest = 0;

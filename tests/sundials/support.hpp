@@ -11,13 +11,17 @@
 #include <nvector/nvector_serial.h>
 #include <sundials/sundials_context.h>
 
+#ifndef SUN_COMM_NULL
+#define SUN_COMM_NULL nullptr  // before version 7
+#endif
+
 namespace sundials_test {
 
 /// A context of SUNDIALS without MPI.
 inline SUNContext context() {
   static SUNContext made = [] {
     SUNContext one = nullptr;
-    SUNContext_Create(nullptr, &one);
+    SUNContext_Create(SUN_COMM_NULL, &one);
     return one;
   }();
   return made;

@@ -12,7 +12,7 @@ namespace apsis::petsc {
 struct stage_preconditioner::callbacks {
   static stage_preconditioner& of(PC pc) {
     void* context = nullptr;
-    check(PCShellGetContext(pc, &context));
+    check(PCShellGetContext(pc, static_cast<void*>(&context)));
     return *static_cast<stage_preconditioner*>(context);
   }
   static PetscErrorCode apply(PC pc, Vec x, Vec y) {

@@ -73,7 +73,7 @@ void stage_solver::attach(Vec like) {
   }
   detach();
   snes_ = snes;
-  jacobian_choice chosen = choose_jacobian(of_, snes);
+  const jacobian_choice chosen = choose_jacobian(of_, snes);
   Mat own_a = nullptr, own_p = nullptr;
   PetscBool p_only = PETSC_FALSE, matrix_free = PETSC_FALSE;
   DM dm = nullptr;

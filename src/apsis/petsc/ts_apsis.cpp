@@ -139,6 +139,12 @@ bool ts_apsis::try_step() {
     if (!is_finite(now_.get()))
       throw numerical_error(
           "the result of a step is not finite (it is unstable, or a function is); reduce it");
+    // Stages were checked by TSAdaptCheckStage(), results of explicit methods were not.
+    PetscBool accepted = PETSC_TRUE;
+    check(TSFunctionDomainError(ts_, ts_->ptime + ts_->time_step, now_.get(), &accepted));
+    if (accepted == PETSC_FALSE)
+      throw numerical_error(
+          "the result of a step is outside the domain (TSSetFunctionDomainError()); reduce it");
     check(VecCopy(now_.get(), ts_->vec_sol));
     return true;
   } catch (const rejected_stage&) {

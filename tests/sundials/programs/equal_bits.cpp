@@ -144,6 +144,15 @@ int main(int argc, char** argv) {
     MPI_Comm_rank(world, &rank);
     prints = rank == 0;
   }
+#endif
+  // Version 7 takes a communicator, earlier ones a pointer to it.
+#if SUNDIALS_VERSION_MAJOR >= 7
+#ifdef APSIS_WITH_MPI
+  SUNContext_Create(parallel ? world : SUN_COMM_NULL, &context);
+#else
+  SUNContext_Create(SUN_COMM_NULL, &context);
+#endif
+#elif defined(APSIS_WITH_MPI)
   SUNContext_Create(parallel ? static_cast<void*>(&world) : nullptr, &context);
 #else
   SUNContext_Create(nullptr, &context);

@@ -8,6 +8,10 @@
 #include <sunlinsol/sunlinsol_dense.h>
 #include <sunmatrix/sunmatrix_dense.h>
 
+#ifndef SUN_COMM_NULL
+#define SUN_COMM_NULL NULL /* before version 7 */
+#endif
+
 static int collision(sunrealtype t, N_Vector y, N_Vector ydot, void* data) {
   const sunrealtype* u = N_VGetArrayPointer(y);
   sunrealtype* q = N_VGetArrayPointer(ydot);
@@ -45,7 +49,7 @@ int main(void) {
   const double truth[3] = {0.7158270688, 0.9185534765e-5, 0.2841637457};
   int i;
 
-  SUNContext_Create(NULL, &context);
+  SUNContext_Create(SUN_COMM_NULL, &context);
   y = N_VNew_Serial(3, context);
   a = SUNDenseMatrix(3, 3, context);
   solver = SUNLinSol_Dense(y, a, context);

@@ -50,7 +50,7 @@ typedef int apsis_sundials_product_function(N_Vector v, N_Vector jv, sunrealtype
 typedef int apsis_sundials_jacobian_function(sunrealtype t, N_Vector y, N_Vector fy, SUNMatrix jacobian,
                                              void* data, N_Vector work1, N_Vector work2, N_Vector work3);
 /// Prepares a preconditioner P ≈ I − γ ∂Q/∂y at (t, y): ARKLsPrecSetupFn. With jok ≠ 0 it may use earlier
-/// data of the Jacobian; *jcur tells whether it made new ones.
+/// data of the Jacobian; *jcur states whether it made new ones.
 typedef int apsis_sundials_preconditioner_setup(sunrealtype t, N_Vector y, N_Vector fy, int jok, int* jcur,
                                                 sunrealtype gamma, void* data);
 /// Solves P z = r, with errors below `delta` if it iterates; lr is 1 for a left and 2 for a right
@@ -152,7 +152,7 @@ int apsis_sundials_set_graded_start(apsis_sundials* integrator, int growth);
 /// Sets the function that observes every step.
 int apsis_sundials_set_observer(apsis_sundials* integrator, apsis_sundials_observer* observer);
 /// Sets `count` functions whose zeros are events, as apsis_set_events(): `directions` are 1, −1 or 0 for
-/// both, NULL: both for all; `ends` tells whether an event ends the integration with APSIS_EVENT, NULL: all
+/// both, NULL: both for all; `ends` states whether an event ends the integration with APSIS_EVENT, NULL: all
 /// do. Both lists are copied. count = 0 removes the events: ARKStepRootInit, ARKStepSetRootDirection.
 int apsis_sundials_set_events(apsis_sundials* integrator, size_t count, apsis_sundials_root_function* roots,
                               const int* directions, const int* ends);

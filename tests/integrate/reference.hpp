@@ -12,6 +12,13 @@ using pair = std::array<long double, 2>;
 /// error per step stays below 1e-17; the initial layer is resolved automatically.
 pair radau(long double epsilon, long double t_end);
 
+/// Whether CVODE was found; without it its solutions are NaN, and the tests that need them are skipped.
+#ifdef APSIS_HAVE_CVODE
+inline constexpr bool has_cvode = true;
+#else
+inline constexpr bool has_cvode = false;
+#endif
+
 /// CVODE at its tightest tolerances, in double precision: BDF for ε ≤ 0.1, Adams above.
 pair cvode(double epsilon, double t_end);
 

@@ -1,5 +1,7 @@
 #include "integrate/reference.hpp"
 
+#ifdef APSIS_HAVE_CVODE
+
 #include <cmath>
 #include <stdexcept>
 #include <vector>
@@ -108,3 +110,23 @@ std::array<double, 3> cvode_robertson(double t_end) {
 }
 
 }  // namespace reference
+
+#else
+
+#include <limits>
+
+namespace reference {
+
+constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+
+pair cvode(double, double) {
+  return {unknown, unknown};
+}
+
+std::array<double, 3> cvode_robertson(double) {
+  return {unknown, unknown, unknown};
+}
+
+}  // namespace reference
+
+#endif

@@ -21,7 +21,7 @@ using exact = boost::multiprecision::cpp_bin_float_100;
 
 constexpr double rounding = std::numeric_limits<double>::epsilon() / 2;
 
-/// Numbers of sizes from 2^−range to 2^range, half of which nearly cancel.
+/// Numbers of sizes from 2^−range to 2^range, in pairs that nearly cancel.
 std::vector<double> numbers_of_range(std::size_t n, int range, std::mt19937_64& random) {
   std::uniform_real_distribution<double> mantissa(-1.0, 1.0);
   std::uniform_int_distribution<int> exponent(-range, range);

@@ -182,9 +182,9 @@ int apsis_sundials_set_constraints(apsis_sundials* integrator, N_Vector constrai
   return set(integrator, [=](auto& s) {
     nvector all(constraints);
     if (all && !(N_VMaxNorm(all.get()) <= 2.0))
-      throw input_error(
-          "a constraint is none of -2, -1, 0, 1 and 2 (ARKODE defines them so); give one of these");
-    s.accuracy.constraints.swap(all);
+      throw input_error("a constraint is not -2, -1, 0, 1 or 2 (ARKODE defines them so); give one of these");
+    give one of these ");
+        s.accuracy.constraints.swap(all);
   });
 }
 

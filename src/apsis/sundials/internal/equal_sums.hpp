@@ -12,8 +12,8 @@ void use_equal_sums(N_Vector v);
 
 /// Returns Σ x_i y_i: the products, rounded, are divided into parts that are multiples of a power of two and
 /// whose sums are exact in any order (S. M. Rump, T. Ogita, S. Oishi, Accurate floating-point summation,
-/// SIAM J. Sci. Comput. 31 (2008), 189–224; J. Demmel, H. D. Nguyen, ARITH 21 (2013), 163–172). What is left
-/// out is below 2^−53 max |x_i y_i|. Takes about eight passes over memory. NaN if memory is lacking.
+/// SIAM J. Sci. Comput. 31 (2008), 189–224; J. Demmel, H. D. Nguyen, ARITH 21 (2013), 163–172). The rest is
+/// below 2^−53 max |x_i y_i| and left out. Takes about eight passes over memory. NaN if memory is lacking.
 double equal_dot_product(N_Vector x, N_Vector y);
 /// Returns √(Σ (x_i w_i)²/n), summed in the same way.
 double equal_wrms_norm(N_Vector x, N_Vector w);

@@ -183,8 +183,7 @@ int apsis_sundials_set_constraints(apsis_sundials* integrator, N_Vector constrai
     nvector all(constraints);
     if (all && !(N_VMaxNorm(all.get()) <= 2.0))
       throw input_error("a constraint is not -2, -1, 0, 1 or 2 (ARKODE defines them so); give one of these");
-    give one of these ");
-        s.accuracy.constraints.swap(all);
+    s.accuracy.constraints.swap(all);
   });
 }
 

@@ -95,7 +95,7 @@ void print_bits(const std::vector<double>& values) {
 
 /// Prints the result of one method. Returns whether it succeeded.
 bool integrate(const char* name, bool preconditioned, part& of, SUNContext context, bool prints,
-               bool parallel) {
+               [[maybe_unused]] bool parallel) {
   apsis_method* method = nullptr;
   apsis_sundials* s = nullptr;
   line_test::start(of.of, of.y);

@@ -149,19 +149,27 @@ TEST(roll_back, restores_the_state_before_the_step) {
   EXPECT_LT(distance(gathered(one.u()), third), 1e-10);
 }
 
-TEST(reset, lets_a_run_begin_anew) {
+TEST(reset, lets_a_run_begin_anew_with_another_number_of_points) {
   const options now("-ts_adapt_type none");
-  run one(line(24, 2, DM_BOUNDARY_PERIODIC));
   exchange problem{.epsilon = 0.01};
-  problem.enter(one);
-  const auto first = one.solve(0.1, 0.01);
-  require(TSReset(one.ts()));
-  require(TSSetTime(one.ts(), 0));
-  require(TSSetStepNumber(one.ts(), 0));
-  problem.enter(one);
-  const auto second = one.solve(0.1, 0.01);
-  EXPECT_EQ(second.steps, first.steps);
-  EXPECT_LT(distance(second.u, first.u), 1e-12);
+  const auto solve = [&](run& one) {
+    problem.enter(one);
+    return one.solve(0.1, 0.01);
+  };
+  run few(line(24, 2, DM_BOUNDARY_PERIODIC)), many(line(30, 2, DM_BOUNDARY_PERIODIC));
+  solve(few);
+  const auto expected = solve(many);
+  // The first TS with a DM like the second one.
+  DM dm = line(30, 2, DM_BOUNDARY_PERIODIC);
+  require(TSReset(few.ts()));
+  require(TSSetDM(few.ts(), dm));
+  require(DMDestroy(&dm));
+  require(TSSetTime(few.ts(), 0));
+  require(TSSetStepNumber(few.ts(), 0));
+  require(TSSetTimeStep(few.ts(), 0.01));
+  problem.enter(many);  // its initial values
+  require(TSSolve(few.ts(), many.u()));
+  EXPECT_LT(distance(gathered(many.u()), expected.u), 1e-12);
 }
 
 /// Rejects states with an entry above the limit, as a problem without such states does.

@@ -68,8 +68,11 @@ class PlugIn(unittest.TestCase):
     def test_its_methods_differ(self):
         self.assertEqual(len({self.apsis(1, method) for method in ("md-imex-4-2", "ssp2-222", "md-imex-8-3-mixed")}), 3)
 
-    def test_the_name_of_the_library_without_a_suffix_suffices(self):
-        self.apsis(1, "md-imex-4-2", str(Path(LIBRARY).with_suffix("")))
+    def test_every_name_of_the_library_is_found(self):
+        # libapsis_petsc.so, the file with its versions, and the name without a suffix.
+        for library in LIBRARY, LIBRARY_FILE, str(Path(LIBRARY).with_suffix("")):
+            with self.subTest(library=library):
+                self.apsis(1, "md-imex-4-2", library)
 
     def test_without_the_library_the_type_is_unknown(self):
         self.assertIn("apsis", output_of(1, ALONE, "-ts_type", "apsis", code=86))

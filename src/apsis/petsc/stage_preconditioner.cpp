@@ -16,12 +16,13 @@ struct stage_preconditioner::callbacks {
     return *static_cast<stage_preconditioner*>(context);
   }
   static PetscErrorCode apply(PC pc, Vec x, Vec y) {
-    return guarded(comm_of(pc), [&] { check(PCApply(of(pc).now_->pc.get(), x, y)); });
+    return guarded(comm_of(pc), [&] { of(pc).apply(x, y); });
   }
   static PetscErrorCode set_up(PC pc) {
     return guarded(comm_of(pc), [&] {
       PCFailedReason reason = PC_NOERROR;
       const PC own = of(pc).now_->pc.get();
+      of(pc).follow_reuse();
       check(PCSetUp(own));
       check(PCGetFailedReason(own, &reason));
       check(PCSetFailedReason(pc, reason));
@@ -102,13 +103,21 @@ Mat stage_preconditioner::prepare(const collision_jacobian& j, double a, double 
     to.version = j.version();
   }
   if (!to.pc) copy_pc(to);
-  PetscBool reuse = PETSC_FALSE;
-  check(PCGetReusePreconditioner(shell_.get(), &reuse));
-  check(PCSetReusePreconditioner(to.pc.get(), reuse));
   check(PCSetOperators(to.pc.get(), to.matrix.get(), to.matrix.get()));
   now_ = &to;
   twice_ = squared && b != 0.0;
   return to.matrix.get();
+}
+
+void stage_preconditioner::apply(Vec x, Vec y) {
+  follow_reuse();
+  check(PCApply(now_->pc.get(), x, y));
+}
+
+void stage_preconditioner::follow_reuse() const {
+  PetscBool reuse = PETSC_FALSE;
+  check(PCGetReusePreconditioner(shell_.get(), &reuse));
+  check(PCSetReusePreconditioner(now_->pc.get(), reuse));
 }
 
 void stage_preconditioner::assemble_shifted(entry& to, Mat minus_j) {

@@ -72,6 +72,7 @@ void stage_solver::attach(Vec like) {
     if (!preconditioner_ || preconditioner_->in_place()) return;
   }
   detach();
+  owner_ = nonlinear_solver::share(snes);
   snes_ = snes;
   const jacobian_choice chosen = choose_jacobian(of_, snes);
   Mat own_a = nullptr, own_p = nullptr;
@@ -124,6 +125,12 @@ void stage_solver::detach() {
   own_a_.reset();
   own_p_.reset();
   snes_ = nullptr;
+  owner_.reset();
+}
+
+void stage_solver::reset() {
+  detach();
+  for (vector* one : {&explicit_part_, &rate_, &product_, &middle_, &moved_, &base_, &right_}) one->reset();
 }
 
 bool stage_solver::solve(const stage& now, Vec u) {
@@ -197,7 +204,7 @@ void stage_solver::linearize(Vec v) {
 void stage_solver::product(Vec x, Vec y) {
   if (preconditioner_ && preconditioner_->has_right()) {
     const Vec other = right_.like(x);
-    preconditioner_->apply_right(x, other);
+    preconditioner_->apply(x, other);
     x = other;
   }
   const Vec middle = middle_.like(x);
@@ -220,8 +227,8 @@ void stage_solver::begin_linear_solve(KSP ksp, Vec rhs) {
   // with two.
   PetscReal size = 0.0;
   const Vec once = right_.like(rhs), twice = middle_.like(rhs);
-  preconditioner_->apply_right(rhs, once);
-  preconditioner_->apply_right(once, twice);
+  preconditioner_->apply(rhs, once);
+  preconditioner_->apply(once, twice);
   check(VecNorm(twice, NORM_2, &size));
   check(KSPSetTolerances(ksp, 1e-14, std::max(own.absolute, own.relative * size), PETSC_MAX_REAL,
                          own.iterations));
@@ -233,7 +240,7 @@ void stage_solver::finish_linear_solve(KSP ksp, Vec x) {
                          tolerances_->iterations));
   const Vec other = right_.like(x);
   check(VecCopy(x, other));
-  preconditioner_->apply_right(other, x);
+  preconditioner_->apply(other, x);
 }
 
 /// y ← y − b Q''(v)[Q(v), x], by differences whose errors only slow Newton's method.

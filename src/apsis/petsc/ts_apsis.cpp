@@ -79,8 +79,9 @@ void ts_apsis::set_up() {
 
 void ts_apsis::reset() {
   forget();
-  stages_.detach();
+  stages_.reset();
   functions_.reset();
+  problem_.reset();
   other_ = nullptr;
   for (vector* one : {&start_, &now_, &inside_}) one->reset();
 }

@@ -49,6 +49,7 @@ class handle {
 
 using mat = handle<Mat, MatDestroy>;
 using preconditioner = handle<PC, PCDestroy>;
+using nonlinear_solver = handle<SNES, SNESDestroy>;
 using fd_coloring = handle<MatFDColoring, MatFDColoringDestroy>;
 
 }  // namespace apsis::petsc

@@ -32,6 +32,11 @@ class petsc_problem {
     dt_ = dt;
     of_ts_ = of_ts;
   }
+  /// Releases the work vectors.
+  void reset() {
+    rate_.reset();
+    more_.reset();
+  }
   void add_transport(double t, const state& u, targets to);
   void add_collision(double t, const state& u, targets to);
   void add_transport_and_collision(double t, const state& u, targets to);

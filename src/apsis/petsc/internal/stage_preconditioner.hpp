@@ -38,8 +38,8 @@ class stage_preconditioner {
   Mat prepare(const collision_jacobian& j, double a, double b, double stiffness);
   /// Whether the inverse belongs on both sides of the operator.
   bool has_right() const { return twice_; }
-  /// y ← (1 − γJ)⁻¹ x, approximately. Requires has_right().
-  void apply_right(Vec x, Vec y) { check(PCApply(now_->pc.get(), x, y)); }
+  /// y ← (1 − γJ)⁻¹ x, approximately; the inverse of the assembled matrix without has_right().
+  void apply(Vec x, Vec y);
 
  private:
   /// A matrix 1 − aJ − bJ² with its preconditioner; for the squared form a is γ, and b is 0.
@@ -56,6 +56,8 @@ class stage_preconditioner {
   void assemble_shifted(entry& to, Mat minus_j);
   void assemble_polynomial(entry& to, Mat minus_j);
   void copy_pc(entry& to);
+  /// Whether -snes_lag_preconditioner keeps the present one, which SNES decides after prepare().
+  void follow_reuse() const;
 
   KSP ksp_;
   preconditioner_form form_;

@@ -61,6 +61,8 @@ class stage_solver {
   SNESConvergedReason test(PetscInt iteration, double of_v, double of_correction, double of_residual);
   /// Gives the SNES its own parts back.
   void detach();
+  /// The same, and releases the work vectors.
+  void reset();
 
  private:
   void attach(Vec like);
@@ -70,6 +72,7 @@ class stage_solver {
 
   split_functions& of_;
   const stage_settings& settings_;
+  nonlinear_solver owner_;  ///< of snes_
   SNES snes_ = nullptr;
   mat own_a_, own_p_, operator_;
   bool own_p_only_ = false, own_matrix_free_ = false, own_test_ = false;

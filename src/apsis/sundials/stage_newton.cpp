@@ -172,6 +172,54 @@ void stage_newton::finish(const stage& s) {
         s.t));
 }
 
+/// Whether rounding errors of r, whose stiff part has the square of the stiffness, would hide the slow
+/// components of v.
+bool stage_newton::is_far_from_equilibrium() const {
+  constexpr double most = 1e6;
+  return N_VMaxNorm(now_.r.get()) > most * N_VMaxNorm(now_.v.get());
+}
+
+void stage_newton::start_at(const stage& s) {
+  if (!evaluate(s, now_))
+    throw numerical_error(
+        fmt::format("Q or its derivative at t = {:.10g} is not finite, or rejects the explicit part of a "
+                    "stage; reduce the time "
+                    "step, or check the callbacks",
+                    s.t));
+}
+
+/// Finds the root, starting from the present iterate; the last correction is not added.
+void stage_newton::find_root(const stage& s) {
+  fresh_ = curved_ = false;
+  const bool old = age_ == 0 || age_ > oldest;
+  if (s.b == 0.0 && (old || s.a != known_a_ || s.b != known_b_)) prepare(s, old);
+  ++age_;
+  correct(s, now_, accuracy_.absolute ? 0.0 : 1e-4 / rounding);
+  double before = std::numeric_limits<double>::infinity();
+  for (int k = 0; !is_done(before); ++k) {
+    if (k == most_iterations)
+      throw numerical_error(
+          fmt::format("Newton's method does not converge in a stage at t = {:.10g} (after {} iterations); "
+                      "reduce the time step",
+                      s.t, k));
+    before = now_.size;
+    const bool improves = s.b != 0.0 ? !curved_ : !fresh_;
+    const bool moved = advance(s);
+    if (moved && now_.size <= 0.5 * before) continue;
+    if (improves) {
+      correct_again(s);
+      before = std::numeric_limits<double>::infinity();
+    } else if (!moved) {
+      throw numerical_error(
+          fmt::format("Newton's method finds no better state in a stage at t = {:.10g} (its correction is "
+                      "{:.3g} times the accuracy "
+                      "that is needed); reduce the time step",
+                      s.t, now_.size));
+    }
+  }
+  systems_.require_solvable();
+}
+
 void stage_newton::solve(double t, bool timed, double a, double b, nvector& u) {
   const stage s{t, a, b, timed, u.get()};
   of_.count(APSIS_SUNDIALS_STAGE_SOLVES);
@@ -187,40 +235,15 @@ void stage_newton::solve(double t, bool timed, double a, double b, nvector& u) {
     noise_ = 1e-9 / rounding;
   }
   now_.v = u;
-  fresh_ = false;
-  if (!evaluate(s, now_))
-    throw numerical_error(fmt::format(
-        "Q or its derivative at t = {:.10g} is not finite, or rejects the explicit part of a stage; reduce "
-        "the time step, or check the callbacks",
-        t));
-  const bool old = age_ == 0 || age_ > oldest;
-  if (b == 0.0 && (old || a != known_a_ || b != known_b_)) prepare(s, old);
-  ++age_;
-  curved_ = false;
-  correct(s, now_, 1e-4 / rounding * (accuracy_.absolute ? 0.0 : 1.0));
-  double before = std::numeric_limits<double>::infinity();
-  for (int k = 0; !is_done(before); ++k) {
-    if (k == most_iterations)
-      throw numerical_error(
-          fmt::format("Newton's method does not converge in a stage at t = {:.10g} (after {} iterations); "
-                      "reduce the time step",
-                      t, k));
-    before = now_.size;
-    const bool improves = s.b != 0.0 ? !curved_ : !fresh_;
-    const bool moved = advance(s);
-    if (moved && now_.size <= 0.5 * before) continue;
-    if (improves) {
-      correct_again(s);
-      before = std::numeric_limits<double>::infinity();
-    } else if (!moved) {
-      throw numerical_error(
-          fmt::format("Newton's method finds no better state in a stage at t = {:.10g} (its correction is "
-                      "{:.3g} times the accuracy "
-                      "that is needed); reduce the time step",
-                      t, now_.size));
-    }
+  start_at(s);
+  if (b != 0.0 && is_far_from_equilibrium()) {
+    const stage euler{t, std::sqrt(-b), 0.0, false, u.get()};
+    start_at(euler);
+    find_root(euler);
+    N_VLinearSum(1.0, now_.v.get(), 1.0, now_.delta.get(), now_.v.get());
+    start_at(s);
   }
-  systems_.require_solvable();
+  find_root(s);
   finish(s);
   u.swap(now_.v);
 }

@@ -22,8 +22,8 @@ bool satisfies(const nvector& constraints, N_Vector y, N_Vector mask);
 /// Newton's method for stages v = u + a Q(t, v) + b (J Q(t, v) + ∂Q/∂t), J = ∂Q/∂y. Its derivative contains
 /// the second derivatives of Q only where it converges slowly without them. A step is halved until the next
 /// one or the residual is smaller (the natural monotonicity test: P. Deuflhard, Newton Methods for Nonlinear
-/// Problems, 2004, section 3.3). It ends when the error that the rate of convergence predicts is below a
-/// share of the tolerance.
+/// Problems, 2004, section 3.3). Far from equilibrium a stage starts from v = u + √|b| Q(t, v). It ends when
+/// the error that the rate of convergence predicts is below a share of the tolerance.
 class stage_newton {
  public:
   /// Stores references; vectors are made like `like`.
@@ -53,6 +53,9 @@ class stage_newton {
   void correct_again(const stage& s);
   bool advance(const stage& s);
   void finish(const stage& s);
+  void start_at(const stage& s);
+  void find_root(const stage& s);
+  bool is_far_from_equilibrium() const;
   bool is_small(const iterate& at) const;
   bool is_done(double before) const;
   void prepare(const stage& s, bool fresh);

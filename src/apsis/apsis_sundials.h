@@ -101,7 +101,7 @@ int apsis_sundials_set_user_data(apsis_sundials* integrator, void* data);
 int apsis_sundials_set_stage(apsis_sundials* integrator, apsis_sundials_stage_function* stage);
 /// Sets the linear solver, which the integrator does not own: an iterative one without a matrix, or a direct
 /// one with a matrix that has products with vectors and c A + I. A direct solver factorizes I − γJ, γ = √|b|,
-/// which twice precedes each iteration of GMRES; it solves the systems of methods without second derivatives
+/// which preconditions GMRES from both sides; it solves the systems of methods without second derivatives
 /// (b = 0, γ = a) alone. Without one, GMRES solves. Error: APSIS_INPUT_ERROR for other pairs.
 int apsis_sundials_set_linear_solver(apsis_sundials* integrator, SUNLinearSolver solver, SUNMatrix matrix);
 /// Sets products with the Jacobian, and what prepares them (or NULL). Without products and matrix, central

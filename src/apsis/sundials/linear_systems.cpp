@@ -16,7 +16,7 @@ owned_solver make_gmres(const functions& of, const nvector& like) {
   const bool preconditioned = of.matrix != nullptr || of.preconditioner != nullptr;
   const int dimension = static_cast<int>(std::min<sunindextype>(N_VGetLength(like.get()), 30));
   owned_solver made(
-      SUNLinSol_SPGMR(like.get(), preconditioned ? SUN_PREC_LEFT : SUN_PREC_NONE, dimension, of.context));
+      SUNLinSol_SPGMR(like.get(), preconditioned ? SUN_PREC_BOTH : SUN_PREC_NONE, dimension, of.context));
   if (made.get() == nullptr) throw std::bad_alloc();
   SUNLinSol_SPGMRSetMaxRestarts(made.get(), 4);
   return made;
@@ -107,7 +107,12 @@ void linear_systems::require_solvable() const {
 
 int linear_systems::precondition(void* self, N_Vector r, N_Vector z, double tolerance, int side) {
   auto& s = *static_cast<linear_systems*>(self);
-  if (s.b_ == 0.0) return s.precondition_once(r, z, tolerance, side);
+  const bool from_both_sides = s.own_.get() != nullptr;
+  if (from_both_sides && s.b_ == 0.0 && side == 2) {
+    N_VScale(1.0, r, z);
+    return 0;
+  }
+  if (from_both_sides || s.b_ == 0.0) return s.precondition_once(r, z, tolerance, 1);
   if (const int returned = s.precondition_once(r, s.between_.get(), tolerance, side); returned != 0)
     return returned;
   return s.precondition_once(s.between_.get(), z, tolerance, side);

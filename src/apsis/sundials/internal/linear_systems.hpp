@@ -24,8 +24,9 @@ class owned_solver {
 };
 
 /// The systems (I − aJ − b(J² + H)) x = r, Hx = Q''[Q, x], of Newton's method. GMRES, or the iterative solver
-/// of the program, solves them, preconditioned by (I − γJ)⁻² with γ = √|b|; b = 0 by (I − aJ)⁻¹ alone, with
-/// which a direct solver has the solution. For a ≤ 2γ and an eigenvalue z ≤ 0 of γJ,
+/// of the program, solves them, preconditioned twice by (I − γJ)⁻¹ with γ = √|b|: GMRES of this class from
+/// both sides, which keeps more digits, and that of the program from its side. For b = 0 it is (I − aJ)⁻¹
+/// once, with which a direct solver has the solution. For a ≤ 2γ and an eigenvalue z ≤ 0 of γJ,
 ///   (1 − (a/γ)z + z²)/(1 − z)² = 1 + (2 − a/γ) z/(1 − z)²
 /// is between 1/2 and 1, whatever the stiffness. H matters only where a step is as long as the slow times of
 /// Q.

@@ -41,10 +41,10 @@ linear_systems::linear_systems(functions& of, const nvector& like)
 }
 
 int linear_systems::prepare(double a, double b, bool fresh) {
+  if (a != a_ || b != b_) amplification_ = 0.0;
   a_ = a;
   b_ = b;
   gamma_ = b < 0.0 ? std::sqrt(-b) : a;
-  amplification_ = 0.0;
   if (is_direct()) {
     if (fresh)
       if (const int returned = jacobian_.evaluate_matrix(); returned != 0) return returned;

@@ -188,6 +188,15 @@ void stage_newton::start_at(const stage& s) {
                     s.t));
 }
 
+/// Throws numerical_error: Newton's method `does` something.
+void stage_newton::fail(const stage& s, const std::string& does) const {
+  systems_.require_solvable();
+  throw numerical_error(
+      fmt::format("a stage at t = {:.10g} is not solved (Newton's method {}); reduce the time step, or "
+                  "improve the preconditioner",
+                  s.t, does));
+}
+
 /// Finds the root, starting from the present iterate; the last correction is not added.
 void stage_newton::find_root(const stage& s) {
   fresh_ = curved_ = false;
@@ -197,11 +206,7 @@ void stage_newton::find_root(const stage& s) {
   correct(s, now_, accuracy_.absolute ? 0.0 : 1e-4 / rounding);
   double before = std::numeric_limits<double>::infinity();
   for (int k = 0; !is_done(before); ++k) {
-    if (k == most_iterations)
-      throw numerical_error(
-          fmt::format("Newton's method does not converge in a stage at t = {:.10g} (after {} iterations); "
-                      "reduce the time step",
-                      s.t, k));
+    if (k == most_iterations) fail(s, fmt::format("does not converge in {} iterations", k));
     before = now_.size;
     const bool improves = s.b != 0.0 ? !curved_ : !fresh_;
     const bool moved = advance(s);
@@ -210,11 +215,7 @@ void stage_newton::find_root(const stage& s) {
       correct_again(s);
       before = std::numeric_limits<double>::infinity();
     } else if (!moved) {
-      throw numerical_error(
-          fmt::format("Newton's method finds no better state in a stage at t = {:.10g} (its correction is "
-                      "{:.3g} times the accuracy "
-                      "that is needed); reduce the time step",
-                      s.t, now_.size));
+      fail(s, fmt::format("finds no better state with a correction {:.3g} times the accuracy", now_.size));
     }
   }
   systems_.require_solvable();

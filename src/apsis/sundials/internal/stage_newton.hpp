@@ -2,8 +2,7 @@
 
 #include "linear_systems.hpp"
 
-#include <functional>
-#include <optional>
+#include <string>
 
 namespace apsis::sundials {
 
@@ -59,6 +58,7 @@ class stage_newton {
   bool is_small(const iterate& at) const;
   bool is_done(double before) const;
   void prepare(const stage& s, bool fresh);
+  [[noreturn]] void fail(const stage& s, const std::string& does) const;
   void require(int returned, const char* problem);
 
   functions& of_;

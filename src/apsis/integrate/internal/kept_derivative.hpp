@@ -211,7 +211,7 @@ class kept_derivative {
   bool provide(timed_stage_equation<Real>& equation, Real t, std::span<const Real> v) {
     if (!inside_) return refresh(equation, t, v);
     if (now_ != nullptr) return true;
-    has_base_ = base_.evaluate(equation, pattern(pattern_), t_, u_);
+    if (!has_base_) has_base_ = base_.evaluate(equation, pattern(pattern_), t_, u_);
     if (has_base_) use(&base_);
     return has_base_;
   }

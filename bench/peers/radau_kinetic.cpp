@@ -1,4 +1,5 @@
 #include "grouped_jacobian.hpp"
+#include "radau_basis.hpp"
 #include "radau_kinetic.hpp"
 
 #include <apsis/core/errors.hpp>
@@ -8,7 +9,6 @@
 #include <complex>
 #include <limits>
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/SparseLU>
 
 namespace apsis::bench::peers {
@@ -24,16 +24,6 @@ class kinetic_equations {
 
   explicit kinetic_equations(kinetic_task& task)
       : task_(task), u_(task.initial()), sum_(task.initial()), differences_(make_differences()) {
-    const Eigen::EigenSolver<Eigen::Matrix3d> of_weights(radau_tableau::get().weights);
-    int pair = 0;
-    for (int i = 0; i < 3; ++i) {
-      if (of_weights.eigenvalues()[i].imag() == 0.0) real_ = i;
-      if (of_weights.eigenvalues()[i].imag() > 0.0) pair = i;
-    }
-    pair_ = pair;
-    values_ = of_weights.eigenvalues();
-    vectors_ = of_weights.eigenvectors();
-    inverse_ = vectors_.inverse();
     const auto n = static_cast<Eigen::Index>(u_.cells()) * u_.components();
     identity_.resize(n, n);
     identity_.setIdentity();
@@ -41,6 +31,7 @@ class kinetic_equations {
 
   vector initial() const { return packed(task_.initial()); }
 
+  vector rate(double, const vector& u) { return rate(u); }
   vector rate(const vector& u) {
     using goal = target<field, double>;
     unpack(u, u_);
@@ -54,14 +45,14 @@ class kinetic_equations {
     return packed(sum_);
   }
 
-  void linearize(const vector& u) {
+  void linearize(double, const vector& u) {
     jacobian_ = differences_([this](const vector& x) { return rate(x); }, u);
   }
 
   void factorize(double h) {
-    const Eigen::SparseMatrix<double> of_real = identity_ - h * values_[real_].real() * jacobian_;
+    const Eigen::SparseMatrix<double> of_real = identity_ - h * radau_basis::get().real_value() * jacobian_;
     const Eigen::SparseMatrix<number> of_pair =
-        identity_.cast<number>() - h * values_[pair_] * jacobian_.cast<number>();
+        identity_.cast<number>() - h * radau_basis::get().pair_value() * jacobian_.cast<number>();
     if (!analysed_) {
       of_real_.analyzePattern(of_real);
       of_pair_.analyzePattern(of_pair);
@@ -71,15 +62,10 @@ class kinetic_equations {
     of_pair_.factorize(of_pair);
   }
 
-  /// In the basis of the eigenvectors of A the stages decouple.
   stages newton_change(const stages& defect) const {
-    const Eigen::Matrix<number, Eigen::Dynamic, 3> right = defect.cast<number>() * inverse_.transpose();
-    const vector of_real = of_real_.solve(vector(right.col(real_).real()));
-    const Eigen::VectorXcd of_pair = of_pair_.solve(Eigen::VectorXcd(right.col(pair_)));
-    const Eigen::Matrix<number, Eigen::Dynamic, 3> sum =
-        of_real.cast<number>() * vectors_.col(real_).transpose() +
-        2.0 * of_pair * vectors_.col(pair_).transpose();
-    return sum.real();
+    return radau_basis::get().solve(
+        defect, [this](const vector& v) -> vector { return of_real_.solve(v); },
+        [this](const Eigen::VectorXcd& v) -> Eigen::VectorXcd { return of_pair_.solve(v); });
   }
 
   /// γ₀ is the real eigenvalue of A.
@@ -107,9 +93,6 @@ class kinetic_equations {
   kinetic_task& task_;
   field u_, sum_;
   grouped_jacobian differences_;
-  int real_ = 0, pair_ = 0;
-  Eigen::Vector3cd values_;             ///< eigenvalues of A
-  Eigen::Matrix3cd vectors_, inverse_;  ///< eigenvectors, and the inverse of their matrix
   Eigen::SparseMatrix<double> jacobian_, identity_;
   bool analysed_ = false;
   Eigen::SparseLU<Eigen::SparseMatrix<double>> of_real_;
@@ -125,7 +108,7 @@ outcome run_radau(kinetic_task& task, const radau_options& options, double secon
   run_monitor timer(seconds_allowed);
   bool in_time = true;
   timer.start();
-  const bool done = run.integrate(task.end(), [&](const Eigen::VectorXd& now) {
+  const bool done = run.integrate(0.0, task.end(), [&](const Eigen::VectorXd& now) {
     in_time = timer.stepped(system.unpack(now, u));
     return in_time;
   });

@@ -21,13 +21,13 @@ class two_equations {
     return {u[0], u[1]};
   }
 
-  vector rate(const vector& u) const {
+  vector rate(double, const vector& u) const {
     const stiff_task::state at{u[0], u[1]};
     const auto slow = task_.transport(at), fast = task_.collision(at);
     return {slow[0] + fast[0], slow[1] + fast[1]};
   }
 
-  void linearize(const vector& u) {
+  void linearize(double, const vector& u) {
     const stiff_task::state at{u[0], u[1]};
     jacobian_ = task_.transport_jacobian(at) + task_.collision_jacobian(at);
   }
@@ -64,7 +64,7 @@ outcome run_radau(const stiff_task& task, const radau_options& options) {
   radau_steps run(system, options);
   outcome measured;
   measured.smallest = std::numeric_limits<double>::infinity();
-  const bool done = run.integrate(1.0, [&](const Eigen::Vector2d& u) {
+  const bool done = run.integrate(0.0, 1.0, [&](const Eigen::Vector2d& u) {
     measured.smallest = std::min({measured.smallest, u[0], u[1]});
     ++measured.steps;
     return true;
@@ -74,7 +74,7 @@ outcome run_radau(const stiff_task& task, const radau_options& options) {
     return measured;
   }
   measured.seconds =
-      seconds_per_call([&] { run.integrate(1.0, [](const Eigen::Vector2d&) { return true; }); });
+      seconds_per_call([&] { run.integrate(0.0, 1.0, [](const Eigen::Vector2d&) { return true; }); });
   measured.error = task.error({run.value()[0], run.value()[1]});
   measured.smallest_final = std::min(run.value()[0], run.value()[1]);
   return measured;

@@ -9,7 +9,9 @@
 namespace apsis::bench::peers {
 
 struct radau_options {
-  double rtol = 1e-6, atol = 1e-8;
+  double rtol = 1e-6,
+         atol = 1e-8;          ///< of a System without absolute()
+  long most_attempts = 40000;  ///< steps, rejected ones too
 };
 
 /// The Radau IIA method of order 5.
@@ -37,12 +39,13 @@ struct radau_tableau {
   }
 };
 
-/// Integrates u' = F(u) by Radau IIA of order 5 with the error estimate, the simplified Newton iteration, its
-/// starting values and the predictive step control of RADAU5 (Hairer, Wanner, Solving Ordinary Differential
-/// Equations II, section IV.8). With J = ∂F/∂u, a System has
+/// Integrates u' = F(t, u) by Radau IIA of order 5 with the error estimate, the simplified Newton iteration,
+/// its starting values and the predictive step control of RADAU5 (Hairer, Wanner, Solving Ordinary
+/// Differential Equations II, section IV.8). With J = ∂F/∂u, a System has
 ///   vector, stages                types of u and of [Z₁, Z₂, Z₃], Z_i = Y_i − u
-///   initial(), rate(u)            u(0); F(u), not a number where u has none
-///   linearize(u), factorize(h)    computes J, and factorizes I − h A⊗J and I − hγ₀J
+///   initial(), rate(t, u)         the initial u; F(t, u), not a number where u has none
+///   absolute()                    atol of every unknown; not required
+///   linearize(t, u), factorize(h)  computes J, and factorizes I − h A⊗J and I − hγ₀J
 ///   newton_change(D)              (I − h A⊗J)⁻¹ D
 ///   filtered(v)                   (I − hγ₀J)⁻¹ v
 ///   keeps_matrices                whether J and its factors are worth keeping, by the rules of RADAU5
@@ -54,20 +57,18 @@ class radau_steps {
 
   radau_steps(System& system, const radau_options& options) : system_(system), options_(options) {}
 
-  /// Integrates from t = 0 to `end`; observe(u) is called after each step and returns whether to continue.
+  /// Integrates from `begin` to `end`; observe(u) is called after each step and returns whether to continue.
   /// Returns whether the end was reached.
   template <class Observer>
-  bool integrate(double end, const Observer& observe) {
-    constexpr long most_attempts = 40000;
+  bool integrate(double begin, double end, const Observer& observe) {
+    t_ = begin;
     start();
     long attempts = 0;
-    for (double t = 0.0; t < end;) {
-      if (++attempts > most_attempts) return false;
-      const bool last = end - t <= h_;
-      if (last) h_ = end - t;
-      if (!attempt()) continue;
-      t = last ? end : t + taken_;
-      if (!observe(u_)) return false;
+    while (t_ < end) {
+      if (++attempts > options_.most_attempts || !(t_ + h_ > t_)) return false;
+      next_ = end - t_ <= h_ ? end : t_ + h_;
+      h_ = next_ == end ? end - t_ : h_;
+      if (attempt() && !observe(u_)) return false;
     }
     return true;
   }
@@ -77,7 +78,7 @@ class radau_steps {
  private:
   void start() {
     u_ = system_.initial();
-    rate_ = system_.rate(u_);
+    rate_ = system_.rate(t_, u_);
     h_ = 1e-6;
     taken_ = previous_error_ = factorized_ = 0.0;
     rejected_ = false;
@@ -85,13 +86,17 @@ class radau_steps {
   }
 
   void linearize() {
-    system_.linearize(u_);
+    system_.linearize(t_, u_);
     current_ = true;
     factorized_ = 0.0;
   }
 
   double norm(const vector& v) const {
-    const vector scale = (options_.atol + options_.rtol * u_.array().abs()).matrix();
+    vector scale = options_.rtol * u_.cwiseAbs();
+    if constexpr (requires(const System& of) { of.absolute(); })
+      scale += system_.absolute();
+    else
+      scale.array() += options_.atol;
     return std::sqrt(v.cwiseQuotient(scale).squaredNorm() / static_cast<double>(v.size()));
   }
 
@@ -109,11 +114,12 @@ class radau_steps {
     if (!(error < 1.0)) return reject(std::isfinite(error) ? std::clamp(factor, 0.1, 1.0) : 0.1);
     if (previous_error_ > 0.0)
       factor = std::min(factor, safety * h_ / taken_ * std::pow(previous_error_ / (error * error), 0.25));
+    t_ = next_;
     u_ += z.col(2);
     z_ = z;
     taken_ = h_;
     previous_error_ = std::max(error, 1e-2);
-    rate_ = system_.rate(u_);
+    rate_ = system_.rate(t_, u_);
     current_ = false;
     factor = std::clamp(factor, 0.2, rejected_ ? 1.0 : 8.0);
     rejected_ = false;
@@ -152,11 +158,12 @@ class radau_steps {
   /// Simplified Newton iteration for Z = h A F(u + Z); returns the number of iterations, −1 without
   /// convergence.
   int solve(stages& z) {
+    const auto& c = radau_tableau::get().abscissae;
     double before = 0.0;
     theta_ = 0.0;
     stages rates(u_.size(), 3);
     for (int k = 1; k <= 10; ++k) {
-      for (int i = 0; i < 3; ++i) rates.col(i) = system_.rate(u_ + z.col(i));
+      for (int i = 0; i < 3; ++i) rates.col(i) = system_.rate(t_ + c[i] * h_, u_ + z.col(i));
       const stages change = system_.newton_change(h_ * rates * radau_tableau::get().weights.transpose() - z);
       z += change;
       double size = 0.0;
@@ -188,7 +195,7 @@ class radau_steps {
     vector error = system_.filtered(method.gamma0 * h_ * rate_ + combined);
     // After a rejection, and in the first step, the second solve makes the estimate bounded for h → ∞.
     if (norm(error) >= 1.0 && (rejected_ || !(taken_ > 0.0)))
-      error = system_.filtered(method.gamma0 * h_ * system_.rate(u_ + error) + combined);
+      error = system_.filtered(method.gamma0 * h_ * system_.rate(t_, u_ + error) + combined);
     return norm(error);
   }
 
@@ -196,6 +203,7 @@ class radau_steps {
   radau_options options_;
   vector u_, rate_;
   stages z_;
+  double t_ = 0.0, next_ = 0.0;  ///< time of u_ and of the end of the step
   double h_ = 0.0, taken_ = 0.0, previous_error_ = 0.0;
   double factorized_ = 0.0;                 ///< h of the factors; 0: none of the present Jacobian
   double theta_ = 0.0;                      ///< convergence rate of the last Newton iteration

@@ -51,7 +51,7 @@ def solve_ivp(transport: Function | None, collision: Function | None, t_span: Se
     jac at (t0, y0), defines the places itself. solver="krylov" iterates without matrices, for Q that is not stiff.
 
     Returns scipy.optimize.OptimizeResult with t (m,), y (n, m), sol (scipy.integrate.OdeSolution or None), t_events, y_events, nfev
-    (calls of transport and collision), njev (of jac), nlu (linear systems), status (0: end reached, 1: a terminal event, −1: a step
+    (calls of transport and collision), njev (of jac), nlu (matrices factorized), status (0: end reached, 1: a terminal event, −1: a step
     failed), message and success; and beyond SciPy's: method, steps, rejected, derivatives.
 
     The solution inside a step, for t_eval, sol and events, is a step of the method from the beginning of that step. It has the order of the

@@ -93,7 +93,7 @@ struct transport {
   }
 };
 
-/// The problem, with the number of linear systems that were solved.
+/// The problem, with the number of matrices that were factorized.
 class counted_problem : public newton_problem<transport, timed_field> {
  public:
   using parent = newton_problem<transport, timed_field>;
@@ -112,7 +112,7 @@ class counted_problem : public newton_problem<transport, timed_field> {
 
  private:
   void count(double a, double b) {
-    if (a != 0.0 || b != 0.0) systems_ += report().iterations;
+    if (a != 0.0 || b != 0.0) systems_ += report().factorizations;
   }
 
   long systems_ = 0;

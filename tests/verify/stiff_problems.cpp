@@ -129,6 +129,16 @@ TEST(stiff_problems, e5_and_robertson_conserve_their_sums) {
   EXPECT_NEAR(e5[1] - e5[2] - e5[3], 0, 1e-24);  // a hundred roundings
 }
 
+TEST(stiff_problems, stages_without_second_derivatives_share_one_of_their_step) {
+  // Two unknowns: a derivative has two products. Every attempt of a step takes one, and more where the
+  // oscillator turns.
+  const auto found = solve_stiff_problem(find_stiff_problem("van-der-pol"), "ark-437", 1e-6);
+  const long attempts = found.steps + found.rejected;
+  EXPECT_GE(found.products, 2 * found.steps);
+  EXPECT_LE(found.products, 2 * 2 * attempts);
+  EXPECT_GT(found.evaluations - found.products, 6 * found.steps);  // a value for each of six stages at least
+}
+
 TEST(stiff_problems, refuse_unknown_names_and_too_many_steps) {
   bad_input::expect_refused({
       {[] { find_stiff_problem("robertsen"); },
@@ -136,6 +146,9 @@ TEST(stiff_problems, refuse_unknown_names_and_too_many_steps) {
        2},
       {[] { solve_stiff_problem(find_stiff_problem("hires"), "imdrk-3-3", 1e-8, 10); },
        {"'imdrk-3-3' of 'hires' takes more than 10 steps"},
+       3},
+      {[] { solve_stiff_problem(find_stiff_problem("hires"), "imdrk-3-3", 1e-8, 1000000, 0.0); },
+       {"'imdrk-3-3' of 'hires' takes more than 0 s"},
        3},
   });
 }

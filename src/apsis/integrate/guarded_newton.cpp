@@ -231,7 +231,7 @@ class newton {
           "the admissible set); reduce the time step, or use an unconditionally SSP method",
           {-1, std::nan(""), -1, static_cast<double>(v_[0])});
     Eigen::Map<column<Real>>(out.data(), v_.size()) = v_;
-    return {iteration_, static_cast<double>(norm_), static_cast<double>(step_)};
+    return {iteration_, static_cast<double>(norm_), static_cast<double>(step_), iteration_};
   }
 
  private:

@@ -67,9 +67,10 @@ struct newton_options {
 
 /// Report of guarded_newton().
 struct newton_report {
-  int iterations = 0;   ///< linear systems solved
-  double residual = 0;  ///< maximum norm at the end
-  double step = 0;      ///< last Newton step relative to v, maximum norms
+  int iterations = 0;      ///< Newton steps with a matrix of their own, or corrections of simplified_newton
+  double residual = 0;     ///< maximum norm of R at the end
+  double step = 0;         ///< last Newton step relative to v, maximum norms
+  int factorizations = 0;  ///< matrices of the solve, or systems solved without matrices
 };
 
 /// Solves R(v) = 0 to round-off, starting from the given v: Newton's method with exact derivatives and

@@ -7,6 +7,7 @@
 #include <apsis/integrate/component_tolerances.hpp>
 #include <apsis/integrate/guarded_newton.hpp>
 #include <apsis/integrate/problem.hpp>
+#include <apsis/integrate/simplified_newton.hpp>
 #include <apsis/integrate/unsquared_newton.hpp>
 
 #include <cstdio>
@@ -55,9 +56,9 @@ class newton_problem {
   }
 
   /// Ends the stage solves as soon as Newton's correction is below `share` of the tolerance of every unknown,
-  /// instead of at rounding errors; what G conserves stays conserved to rounding. Extrapolated Euler steps
-  /// multiply errors of their solves by up to 300, hence the default. Throws input_error unless 0 < share
-  /// ≤ 1.
+  /// instead of at rounding errors; what G conserves stays conserved to rounding. Stages with b = 0 then
+  /// share the derivative of their step (simplified_newton.hpp). Extrapolated Euler steps multiply errors of
+  /// their solves by up to 300, hence the default. Throws input_error unless 0 < share ≤ 1.
   newton_problem& with_tolerances(component_tolerances<real> tolerances, real share = real(1e-3)) {
     if (!(share > real(0) && share <= real(1)))
       throw input_error(
@@ -72,6 +73,7 @@ class newton_problem {
   /// only.
   newton_problem& with_sparsity(const sparsity_pattern& pattern) {
     sparse_.emplace(pattern);
+    simplified_ = simplified_newton<real>(pattern);
     return *this;
   }
 
@@ -121,6 +123,16 @@ class newton_problem {
     solve(t, real(1), a, b, u);
   }
 
+  /// Required by `problem_with_steps`: stages with b = 0 of a step share a derivative, if there are
+  /// tolerances.
+  void begin_step(real t, const State& u) {
+    if (!equation_.tolerances) return;
+    load(u);
+    simplified_.begin_step(t, v_);
+  }
+  /// Required by `problem_with_steps`.
+  void end_step() { simplified_.end_step(); }
+
   /// Required by `problem_with_transport_check`; evaluates F.
   bool has_transport(real t, const State& u) {
     if constexpr (std::is_same_v<F, no_transport>) {
@@ -147,7 +159,7 @@ class newton_problem {
   const newton_report& report() const { return report_; }
 
  private:
-  struct equation final : stage_equation<real> {
+  struct equation final : timed_stage_equation<real> {
     explicit equation(G callable) : field(std::move(callable)) {}
 
     std::size_t size() const override { return explicit_part.size(); }
@@ -190,7 +202,14 @@ class newton_problem {
       }
     }
 
+    void product_at(real at, std::span<const real> v, std::span<const real> x, std::span<real> jx) override {
+      field.set_time(at, theta);
+      field.jacobian_product(v, x, jx);
+      field.set_time(t, theta);
+    }
+
     field_of<real, G> field;
+    real t = real(0), theta = real(0);  ///< set_time() of the stage
     std::function<bool(std::span<const real>)> admissible_set;
     std::optional<component_tolerances<real>> tolerances;
     real share = real(0);
@@ -211,12 +230,28 @@ class newton_problem {
       return;
     }
     warn_of_cost();
+    equation_.t = t;
+    equation_.theta = theta;
     equation_.a = a;
     equation_.b = b;
     equation_.explicit_part = v_;
-    report_ =
-        sparse_ ? sparse_->solve(equation_, v_, options_) : guarded_newton<real>(equation_, v_, options_);
+    if (!solve_by_kept_derivative())
+      report_ =
+          sparse_ ? sparse_->solve(equation_, v_, options_) : guarded_newton<real>(equation_, v_, options_);
     unload(v_, u);
+  }
+
+  /// Solves the stage by simplified_newton, where its errors have a tolerance and factors are matrices.
+  /// Returns whether that is possible and succeeds.
+  bool solve_by_kept_derivative() {
+    if (!equation_.tolerances || equation_.b != real(0)) return false;
+    const bool factorizes =
+        sparse_ || options_.solver == linear_solver::dense ||
+        (options_.solver == linear_solver::automatic && v_.size() <= options_.dense_limit);
+    if (!factorizes || (sparse_ && !sparse_->fits(v_.size()))) return false;
+    const auto found = simplified_.solve(equation_, equation_.t, v_);
+    if (found) report_ = *found;
+    return found.has_value();
   }
 
   /// Warns once, before the first solve.
@@ -254,6 +289,7 @@ class newton_problem {
   equation equation_;
   newton_options options_;
   std::optional<sparse_newton<real>> sparse_;
+  simplified_newton<real> simplified_;
   bool warned_ = false;  ///< of the cost of dense systems
   newton_report report_;
   std::function<real(real, const State&)> forward_euler_;

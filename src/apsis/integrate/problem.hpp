@@ -162,6 +162,33 @@ void throw_late_errors(P& p) {
   if constexpr (problem_with_late_errors<P>) p.throw_late_errors();
 }
 
+/// A problem that keeps what the stages of a step share, such as a derivative:
+///   begin_step(t, u)   a step of a method of one step begins with u at t; its stages follow
+///   end_step()         the step has ended, or failed
+template <class P>
+concept problem_with_steps = problem<P> && requires(P p, const typename P::state& u, typename P::real x) {
+  p.begin_step(x, u);
+  p.end_step();
+};
+
+/// Tells a problem, if it wants to know, that a step begins, and at the end of the scope that it has ended.
+template <problem P>
+class step_scope {
+ public:
+  /// Stores a reference.
+  step_scope(P& p, typename P::real t, const typename P::state& u) : problem_(p) {
+    if constexpr (problem_with_steps<P>) problem_.begin_step(t, u);
+  }
+  step_scope(const step_scope&) = delete;
+  step_scope& operator=(const step_scope&) = delete;
+  ~step_scope() {
+    if constexpr (problem_with_steps<P>) problem_.end_step();
+  }
+
+ private:
+  P& problem_;
+};
+
 /// A problem that knows the width of its initial layer, for a graded start:
 ///   relaxation_time(t, u)   smallest ε/C > 0 of the state; +infinity if nothing relaxes or ε = 0
 template <class P>

@@ -179,6 +179,7 @@ class stepper {
     while (static_cast<int>(buffers_.size()) + 1 < plan_.buffers()) buffers_.push_back(u);
     if (plan.instructions.empty() || dt != plan.dt || &u != plan.u || buffers_.data() != plan.buffers)
       prepare(plan, dt, u);
+    const step_scope<P> scope(problem_, t, u);
     for (std::size_t i = 0; i < plan.instructions.size(); ++i) {
       const prepared& now = plan.instructions[i];
       if constexpr (problem_with_fused_stages<P>) {

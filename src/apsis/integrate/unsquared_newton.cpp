@@ -59,7 +59,7 @@ class unsquared {
           "the admissible set); reduce the time step, or use an unconditionally SSP method",
           {-1, std::nan(""), -1, static_cast<double>(x_[0])});
     Eigen::Map<column>(out.data(), n_) = x_.head(n_);
-    return {iteration_, static_cast<double>(largest(r_)), static_cast<double>(step_)};
+    return {iteration_, static_cast<double>(largest(r_)), static_cast<double>(step_), iteration_};
   }
 
  private:
@@ -258,9 +258,14 @@ template <class Real>
 sparse_newton<Real>::~sparse_newton() = default;
 
 template <class Real>
+bool sparse_newton<Real>::fits(std::size_t n) const {
+  return n == parts_->pattern.size();
+}
+
+template <class Real>
 newton_report sparse_newton<Real>::solve(stage_equation<Real>& equation, std::span<Real> v,
                                          const newton_options& options) {
-  if (v.size() != parts_->pattern.size())
+  if (!fits(v.size()))
     throw input_error(
         fmt::format("the sparsity pattern has {} unknowns and the state {} (they differ in number); "
                     "give the pattern of the derivative of this state",

@@ -3,6 +3,7 @@
 #include <apsis/integrate/guarded_newton.hpp>
 #include <apsis/integrate/sparsity_pattern.hpp>
 
+#include <cstddef>
 #include <memory>
 #include <span>
 
@@ -39,6 +40,8 @@ class sparse_newton {
   sparse_newton& operator=(sparse_newton&& other) noexcept;  ///< moves
   ~sparse_newton();
 
+  /// Whether n is the number of unknowns of the pattern.
+  bool fits(std::size_t n) const;
   /// Solves a stage like unsquared_newton(); throws input_error if v has another number of unknowns than the
   /// pattern.
   newton_report solve(stage_equation<Real>& equation, std::span<Real> v, const newton_options& options);

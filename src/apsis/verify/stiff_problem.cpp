@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ctime>
 #include <limits>
 #include <type_traits>
 
@@ -19,14 +20,19 @@ namespace {
 /// G of a piece, as newton_problem expects it; counts its calls.
 struct counted_rate {
   const stiff_rate* rate;
-  long* calls;
+  stiff_solution* counts;
 
   template <class Number>
   void operator()(const Number& t, std::span<const Number> u, std::span<Number> out) const {
-    ++*calls;
+    ++counts->evaluations;
+    if constexpr (!std::is_same_v<Number, double>) ++counts->products;
     rate->evaluate(t, u, out);
   }
 };
+
+double cpu_seconds() {
+  return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
+}
 
 double size_of(const stiff_problem_entry& problem, std::size_t i) {
   return problem.sizes.size() == 1 ? problem.sizes[0] : problem.sizes[i];
@@ -54,17 +60,23 @@ double correct_digits(const stiff_problem_entry& problem, std::span<const double
   return -std::log10(largest);
 }
 
+std::vector<double> absolute_tolerances(const stiff_problem_entry& problem, double rtol) {
+  std::vector<double> absolute(problem.start().size());
+  for (std::size_t i = 0; i < absolute.size(); ++i) absolute[i] = rtol * size_of(problem, i);
+  return absolute;
+}
+
 stiff_solution solve_stiff_problem(const stiff_problem_entry& problem, const std::string& method, double rtol,
-                                   long most_steps) {
-  std::vector<double> absolute = problem.sizes;
-  for (double& size : absolute) size *= rtol;
-  const component_tolerances<double> tolerances({rtol}, absolute);
+                                   long most_steps, double most_seconds) {
+  const double begin = cpu_seconds();
+  bool in_time = true;
+  const component_tolerances<double> tolerances({rtol}, absolute_tolerances(problem, rtol));
   const apsis::method& m = find_method(method);
   stiff_solution found;
   found.u = problem.start();
   for (std::size_t piece = 0; piece + 1 < problem.times.size(); ++piece) {
     const auto rate = problem.rate(piece);
-    newton_problem equation(no_transport{}, counted_rate{rate.get(), &found.evaluations});
+    newton_problem equation(no_transport{}, counted_rate{rate.get(), &found});
     equation.with_tolerances(tolerances);
     if (problem.pattern != nullptr) equation.with_sparsity(problem.pattern());
     stepper march(m, equation, solutions::result_and_embedded);
@@ -74,9 +86,15 @@ stiff_solution solve_stiff_problem(const stiff_problem_entry& problem, const std
                                              step_rule<double>::unlimited(), control, tolerances,
                                              [&](long step, double, double, const std::vector<double>&) {
                                                found.steps = before + step;
-                                               return found.steps < most_steps;
+                                               in_time = cpu_seconds() - begin <= most_seconds;
+                                               return found.steps < most_steps && in_time;
                                              });
     found.rejected += control.rejected();
+    if (!in_time)
+      throw numerical_error(
+          fmt::format("'{}' of '{}' takes more than {:g} s (its steps are at t = {:g}); enlarge the "
+                      "tolerance or the time",
+                      method, problem.name, most_seconds, done.t));
     if (done.t < problem.times[piece + 1])
       throw numerical_error(
           fmt::format("'{}' of '{}' takes more than {} steps (they are at t = {:g}); enlarge the "

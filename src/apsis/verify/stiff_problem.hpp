@@ -4,6 +4,7 @@
 #include <apsis/integrate/sparsity_pattern.hpp>
 
 #include <cstddef>
+#include <limits>
 #include <memory>
 #include <span>
 #include <string>
@@ -86,6 +87,7 @@ struct stiff_solution {
   long steps = 0;         ///< accepted
   long rejected = 0;      ///< rejected, for their error or a stage without a solution
   long evaluations = 0;   ///< calls of G, those for derivatives included
+  long products = 0;      ///< calls of G for derivatives, each along one direction
 };
 
 /// Returns the correct digits of u at the end, −log₁₀ max_i |u_i − r_i|/(|r_i| + size_i) over the reference
@@ -93,11 +95,16 @@ struct stiff_solution {
 /// digits"); −infinity if a number is not finite.
 double correct_digits(const stiff_problem_entry& problem, std::span<const double> u);
 
+/// Returns atol_i = rtol · size_i, for all unknowns.
+std::vector<double> absolute_tolerances(const stiff_problem_entry& problem, double rtol);
+
 /// Solves a problem to its end with an implicit method of one step: rtol is the same for all unknowns and
 /// atol_i = rtol · size_i (component_tolerances). Stages are solved by Newton's method with exact
 /// derivatives, by sparse factorizations where the problem has a pattern. Throws input_error like stepper,
-/// and numerical_error if no step is short enough, or after `most_steps` steps.
+/// and numerical_error if no step is short enough, after `most_steps` steps, or after `most_seconds` of CPU
+/// time of the process.
 stiff_solution solve_stiff_problem(const stiff_problem_entry& problem, const std::string& method, double rtol,
-                                   long most_steps = 1000000);
+                                   long most_steps = 1000000,
+                                   double most_seconds = std::numeric_limits<double>::infinity());
 
 }  // namespace apsis

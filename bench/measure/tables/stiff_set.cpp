@@ -1,0 +1,172 @@
+// The stiff problems of the literature, by Apsis and other programs.
+#include "measure/clock.hpp"
+#include "measure/table.hpp"
+#include "peers/stiff_set.hpp"
+
+#include <apsis/method/method.hpp>
+#include <apsis/method/method_choice.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+namespace apsis::bench::stiff_set_table {
+namespace {
+
+using peers::stiff_limits;
+using peers::stiff_outcome;
+
+/// A run and its outcome.
+struct contestant {
+  std::string label;  ///< a method of Apsis, or empty
+  std::function<stiff_outcome()> run;
+  stiff_outcome measured = {};
+  std::vector<double> seconds = {};  ///< of one integration, one for each turn
+};
+
+/// Runs once, and again until the clock has resolved the run.
+void take_turn(contestant& one) {
+  constexpr double enough = 5e-3;
+  int runs = 0;
+  const double begin = thread_seconds();
+  do {
+    one.measured = one.run();
+    ++runs;
+  } while (thread_seconds() - begin < enough && one.measured.failure.empty());
+  one.seconds.push_back((thread_seconds() - begin) / runs);
+}
+
+/// The methods of one step with implicit collisions, and extrapolated Euler steps.
+std::vector<std::string> implicit_methods() {
+  std::vector<std::string> names;
+  for (const auto& name : method_names()) {
+    const auto kind = find_method(name).kind;
+    if (kind == method_kind::imex || kind == method_kind::implicit_only) names.push_back(name);
+  }
+  for (int order = 2; order <= 8; ++order) names.push_back(fmt::format("extrapolated-euler-{}", order));
+  return names;
+}
+
+/// A problem at a tolerance.
+class race {
+ public:
+  race(const stiff_problem_entry& problem, const stiff_limits& limits) : problem_(problem), limits_(limits) {}
+
+  contestant by_apsis(const std::string& method, double seconds) const {
+    stiff_limits limits = limits_;
+    limits.seconds = std::min(limits.seconds, seconds);
+    return {method, [this, method, limits] { return peers::run_apsis_stiff(problem_, method, limits); }};
+  }
+
+  /// The method that takes the least CPU time and reaches rtol within a digit, else the one with most digits.
+  /// The search begins with the usual method, and no other has more than twice its time, or the time of the
+  /// best before it.
+  std::string best_of(const std::vector<std::string>& methods) const {
+    contestant first = by_apsis(usual(), limits_.seconds);
+    take_turn(first);
+    double least = std::min(limits_.seconds, 2.0 * first.seconds.front()), most = -1.0;
+    std::string best = usual();
+    bool reached = false;
+    const auto compare = [&](const contestant& one) {
+      if (!one.measured.failure.empty()) return;
+      const double digits = digits_of(one), time = one.seconds.front();
+      const bool reaches = digits >= -std::log10(limits_.rtol) - 1;
+      if (reaches ? !reached || time < least : !reached && digits > most) best = one.label;
+      if (reaches) least = std::min(least, time);
+      reached = reached || reaches;
+      most = std::max(most, digits);
+    };
+    compare(first);
+    for (const auto& method : methods) {
+      contestant one = by_apsis(method, least);
+      take_turn(one);
+      compare(one);
+    }
+    return best;
+  }
+
+  std::vector<contestant> all(const std::string& best) const {
+    return {by_apsis(best, limits_.seconds),
+            by_apsis(usual(), limits_.seconds),
+            {"", [this] { return peers::run_cvode_stiff(problem_, limits_); }},
+            {"", [this] { return peers::run_arkode_stiff(problem_, 4, limits_); }},
+            {"", [this] { return peers::run_arkode_stiff(problem_, 5, limits_); }},
+            {"", [this] { return peers::run_radau_stiff(problem_, limits_); }}};
+  }
+
+  /// "method: digits; milliseconds; calls of Q + Jacobians".
+  std::string cell(const contestant& one) const {
+    const std::string name = one.label.empty() ? "" : "`" + one.label + "`: ";
+    const auto& found = one.measured;
+    if (found.failure == peers::too_slow) return name + fmt::format("> {:g} s", limits_.seconds);
+    if (!found.failure.empty()) return name + "failed";
+    return name + fmt::format("{:.1f}; {:.3g}; {} + {:.0f}", digits_of(one), 1e3 * median(one.seconds),
+                              found.rates, std::ceil(found.jacobians));
+  }
+
+ private:
+  /// The method that "auto" chooses.
+  std::string usual() const { return choose_method({.tolerance = limits_.rtol}).method; }
+  double digits_of(const contestant& one) const { return correct_digits(problem_, one.measured.u); }
+
+  const stiff_problem_entry& problem_;
+  stiff_limits limits_;
+};
+
+void add_row(result_table& result, const stiff_problem_entry& problem, double rtol,
+             const std::vector<std::string>& methods, const settings& options) {
+  const race here(problem, {.rtol = rtol, .seconds = options.quick ? 1.0 : 10.0});
+  auto contestants = here.all(here.best_of(methods));
+  double total = 0.0;
+  for (auto& one : contestants) {
+    take_turn(one);
+    total += one.seconds.front();
+  }
+  constexpr double long_turn = 2.0;
+  for (int turn = 1; turn < options.repeats && total < long_turn; ++turn)
+    for (auto& one : contestants) take_turn(one);
+  result.rows.push_back({problem.name, fmt::format("{:.0e}", rtol)});
+  for (const auto& one : contestants) result.rows.back().emplace_back(here.cell(one));
+}
+
+result_table measure(const settings& options) {
+  result_table result;
+  result.title = "Stiff systems of the literature";
+  result.note =
+      "Problems of `src/apsis/verify/stiff` at the tolerances rtol and atol_i = rtol · size_i, the same for "
+      "all. A cell has correct digits; CPU milliseconds of a whole integration, set-up included; calls of Q "
+      "+ "
+      "evaluations of Q' (products of Apsis count as parts of an evaluation). All have the same Q and the "
+      "same "
+      "automatic derivatives. Best of Apsis: of all methods of one step, the one that takes the least time "
+      "and reaches rtol within a digit, else the one with most digits; for the last three problems, of "
+      "`ark-436`, `ark-548` "
+      "and `extrapolated-euler-6`. Auto: the method that `auto` chooses for the "
+      "tolerance, without hindsight. "
+      "CVODE: BDF. ARKODE: its default diagonally implicit methods of orders 4 and 5. Both have a dense or "
+      "a band solver. Radau 5: the control of RADAU5 with dense or sparse factorizations "
+      "(bench/peers/radau_stiff.cpp). Turns of more than 2 s are measured once. A run is stopped after 10 s.";
+  result.columns = {"problem", "rtol", "best of Apsis", "auto", "CVODE", "ARKODE 4", "ARKODE 5", "Radau 5"};
+  const auto methods =
+      options.quick ? std::vector<std::string>{"ark-436", "extrapolated-euler-5"} : implicit_methods();
+  const std::vector<std::string> few{"ark-436", "ark-548", "extrapolated-euler-6"};  // for runs of seconds
+  const auto tolerances = options.quick ? std::vector<double>{1e-4} : std::vector<double>{1e-4, 1e-6, 1e-8};
+  for (const bool slow : {false, true})
+    for (const auto* problem : stiff_problem_entries()) {
+      if (problem->slow != slow || (options.quick && slow && problem->name != "brusselator")) continue;
+      for (const double rtol : tolerances)
+        add_row(result, *problem, rtol, slow && !options.quick ? few : methods, options);
+    }
+  return result;
+}
+
+const registered here({"stiff-set", "the stiff problems of the literature against other programs", measure});
+
+}  // namespace
+}  // namespace apsis::bench::stiff_set_table

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <apsis/integrate/guarded_newton.hpp>
+#include <apsis/integrate/sparsity_pattern.hpp>
+
+#include <memory>
+#include <optional>
+#include <span>
+
+namespace apsis {
+
+/// A stage equation whose derivative can be taken elsewhere.
+template <class Real>
+class timed_stage_equation : public stage_equation<Real> {
+ public:
+  /// Sets jx ← ∂G/∂v (t, v) x. Later evaluations of the stage are not affected.
+  virtual void product_at(Real t, std::span<const Real> v, std::span<const Real> x, std::span<Real> jx) = 0;
+};
+
+/// Simplified Newton method for the stages v = u_e + a G(v) of a step,
+///   v ← v + δ,   (1 − aJ) δ = −R(v),
+/// where J is the derivative of G at the beginning of the step. All stages of the step share it, and stages
+/// of the same a share the factors of 1 − aJ. The linear invariants of G are those of J too: every correction
+/// conserves them.
+///
+/// θ = |δ_k|/|δ_{k−1}|, in the units of stage_equation::size_of_correction(), is the measured contraction. A
+/// stage is accepted where the estimated remaining error θ/(1 − θ) |δ_k| is at most 1/8 of the accuracy that
+/// the equation needs, and |δ_k| at most 8 times this accuracy (Hairer & Wanner, Solving Ordinary
+/// Differential Equations II, section IV.8). Where more corrections are expected than a new matrix costs, J
+/// is taken at the present v, for this stage and the rest of the step.
+///
+/// A step depends on its t, Δt and u alone, not on what was solved before: J of an earlier attempt is used
+/// again only where that began with the same t and u.
+template <class Real>
+class simplified_newton {
+ public:
+  /// With full matrices.
+  simplified_newton();
+  /// With sparse matrices that have entries at the places of the pattern only.
+  explicit simplified_newton(const sparsity_pattern& pattern);
+  simplified_newton(const simplified_newton& other);                 ///< copies the pattern
+  simplified_newton& operator=(const simplified_newton& other);      ///< copies the pattern
+  simplified_newton(simplified_newton&& other) noexcept;             ///< moves
+  simplified_newton& operator=(simplified_newton&& other) noexcept;  ///< moves
+  ~simplified_newton();
+
+  /// A step begins with u at the time t.
+  void begin_step(Real t, std::span<const Real> u);
+  /// The step has ended: the next stage is no part of one, and J is that at its explicit part.
+  void end_step();
+
+  /// Solves the stage at time t, starting from v. Returns nothing, and leaves v as it is, where the iteration
+  /// does not converge, leaves the admissible set or meets a number that is not finite; then the stage is one
+  /// for guarded_newton(). Requires b = 0 and a pattern, if there is one, of v.size() unknowns.
+  std::optional<newton_report> solve(timed_stage_equation<Real>& equation, Real t, std::span<Real> v);
+
+ private:
+  struct parts;
+  std::unique_ptr<parts> parts_;
+};
+
+}  // namespace apsis

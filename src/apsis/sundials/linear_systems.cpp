@@ -93,10 +93,9 @@ int linear_systems::multiply(void* self, N_Vector x, N_Vector z) {
   return 0;
 }
 
-void linear_systems::require_solvable() const {
+void linear_systems::require_solvable(double most) const {
   // A slow component loses this factor times the rounding of the fast ones, which are themselves errors of
   // roundings times this factor.
-  constexpr double most = 1e10;
   if (amplification_ > most)
     throw numerical_error(
         fmt::format("the equation of a stage is too stiff for GMRES without a preconditioner (its matrix "

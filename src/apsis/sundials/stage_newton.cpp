@@ -24,6 +24,9 @@ constexpr int oldest = 20;
 
 constexpr int most_iterations = 100;
 
+/// Growth of a vector by the matrix of a stage that explains why GMRES without a preconditioner fails.
+constexpr double stiff = 1e5;
+
 }  // namespace
 
 void set_weights(double relative, N_Vector absolute, N_Vector y, N_Vector w) {
@@ -114,7 +117,7 @@ void stage_newton::correct(const stage& s, iterate& at, double expected) {
       tolerance = std::max(least, std::min(1e-2 * at.size, 1e-4 * tolerance));
       continue;
     }
-    systems_.require_solvable();
+    if (fresh_) systems_.require_solvable(stiff);
     if (fresh_) require(returned != 0 ? returned : -1, "a linear system of Newton's method is not solved");
     systems_.at().refused() = {};
     prepare(s, true);
@@ -190,7 +193,7 @@ void stage_newton::start_at(const stage& s) {
 
 /// Throws numerical_error: Newton's method `does` something.
 void stage_newton::fail(const stage& s, const std::string& does) const {
-  systems_.require_solvable();
+  systems_.require_solvable(stiff);
   throw numerical_error(
       fmt::format("a stage at t = {:.10g} is not solved (Newton's method {}); reduce the time step, or "
                   "improve the preconditioner",

@@ -50,9 +50,10 @@ class linear_systems {
   int solve(N_Vector r, N_Vector x, N_Vector w, double tolerance);
   /// Returns the last reduction of the residual without convergence, which is progress.
   static bool is_progress(int returned);
-  /// Throws numerical_error if GMRES without a preconditioner met a matrix so stiff that slow components of
-  /// the solution are lost in the rounding errors of fast ones.
-  void require_solvable() const;
+  /// Throws numerical_error if GMRES without a preconditioner met a matrix that multiplies a vector by more
+  /// than `most`. Above the default slow components of the solution are lost in the rounding errors of fast
+  /// ones.
+  void require_solvable(double most = 1e10) const;
 
  private:
   static int multiply(void* self, N_Vector x, N_Vector z);

@@ -135,6 +135,34 @@ TEST(sundials_integrators, keep_their_order_for_collisions_of_any_speed) {
   }
 }
 
+TEST(sundials_integrators, solve_stages_of_steps_much_longer_than_relaxation_or_end_with_an_error) {
+  for (const std::string name :
+       {"md-imex-3-2", "md-imex-8-3-mixed", "md-imex-16-4-efficient", "imdrk-9-5-accurate"})
+    for (const double epsilon : {1e-6, 1e-8, 1e-10, 1e-12, 1e-14}) {
+      line of = of_cells(24, epsilon, 0.01);
+      auto s = name.starts_with("imdrk")
+                   ? make(name, nullptr, line_test::collision, 0.0, start_of(of).get(), &of)
+                   : make_line(name, of);
+      expect_ok(apsis_sundials_set_products(s.get(), nullptr, line_test::product));
+      expect_ok(
+          apsis_sundials_set_preconditioner(s.get(), line_test::precondition_setup, line_test::precondition));
+      expect_ok(apsis_sundials_set_step(s.get(), 1.0 / 128));
+      const auto y = start_of(of);
+      const int status = apsis_sundials_evolve(s.get(), 1.0 / 16, y.get(), nullptr);
+      // A step is 8e7 relaxation times long where all succeed.
+      if (epsilon >= 1e-10)
+        EXPECT_EQ(status, APSIS_OK) << name << " " << epsilon << " " << apsis_error_message();
+      if (status != APSIS_OK) {
+        EXPECT_EQ(status, APSIS_NUMERICAL_ERROR);
+        continue;
+      }
+      // Diffusion keeps the solution off the equilibrium by about ε/100.
+      for (std::size_t i = 0; i < values(y.get()).size(); i += 2)
+        EXPECT_NEAR(values(y.get())[i + 1], std::pow(values(y.get())[i], 2), epsilon + 1e-14)
+            << name << " " << epsilon;
+    }
+}
+
 TEST(sundials_integrators, conserve_linear_invariants) {
   for (const double epsilon : {1.0, 1e-6}) {
     line of = of_cells(16, epsilon, 0.02);

@@ -301,6 +301,7 @@ TEST(sundials_settings, are_refused_with_a_reason) {
       rethrow(apsis_sundials_evolve(one.get(), 1.0, nullptr, nullptr));
     };
   };
+  const auto not_finite = serial({std::nan(""), 1});
   auto without_a_sum = serial({1, 0});
   without_a_sum->ops->nvlinearsum = nullptr;
   const int wrong[] = {2};
@@ -312,7 +313,7 @@ TEST(sundials_settings, are_refused_with_a_reason) {
         {"the context is NULL"}},
        {[&] { rethrow(apsis_sundials_create(m.get(), transport, collision, 0, nullptr, context(), &made)); },
         {"the initial state is NULL"}},
-       {create("md-imex-6-3", serial({std::nan(""), 1}).release(), 0.0), {"the initial state is not finite"}},
+       {create("md-imex-6-3", not_finite.get(), 0.0), {"the initial state is not finite"}},
        {create("md-imex-6-3", y.get(), std::nan("")), {"the initial time is not finite"}},
        {create("md-imex-6-3", without_a_sum.get(), 0.0), {"'nvlinearsum'"}},
        {create("exponential-2", y.get(), 0.0), {"'exponential-2'", "exactly"}},

@@ -1,5 +1,5 @@
-/* u_t + u_x = (v - u^2)/epsilon, v_t = -(v - u^2)/epsilon on a periodic line: a program of PETSc that knows nothing of Apsis.
- * Prints the time reached, the norm of the solution and the type of the time stepper. */
+/* u_t + u_x = (v - u^2)/epsilon, v_t = -(v - u^2)/epsilon on a periodic line: a program of PETSc that knows
+ * nothing of Apsis. Prints the time reached, the norm of the solution and the type of the time stepper. */
 #include <petscdm.h>
 #include <petscdmda.h>
 #include <petscts.h>
@@ -10,7 +10,7 @@ typedef struct {
 
 static PetscReal epsilon = 1e-6;
 
-static PetscErrorCode transport(TS ts, PetscReal t, Vec state, Vec out, void *context) {
+static PetscErrorCode transport(TS ts, PetscReal t, Vec state, Vec out, void* context) {
   DM da;
   Vec local;
   point *u, *f;
@@ -34,7 +34,7 @@ static PetscErrorCode transport(TS ts, PetscReal t, Vec state, Vec out, void *co
   PetscFunctionReturn(0);
 }
 
-static PetscErrorCode exchange(TS ts, PetscReal t, Vec state, Vec rate, Vec out, void *context) {
+static PetscErrorCode exchange(TS ts, PetscReal t, Vec state, Vec rate, Vec out, void* context) {
   DM da;
   point *u, *dot, *f;
   PetscInt i, begin, count;
@@ -56,12 +56,12 @@ static PetscErrorCode exchange(TS ts, PetscReal t, Vec state, Vec rate, Vec out,
   PetscFunctionReturn(0);
 }
 
-int main(int argc, char **argv) {
+int main(int argc, char** argv) {
   TS ts;
   DM da;
   Vec state;
   TSType type;
-  point *u;
+  point* u;
   PetscReal t, norm;
   PetscInt i, begin, count, all;
   PetscFunctionBeginUser;

@@ -150,8 +150,9 @@ TEST(sundials_integrators, solve_stages_of_steps_much_longer_than_relaxation_or_
       const auto y = start_of(of);
       const int status = apsis_sundials_evolve(s.get(), 1.0 / 16, y.get(), nullptr);
       // A step is 8e7 relaxation times long where all succeed.
-      if (epsilon >= 1e-10)
+      if (epsilon >= 1e-10) {
         EXPECT_EQ(status, APSIS_OK) << name << " " << epsilon << " " << apsis_error_message();
+      }
       if (status != APSIS_OK) {
         EXPECT_EQ(status, APSIS_NUMERICAL_ERROR);
         continue;

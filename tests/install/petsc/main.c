@@ -36,7 +36,8 @@ static PetscErrorCode collision(TS ts, PetscReal t, Vec state, Vec rate, Vec out
 }
 
 /* shift + dF/du */
-static PetscErrorCode jacobian(TS ts, PetscReal t, Vec state, Vec rate, PetscReal shift, Mat A, Mat P, void* context) {
+static PetscErrorCode jacobian(TS ts, PetscReal t, Vec state, Vec rate, PetscReal shift, Mat A, Mat P,
+                               void* context) {
   const PetscInt rows[] = {0, 1};
   const PetscScalar* u;
   PetscScalar entries[] = {shift, 0, 0, shift};

@@ -276,8 +276,8 @@ SNESConvergedReason stage_solver::test(PetscInt iteration, double of_v, double o
   last_correction_ = of_correction;
   if (of_correction <= wanted) return SNES_CONVERGED_SNORM_RELATIVE;
   if (before == 0.0) return SNES_CONVERGED_ITERATING;
-  // The corrections to come, as a geometric series. Linear systems are solved to some digits less than those
-  // that γJ loses, so that a correction much smaller than the last may be followed by one that is not.
+  // The corrections to come, as a geometric series. Solutions of linear systems lack the digits that γJ
+  // loses. A correction much smaller than the last may therefore be followed by one that is not.
   constexpr double epsilon = std::numeric_limits<double>::epsilon();
   const double ratio = of_correction / before;
   const double contraction = std::max(ratio, std::min(0.1, std::sqrt(epsilon) * stiffness_));

@@ -6,7 +6,7 @@
 
 namespace apsis::sundials {
 
-/// Replaces the scalar product and the norms with sums of a vector by those below, which do not depend on how
+/// Replaces the scalar product and the norms with sums of a vector by those below. They do not depend on how
 /// the vector is divided among threads or processes. Vectors cloned from it inherit them.
 void use_equal_sums(N_Vector v);
 

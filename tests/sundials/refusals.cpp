@@ -1,4 +1,4 @@
-// What is refused, with its reason.
+// Refused arguments and settings, with the reasons in their messages.
 #include <apsis/core/errors.hpp>
 
 #include <functional>

@@ -1,5 +1,5 @@
-// equal_bits KIND [THREADS]: integrates the line on vectors of a kind: serial, pthreads, openmp or parallel. It
-// prints the bits of the result and the counters, which must not depend on kind, threads or processes.
+// equal_bits KIND [THREADS]: integrates the line on vectors of a kind: serial, pthreads, openmp or parallel.
+// It prints the bits of the result and the counters, which must not depend on kind, threads or processes.
 #include <apsis/apsis_sundials.h>
 
 #include <algorithm>

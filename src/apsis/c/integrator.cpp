@@ -188,7 +188,7 @@ long long apsis_count(const apsis_integrator* integrator, int counter) {
   const auto* run = integrator->run.get();
   if (counter == APSIS_STEPS) return integrator->steps + (run != nullptr ? run->steps() : 0);
   if (counter == APSIS_REJECTED_STEPS) return integrator->rejected + (run != nullptr ? run->rejected() : 0);
-  if (counter == APSIS_EVENTS)
-    return static_cast<long long>(integrator->found.size() + (run != nullptr ? run->found().size() : 0));
+  const std::size_t events = integrator->found.size() + (run != nullptr ? run->found().size() : 0);
+  if (counter == APSIS_EVENTS) return static_cast<long long>(events);
   return integrator->of.counts[static_cast<std::size_t>(counter)];
 }

@@ -54,11 +54,13 @@ class work_vectors {
       at_ = kept;
       return;
     }
-    for (N_Vector& one : at_)
-      if ((one = N_VClone(v)) == nullptr) {
+    for (N_Vector& one : at_) {
+      one = N_VClone(v);
+      if (one == nullptr) {
         release();
         throw std::bad_alloc();
       }
+    }
     N_VConst(1.0, at_[2]);
   }
   ~work_vectors() { release(); }

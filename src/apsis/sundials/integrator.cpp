@@ -262,9 +262,8 @@ long long apsis_sundials_count(const apsis_sundials* integrator, int counter) {
     return integrator->steps + (run != nullptr ? run->solution.steps() : 0);
   if (counter == APSIS_SUNDIALS_REJECTED_STEPS)
     return integrator->rejected + (run != nullptr ? run->solution.rejected() : 0);
-  if (counter == APSIS_SUNDIALS_EVENTS)
-    return static_cast<long long>(integrator->found.size() +
-                                  (run != nullptr ? run->solution.found().size() : 0));
+  const std::size_t events = integrator->found.size() + (run != nullptr ? run->solution.found().size() : 0);
+  if (counter == APSIS_SUNDIALS_EVENTS) return static_cast<long long>(events);
   return integrator->of.counts[static_cast<std::size_t>(counter)];
 }
 

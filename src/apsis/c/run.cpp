@@ -1,3 +1,4 @@
+#include "internal/evolution_status.hpp"
 #include "internal/integrator_handle.hpp"
 #include "internal/newton_blocks.hpp"
 #include "internal/split_problem.hpp"
@@ -48,15 +49,7 @@ class run_of final : public any_run {
   }
 
   int advance(double t1, const observer& observe) override {
-    switch (evolution_.advance(t1, observe)) {
-      case evolution_end::stopped:
-        return APSIS_STOPPED;
-      case evolution_end::event:
-        return APSIS_EVENT;
-      case evolution_end::reached:
-        break;
-    }
-    return APSIS_OK;
+    return status_of(evolution_.advance(t1, observe));
   }
   numbers at(double t) override { return evolution_.at(t); }
   const std::vector<found_event<double>>& found() const override { return evolution_.found(); }

@@ -29,23 +29,22 @@ void require_finite(N_Vector v, const char* name, double t) {
 }  // namespace
 
 void functions::evaluate_transport(double t, N_Vector y, N_Vector out) {
-  if (transport == nullptr) {
-    N_VConst(0.0, out);
-    return;
-  }
-  count(APSIS_SUNDIALS_TRANSPORT_EVALUATIONS);
-  c::require_success("transport", transport(t, y, out, data));
-  require_finite(out, "transport", t);
+  evaluate(transport, "transport", APSIS_SUNDIALS_TRANSPORT_EVALUATIONS, t, y, out);
 }
 
 void functions::evaluate_collision(double t, N_Vector y, N_Vector out) {
-  if (collision == nullptr) {
+  evaluate(collision, "collision", APSIS_SUNDIALS_COLLISION_EVALUATIONS, t, y, out);
+}
+
+void functions::evaluate(apsis_sundials_rate_function* rate, const char* name, apsis_sundials_counter counter,
+                         double t, N_Vector y, N_Vector out) {
+  if (rate == nullptr) {
     N_VConst(0.0, out);
     return;
   }
-  count(APSIS_SUNDIALS_COLLISION_EVALUATIONS);
-  c::require_success("collision", collision(t, y, out, data));
-  require_finite(out, "collision", t);
+  count(counter);
+  c::require_success(name, rate(t, y, out, data));
+  require_finite(out, name, t);
 }
 
 bool functions::try_collision(double t, N_Vector y, N_Vector out) {

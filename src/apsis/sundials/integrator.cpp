@@ -1,5 +1,6 @@
 #include "internal/integrator_handle.hpp"
 
+#include <apsis/c/internal/evolution_status.hpp>
 #include <apsis/c/internal/guarded.hpp>
 #include <apsis/c/internal/method_handle.hpp>
 #include <apsis/core/errors.hpp>
@@ -75,18 +76,6 @@ bool observe(apsis_sundials& s, long long step, double t, double dt, const nvect
   return returned == 0;
 }
 
-int status_of(evolution_end end) {
-  switch (end) {
-    case evolution_end::stopped:
-      return APSIS_STOPPED;
-    case evolution_end::event:
-      return APSIS_EVENT;
-    case evolution_end::reached:
-      break;
-  }
-  return APSIS_OK;
-}
-
 /// Integrates to t1, or for one step.
 int advance(apsis_sundials& s, double t1, bool once) {
   if (!std::isfinite(t1) || t1 < apsis_sundials_time(&s))
@@ -101,7 +90,7 @@ int advance(apsis_sundials& s, double t1, bool once) {
       stopped = !observe(s, s.steps + step, t, dt, u);
       return !stopped && !once;
     });
-    return end == evolution_end::stopped && !stopped ? APSIS_OK : status_of(end);
+    return end == evolution_end::stopped && !stopped ? APSIS_OK : c::status_of(end);
   } catch (const numerical_error& failure) {
     throw failure.at(static_cast<long>(s.steps) + s.running->solution.steps() + 1, s.running->solution.t());
   } catch (const c::callback_error& failure) {

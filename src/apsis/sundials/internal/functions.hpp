@@ -40,6 +40,10 @@ struct functions {
   bool try_collision(double t, N_Vector y, N_Vector out);
   /// Returns the result of a time_function; +infinity without one.
   double time_of(apsis_sundials_time_function* function, const char* name, double t, N_Vector y) const;
+
+ private:
+  void evaluate(apsis_sundials_rate_function* rate, const char* name, apsis_sundials_counter counter,
+                double t, N_Vector y, N_Vector out);
 };
 
 /// Whether all elements are finite, up to sums of 1e308.

@@ -70,7 +70,7 @@ class stage_newton {
   double unit_ = 1.0;                      ///< the norm of a correction of size 1
   double noise_ = 1.0;                     ///< the largest size that rounding errors may have
   double known_a_ = -1.0, known_b_ = 1.0;  ///< of the last preconditioner
-  int age_ = 0;                            ///< stages since the last new Jacobian; 0: there is none
+  int age_ = 0;                            ///< stages since the last new Jacobian; 0 before the first
   bool fresh_ = false;                     ///< whether the preconditioner is of the present iterate
 };
 

@@ -13,6 +13,7 @@
 #include <apsis/method/family_registry.hpp>
 #include <apsis/method/method.hpp>
 #include <apsis/method/method_choice.hpp>
+#include <apsis/method/step_law.hpp>
 #include <apsis/method/time_integrator.hpp>
 #include <apsis/model/gas_species.hpp>
 #include <apsis/model/model_registry.hpp>
@@ -124,6 +125,19 @@ json schemes() {
                    {"order", scheme->order()},
                    {"ghost_width", scheme->ghost_width()}});
   }
+  return all;
+}
+
+/// The choices of time.controller.
+json controllers() {
+  json all = json::array();
+  for (const step_law& law : step_laws())
+    all.push_back({{"name", law.name},
+                   {"description", law.title},
+                   {"source", law.citation},
+                   {"beta", law.beta},
+                   {"alpha", law.alpha},
+                   {"default", law.name == usual_step_law}});
   return all;
 }
 
@@ -286,7 +300,7 @@ const std::map<std::string, json (*)()>& lists() {
       {"methods", methods}, {"families", families},     {"multistep", multistep},       {"models", models},
       {"cases", cases},     {"schemes", schemes},       {"formulations", formulations}, {"claims", claims},
       {"keys", keys},       {"boundaries", boundaries}, {"quantities", quantities},     {"gases", gases},
-      {"choices", choices}, {"shapes", shapes}};
+      {"choices", choices}, {"shapes", shapes},         {"controllers", controllers}};
   return all;
 }
 

@@ -35,6 +35,13 @@ def finite(name: str, value: Any, lowest: float = -math.inf, highest: float = ma
     return found
 
 
+def text(name: str, value: Any) -> str:
+    """`value` as a str. Raises InputError unless it is one."""
+    if not isinstance(value, str):
+        raise InputError(f"{name} is a {type(value).__name__} (a name is needed); give one")
+    return value
+
+
 def whole_number(name: str, value: Any) -> int:
     """`value` as an int. Raises InputError unless it is an integer."""
     if isinstance(value, (bool, np.bool_)) or not isinstance(value, (int, np.integer)):

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _core
-from .arguments import number, real_array
+from .arguments import number, real_array, text
 from .errors import CostWarning, InputError, NumericalError
 from .methods import Method, method as find_method
 from .system import System
@@ -25,7 +25,8 @@ def solve_ivp(transport: Function | None, collision: Function | None, t_span: Se
               t_eval: ArrayLike | None = None, dense_output: bool = False, events: Function | Sequence[Function] | None = None,
               args: Sequence[Any] = (), rtol: ArrayLike = 1e-3, atol: ArrayLike = 1e-6, jac: Any = None, jac_sparsity: Any = None,
               vectorized: bool = False, first_step: float | None = None, max_step: float = math.inf, dt: float | None = None,
-              forward_euler_step: Function | None = None, admissible: Function | None = None, solver: str = "dense") -> OptimizeResult:
+              forward_euler_step: Function | None = None, admissible: Function | None = None, solver: str = "dense",
+              controller: str = "predictive") -> OptimizeResult:
     """Solves y' = T(t, y) + Q(t, y), y(t0) = y0, T explicitly and Q implicitly, and returns what SciPy's solve_ivp returns.
 
         scipy.integrate.solve_ivp(f, t_span, y0, method="Radau", jac=J)        becomes
@@ -45,7 +46,8 @@ def solve_ivp(transport: Function | None, collision: Function | None, t_span: Se
         admissible(y)             whether y is allowed, such as positive: no Newton iterate and no step leaves this set
 
     Steps keep the estimated error of every y_i below ``rtol_i |y_i| + atol_i``; both may be arrays. With dt all steps have that length,
-    without error control. first_step and max_step limit the steps. `method` is a name, a file or a Method of one step; "auto"
+    without error control. first_step and max_step limit the steps. `controller` is the law by which the next step follows from the
+    errors of the last ones (`apsis list controllers`), such as "pi" or "pid". `method` is a name, a file or a Method of one step; "auto"
     chooses by the table of `apsis list choices`. jac_sparsity, a matrix of shape (n, n) that is not 0 where ∂Q/∂y may be, and a
     sparse jac choose sparse factorizations; differences then need one call for each group of columns. A constant matrix, or a sparse
     jac at (t0, y0), defines the places itself. solver="krylov" iterates without matrices, for Q that is not stiff.
@@ -66,11 +68,13 @@ def solve_ivp(transport: Function | None, collision: Function | None, t_span: Se
     relative, absolute = _tolerance("rtol", rtol), _tolerance("atol", atol)
     bounded = forward_euler_step is not None or admissible is not None
     integrator, reason = _integrator(method, bounded, None if dt is not None else min(relative) or 1e-12)
+    if dt is not None and controller != "predictive":
+        raise InputError("dt and a controller are given (with dt all steps have that length); remove one of them")
     problem.prepare(span, start, jac, jac_sparsity)
     if np.any(integrator.ddot != 0):
         problem.require_exact(start, integrator.name)
     evolution = _core.Evolution(problem, integrator._core, relative, absolute, *_step_lengths(dt, first_step, max_step, forward_euler_step is not None),
-                                _is_krylov(solver, problem, start.size, integrator), problem.places,
+                                text("controller", controller), _is_krylov(solver, problem, start.size, integrator), problem.places,
                                 [int(np.sign(getattr(e, "direction", 0))) for e in listed], [_endings(e) > 0 for e in listed])
     record = _Record(evolution, wanted, dense_output, span[0], start)
     status, message = _march(evolution, record, span, start, listed)

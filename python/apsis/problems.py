@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _core
-from .arguments import number, real_array, whole_number
+from .arguments import number, real_array, text, whole_number
 from .derivatives import Derivatives
 from .errors import CostWarning, InputError
 from .general import GeneralProblem
@@ -74,7 +74,7 @@ class Solution:
 
 def integrate(problem: RelaxationProblem | GeneralProblem | KineticProblem, u0: ArrayLike, t: Sequence[float] | Array, method: str | Method = "auto", *,
               dt: float | None = None, safety: float = 1.0, startup: str = "none", startup_growth: int = 2, tolerance: float | None = None,
-              threads: int | None = None) -> Solution:
+              controller: str = "predictive", threads: int | None = None) -> Solution:
     """Integrates from u0 at t[0] and returns the states at all times of t.
 
     `method` is a name, a file or a Method. "auto" chooses by the table of `apsis list choices`; the choice and its reason are in the
@@ -85,7 +85,7 @@ def integrate(problem: RelaxationProblem | GeneralProblem | KineticProblem, u0: 
     steps. startup_growth, from 2 to 64, is the ratio of their successive times: with 4 they are half as many as with 2 and less accurate. With a tolerance steps are
     shorter where the estimated error of one, the largest difference to the embedded solution of the method, would be above it; then
     neither dt nor forward_euler_step is needed. Methods without an embedded solution take each step twice, in one piece and in two
-    halves, and compare. `threads` is for problems on a mesh: all processors for large ones where it is not
+    halves, and compare. `controller` is the law by which the next step follows from the errors of the last ones (`apsis list controllers`). `threads` is for problems on a mesh: all processors for large ones where it is not
     given; results do not depend on it.
     Raises InputError, NumericalError with step and t, and exceptions of the functions."""
     if not isinstance(problem, (RelaxationProblem, GeneralProblem, KineticProblem)):
@@ -96,11 +96,13 @@ def integrate(problem: RelaxationProblem | GeneralProblem | KineticProblem, u0: 
     if startup == "none" and startup_growth != 2:
         raise InputError("startup_growth has no meaning without a graded start (it is the ratio of its times); "
                          "give startup = \"graded\" too, or remove it")
+    if tolerance is None and controller != "predictive":
+        raise InputError("controller has no meaning without a tolerance (it follows the estimated errors); give a tolerance too, or remove it")
     chosen, reason = _chosen(problem, dt, startup, tolerance) if _is_auto(method) else (method, "")
     integrator = chosen if isinstance(chosen, Method) else find_method(_name(chosen))
     steps_by = (None if dt is None else number("dt", dt), number("safety", safety, positive=True),
                 whole_number("startup_growth", startup_growth) if startup == "graded" else None,
-                None if tolerance is None else number("tolerance", tolerance))
+                None if tolerance is None else number("tolerance", tolerance), text("controller", controller))
     times_wanted = real_array("t", t).ravel().tolist()
     if isinstance(problem, KineticProblem):
         return Solution(*problem._core.integrate(real_array("u0", u0), times_wanted, integrator._core, *steps_by,

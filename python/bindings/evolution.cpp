@@ -122,6 +122,7 @@ class counted_problem : public newton_problem<transport, timed_field> {
 struct step_lengths {
   std::vector<double> rtol, atol;         ///< one number, or one for each unknown
   std::optional<double> dt, first, most;  ///< dt: of every step, without error control
+  std::string controller;                 ///< name of the step_law
 };
 
 step_rule<double> rule_of(const step_lengths& steps, bool limited) {
@@ -141,7 +142,7 @@ class python_evolution {
     if (!steps.dt) {
       const component_tolerances<double> wanted(steps.rtol, steps.atol);
       problem_.with_tolerances(wanted);
-      tolerance = {1.0, wanted, steps.first};
+      tolerance = {1.0, wanted, steps.first, steps.controller};
     }
     if (places) problem_.with_sparsity(sparsity_pattern(places->first, places->second));
     if (of_.admissible)
@@ -200,11 +201,13 @@ void bind_evolution(py::module_& m) {
       .def(py::init(
                [](const py::object& of, const method& by, std::vector<double> rtol, std::vector<double> atol,
                   std::optional<double> dt, std::optional<double> first, std::optional<double> most,
-                  bool krylov,
+                  std::string controller, bool krylov,
                   const std::optional<std::pair<std::size_t, std::vector<sparsity_pattern::place>>>& places,
                   const std::vector<int>& directions, std::vector<bool> ends) {
                  return std::make_unique<python_evolution>(
-                     of, by, step_lengths{std::move(rtol), std::move(atol), dt, first, most}, krylov, places,
+                     of, by,
+                     step_lengths{std::move(rtol), std::move(atol), dt, first, most, std::move(controller)},
+                     krylov, places,
                      event_functions<state, double>{directions.size(), {}, directions, std::move(ends)});
                }),
            py::keep_alive<1, 3>())

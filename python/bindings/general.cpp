@@ -158,13 +158,13 @@ void bind_general(py::module_& m) {
                                 const std::optional<py::function>& admissible, bool local, bool krylov,
                                 const array& u0, const std::vector<double>& t, const apsis::method& method,
                                 std::optional<double> dt, double safety, std::optional<int> growth,
-                                std::optional<double> tolerance) {
+                                std::optional<double> tolerance, const std::string& controller) {
     return integrate_general(
         {callback(collision, "collision"), callback(product, "the derivative of collision"),
          callback(curvature, "the second derivative of collision"), optional_callback(transport, "transport"),
          optional_callback(forward_euler_step, "forward_euler_step"),
          optional_callback(admissible, "admissible")},
-        local, krylov, u0, t, method, {dt, safety, growth, tolerance});
+        local, krylov, u0, t, method, {dt, safety, growth, tolerance, controller});
   });
 }
 

@@ -92,19 +92,20 @@ result integrate_python(const functions& of, double epsilon, const array& u0, co
 }  // namespace
 
 void bind_integrate(py::module_& m) {
-  m.def("integrate", [](const py::function& transport, const py::function& moments,
-                        const py::function& equilibrium, const py::function& rate,
-                        const std::optional<py::function>& forward_euler_step,
-                        const std::optional<py::function>& admissible, double epsilon, const array& u0,
-                        const std::vector<double>& t, const apsis::method& method, std::optional<double> dt,
-                        double safety, std::optional<int> growth, std::optional<double> tolerance) {
-    auto [times, states, steps, rejected] = integrate_python(
-        {callback(transport, "transport"), callback(moments, "moments"), callback(equilibrium, "equilibrium"),
-         callback(rate, "rate"), optional_callback(forward_euler_step, "forward_euler_step"),
-         optional_callback(admissible, "admissible")},
-        epsilon, u0, t, method, {dt, safety, growth, tolerance});
-    return py::make_tuple(times, states, steps, rejected);
-  });
+  m.def("integrate",
+        [](const py::function& transport, const py::function& moments, const py::function& equilibrium,
+           const py::function& rate, const std::optional<py::function>& forward_euler_step,
+           const std::optional<py::function>& admissible, double epsilon, const array& u0,
+           const std::vector<double>& t, const apsis::method& method, std::optional<double> dt, double safety,
+           std::optional<int> growth, std::optional<double> tolerance, const std::string& controller) {
+          auto [times, states, steps, rejected] =
+              integrate_python({callback(transport, "transport"), callback(moments, "moments"),
+                                callback(equilibrium, "equilibrium"), callback(rate, "rate"),
+                                optional_callback(forward_euler_step, "forward_euler_step"),
+                                optional_callback(admissible, "admissible")},
+                               epsilon, u0, t, method, {dt, safety, growth, tolerance, controller});
+          return py::make_tuple(times, states, steps, rejected);
+        });
 }
 
 }  // namespace apsis::python

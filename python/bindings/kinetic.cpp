@@ -418,8 +418,8 @@ void bind_kinetic(py::module_& m) {
       .def("integrate",
            [](kinetic_problem& problem, const array& u0, const std::vector<double>& t,
               const apsis::method& by, std::optional<double> dt, double safety, std::optional<int> growth,
-              std::optional<double> tolerance, std::optional<int> threads) {
-             return problem.integrate(u0, t, by, {dt, safety, growth, tolerance}, threads);
+              std::optional<double> tolerance, const std::string& controller, std::optional<int> threads) {
+             return problem.integrate(u0, t, by, {dt, safety, growth, tolerance, controller}, threads);
            });
 }
 

@@ -8,6 +8,7 @@
 #include <apsis/integrate/integrate.hpp>
 #include <apsis/integrate/rate_loss.hpp>
 #include <apsis/method/method_choice.hpp>
+#include <apsis/method/step_law.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -19,10 +20,11 @@ namespace apsis::python {
 
 /// How long steps are: dt or safety · r · Δt_FE, and shorter where the estimated error asks for it.
 struct step_choice {
-  std::optional<double> dt;         ///< dt, where it is given
-  double safety = 1.0;              ///< factor of r Δt_FE without dt
-  std::optional<int> growth;        ///< ratio of the times of a graded start; none: no graded start
-  std::optional<double> tolerance;  ///< of the estimated error of a step
+  std::optional<double> dt;                ///< dt, where it is given
+  double safety = 1.0;                     ///< factor of r Δt_FE without dt
+  std::optional<int> growth;               ///< ratio of the times of a graded start; none: no graded start
+  std::optional<double> tolerance;         ///< of the estimated error of a step
+  std::string controller{usual_step_law};  ///< with a tolerance: name of the step_law
 };
 
 /// Numbers of steps of an integration through several times.
@@ -97,7 +99,8 @@ step_count march_through(Problem& problem, typename Problem::state& u, const std
                     : limited ? step_rule<double>::ssp(choice.safety)
                               : step_rule<double>::unlimited();
   std::optional<step_controller<double>> control;
-  if (choice.tolerance) control.emplace(*choice.tolerance, estimate_of(m).order);
+  if (choice.tolerance)
+    control.emplace(*choice.tolerance, estimate_of(m).order, find_step_law(choice.controller));
   const auto observe = [&check](long, double, double, const auto&) { check(); };
   // Equal steps alone: with a tolerance the estimated error shortens them.
   const bool watched = choice.dt && !choice.tolerance && !collides_exactly(problem);

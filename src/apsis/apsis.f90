@@ -301,6 +301,11 @@ module apsis
       real(c_double), value :: relative
       real(c_double), intent(in) :: absolute(*)
     end function
+    integer(c_int) function apsis_set_controller(integrator, name) bind(c)
+      import :: c_char, c_int, c_ptr
+      type(c_ptr), value :: integrator
+      character(kind=c_char), intent(in) :: name(*)
+    end function
     integer(c_int) function apsis_set_graded_start(integrator, growth) bind(c)
       import :: c_int, c_ptr
       type(c_ptr), value :: integrator

@@ -220,6 +220,10 @@ int apsis_set_safety(apsis_integrator* integrator, double safety);
 int apsis_set_tolerance(apsis_integrator* integrator, double relative, double absolute);
 /// The same with an absolute tolerance of each unknown, n positive numbers, which are copied.
 int apsis_set_tolerances(apsis_integrator* integrator, double relative, const double* absolute);
+/// Sets the law by which, with a tolerance, the next step follows from the errors of the last ones: a name of
+/// `apsis list controllers`, such as "pi" or "pid", initially "predictive". Error: APSIS_INPUT_ERROR with the
+/// nearest name.
+int apsis_set_controller(apsis_integrator* integrator, const char* name);
 /// Divides the first step after apsis_start() into graded steps that resolve the initial layer, for data out
 /// of equilibrium (docs/plateaus.md). `growth`, from 2 to 64, is the ratio of their successive times; 0
 /// removes them. Needs a relaxation time.

@@ -136,6 +136,9 @@ int apsis_sundials_set_tolerance(apsis_sundials* integrator, sunrealtype relativ
 /// The same with an absolute tolerance of each unknown, positive numbers, which are copied:
 /// ARKStepSVtolerances.
 int apsis_sundials_set_tolerances(apsis_sundials* integrator, sunrealtype relative, N_Vector absolute);
+/// Sets the law by which, with a tolerance, the next step follows from the errors of the last ones, as
+/// apsis_set_controller(): ARKStepSetAdaptivityMethod.
+int apsis_sundials_set_controller(apsis_sundials* integrator, const char* name);
 /// Requires y_i ≥ 0, > 0, ≤ 0 or < 0 where the constraint is 1, 2, −1 or −2, and nothing where it is 0, as
 /// ARKODE does. The vector is copied; NULL removes it. Newton's method does not leave these states. A stage
 /// outside them ends the step with an error; a step to a tolerance is shortened until its stages and its

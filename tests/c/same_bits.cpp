@@ -162,6 +162,24 @@ TEST(c_same_bits, of_steps_within_a_tolerance) {
   }
 }
 
+TEST(c_same_bits, of_every_law_of_step_control) {
+  ode data{1e-3};
+  const auto& m = apsis::find_method("md-imex-6-3");
+  for (const auto& law : apsis::step_laws()) {
+    auto problem = relaxation(data.epsilon);
+    apsis::stepper march(m, problem, apsis::solutions::result_and_embedded);
+    apsis::step_controller<double> control(1.0, apsis::estimate_of(m).order, law);
+    state expected{2, 0};
+    apsis::integrate_to_tolerance(march, expected, 0.0, 1.0, rule::unlimited(), control, weighted);
+    const auto s = of_ode("md-imex-6-3", data);
+    apsis_set_relaxation_time(s.get(), relaxation_time);
+    apsis_set_tolerance(s.get(), 1e-6, 1e-9);
+    EXPECT_EQ(apsis_set_controller(s.get(), law.name.c_str()), APSIS_OK);
+    EXPECT_EQ(apsis_integrate(s.get(), 1), APSIS_OK) << apsis_error_message();
+    EXPECT_EQ(state_of(s), expected) << law.name;
+  }
+}
+
 TEST(c_same_bits, of_stages_by_newtons_method) {
   general g{1e4};
   for (const char* name : {"md-imex-6-3", "imdrk-3-3", "ars-443", "ssprk-3-3"}) {

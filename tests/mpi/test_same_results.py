@@ -304,7 +304,7 @@ class SameResults(Folder):
 
     def test_steps_to_a_tolerance(self):
         self.expect_same("paper/bgk-mixed", "space.cells=24", "velocity.points=40", "time.end=0.05", "time.method=md-imex-8-3-mixed",
-                         "time.tolerance=1e-4", "time.startup=graded", counts=(3,))
+                         "time.tolerance=1e-4", "time.startup=graded", "time.controller=pid", counts=(3,))
 
     def test_doubled_steps_to_a_tolerance(self):
         self.expect_same("paper/bgk-mixed", "space.cells=24", "velocity.points=40", "time.end=0.02", "time.method=ars-443",

@@ -232,6 +232,20 @@ def test_a_tolerance_needs_no_step():
     assert apsis.integrate(ode(1e-3), [2.0, 0.0], (0, 1), "md-imex-8-3-mixed", tolerance=1e-3, startup="graded").steps > 10
 
 
+def test_every_law_of_step_control_keeps_the_tolerance():
+    exact = apsis.integrate(ode(1e-2), [2.0, np.sin(2.0)], (0, 1), "md-imex-14-4-accurate", dt=1 / 2048).u[-1]
+    found = {law: apsis.integrate(ode(1e-2), [2.0, np.sin(2.0)], (0, 1), "md-imex-8-3-mixed", tolerance=1e-5, controller=law)
+             for law in ("predictive", "integral", "pi", "pid", "h211b", "h312pid")}
+    # The tables of docs/methods.md have errors of up to 32 tolerances.
+    assert all(np.abs(one.u[-1] - exact).max() < 32e-5 for one in found.values())
+    assert len({one.u[-1].tobytes() for one in found.values()}) == len(found)
+    assert found["predictive"] == apsis.integrate(ode(1e-2), [2.0, np.sin(2.0)], (0, 1), "md-imex-8-3-mixed", tolerance=1e-5)
+    with pytest.raises(apsis.InputError, match="unknown controller 'pdi' .*'pid'"):
+        apsis.integrate(ode(1e-2), [2.0, 0.0], (0, 1), tolerance=1e-5, controller="pdi")
+    with pytest.raises(apsis.InputError, match="controller has no meaning without a tolerance"):
+        apsis.integrate(ode(1e-2), [2.0, 0.0], (0, 1), dt=0.1, controller="pi")
+
+
 def test_a_graded_start_takes_fewer_steps_with_a_larger_growth():
     def steps(growth):
         return apsis.integrate(ode(1e-4), [2.0, 0.0], (0, 1), "extrapolated-euler-7", dt=0.25, startup="graded",

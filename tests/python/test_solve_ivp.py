@@ -224,6 +224,15 @@ def test_first_and_longest_steps():
     assert lengths[0] <= 1e-3 * (1 + 1e-12) and lengths.max() <= 0.25 * (1 + 1e-12)
 
 
+def test_laws_of_step_control_avoid_rejections_at_the_limit_of_stability():
+    def solved(law):
+        return apsis.solve_ivp(lambda t, y: -300 * (y - np.cos(t)) - np.sin(t), None, (0, 10), [1.0], method="dop853", rtol=1e-6, atol=1e-5,
+                               controller=law)
+
+    by_last_error, pid = solved("integral"), solved("pid")
+    assert 2 * pid.rejected < by_last_error.rejected and abs(pid.y[0, -1] - np.cos(10)) < 1e-4
+
+
 def test_strong_stability_limits_steps():
     """A solute enters a column and is adsorbed at a high rate: a and b in turns. Its front is half as fast as the liquid."""
     cells = 50
@@ -261,6 +270,9 @@ REFUSED = [
     (dict(rtol=0, atol=0), "unknown 0 has no tolerance"),
     (dict(atol=[1, 2]), "2 tolerances and 1 unknowns"),
     (dict(dt=0.1, max_step=0.1), "dt and first_step or max_step are given"),
+    (dict(controller="pdi"), "unknown controller 'pdi'"),
+    (dict(controller=3), "controller is a int"),
+    (dict(controller="pi", dt=0.1), "dt and a controller are given"),
     (dict(dt=0.0), "dt = 0 is not a positive number"),
     (dict(max_step=0.1, forward_euler_step=lambda t, y: 1), "forward_euler_step and dt or max_step are given"),
     (dict(method="Radau"), "unknown method 'Radau'"),

@@ -126,7 +126,9 @@ INSTANTIATE_TEST_SUITE_P(models, restart, testing::ValuesIn([] {
 
 TEST(restart_from, a_graded_start_or_a_tolerance_continues_bit_for_bit_from_every_step) {
   const test_folder folder;
-  for (const std::string more : {"startup = \"graded\"\n", "tolerance = 1e-4\n"}) {
+  for (const std::string more :
+       {"startup = \"graded\"\n", "tolerance = 1e-4\n", "tolerance = 1e-4\ncontroller = \"pid\"\n",
+        "tolerance = 1e-4\ncontroller = \"h211b\"\n"}) {
     const auto c = parse_case(small_case(find_model("ode"), "md-imex-8-3", more), "case");
     const auto whole = run(c, folder / "whole", 1000);
     const auto steps = static_cast<long>(whole.history.rows.size()) - 1;

@@ -80,6 +80,7 @@ TEST(sundials_refusals, state_their_reason) {
        {[&] { rethrow(apsis_sundials_set_tolerances(s.get(), 1.0, serial({1, 0}).get())); },
         {"an absolute tolerance is not positive"}},
        {[&] { rethrow(apsis_sundials_set_constraints(s.get(), serial({3, 0}).get())); }, {"constraint"}},
+       {[&] { rethrow(apsis_sundials_set_controller(s.get(), "pdi")); }, {"unknown controller 'pdi'"}},
        {[&] { rethrow(apsis_sundials_set_graded_start(s.get(), 1)); }, {"growth", "from 2 to 64"}},
        {[&] { rethrow(apsis_sundials_set_events(s.get(), 1, nullptr, nullptr, nullptr)); },
         {"function of events"}},

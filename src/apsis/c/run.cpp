@@ -129,7 +129,8 @@ std::unique_ptr<any_run> make_run(const time_integrator& m, callbacks& of, const
   std::optional<step_tolerance<numbers, double>> tolerance;
   if (!limits.absolute.empty())
     tolerance = {1.0,
-                 [limits](const numbers& a, const numbers& b) { return weighted_difference(limits, a, b); }};
+                 [limits](const numbers& a, const numbers& b) { return weighted_difference(limits, a, b); },
+                 std::nullopt, limits.controller};
   const bool by_newton = has_derivatives(of) && !m.needs.exact_collision;
   if (by_newton && of.relaxation_time != nullptr)
     throw input_error(

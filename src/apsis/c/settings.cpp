@@ -5,6 +5,7 @@
 #include <apsis/apsis.h>
 #include <apsis/core/graded_start.hpp>
 #include <apsis/integrate/evolution.hpp>
+#include <apsis/method/step_law.hpp>
 
 #include <cmath>
 #include <utility>
@@ -152,6 +153,12 @@ int apsis_set_tolerances(apsis_integrator* integrator, double relative, const do
   return set(integrator, [=](auto& s) {
     const double* all = &require(absolute, "the list of absolute tolerances");
     set_tolerances(s, relative, numbers(all, all + s.n));
+  });
+}
+
+int apsis_set_controller(apsis_integrator* integrator, const char* name) {
+  return set(integrator, [=](auto& s) {
+    s.limits.controller = apsis::find_step_law(&require(name, "the name of the controller")).name;
   });
 }
 

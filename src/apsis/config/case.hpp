@@ -9,6 +9,7 @@
 #include <apsis/config/surface_tables.hpp>
 #include <apsis/core/errors.hpp>
 #include <apsis/core/graded_start.hpp>
+#include <apsis/method/step_law.hpp>
 #include <apsis/model/expression.hpp>
 #include <apsis/model/gas_scales.hpp>
 #include <apsis/model/model.hpp>
@@ -94,9 +95,10 @@ struct case_config {
     double end = 0.0;
     std::optional<double> dt, cfl, safety;  ///< exactly one is set
     startup_choice startup = startup_choice::none;
-    int startup_growth = default_growth;  ///< ratio of the times of a graded start
-    std::optional<double> tolerance;      ///< of a step; dt, cfl or safety then says how long one may be
-    std::optional<double> steady;         ///< change of the state per time at which the run ends
+    int startup_growth = default_growth;     ///< ratio of the times of a graded start
+    std::optional<double> tolerance;         ///< of a step; dt, cfl or safety then says how long one may be
+    std::string controller{usual_step_law};  ///< with a tolerance: the step_law
+    std::optional<double> steady;            ///< change of the state per time at which the run ends
   } time;
   /// Table [steady]: the run finds the steady state in place of marching. Iterations then count as time: the
   /// table [time] of the case is not used, and time.end is `iterations`, time.dt 1.

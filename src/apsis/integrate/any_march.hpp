@@ -5,11 +5,13 @@
 #include <apsis/integrate/error_control.hpp>
 #include <apsis/integrate/integrate.hpp>
 #include <apsis/integrate/step_estimate.hpp>
+#include <apsis/method/step_law.hpp>
 #include <apsis/method/time_integrator.hpp>
 
 #include <functional>
 #include <memory>
 #include <optional>
+#include <string>
 #include <utility>
 
 namespace apsis {
@@ -21,6 +23,7 @@ struct step_tolerance {
   /// Returns a norm of u − v, which may be relative to u.
   std::function<Real(const State& u, const State& v)> distance;
   std::optional<Real> first_step{};  ///< longest first step; without it first_step_length() alone sets it
+  std::string controller{usual_step_law};  ///< name of the step_law
 };
 
 /// Integrates over intervals by a method of any kind, like integrate() and integrate_to_tolerance().
@@ -52,7 +55,7 @@ class independent_march final : public any_march<State, Real> {
   independent_march(March march, const std::optional<tolerance>& tolerated, int order)
       : march_(std::move(march)), tolerated_(tolerated) {
     if (!tolerated) return;
-    control_.emplace(tolerated->tolerance, order);
+    control_.emplace(tolerated->tolerance, order, find_step_law(tolerated->controller));
     if (tolerated->first_step) control_->start_with(*tolerated->first_step);
   }
 

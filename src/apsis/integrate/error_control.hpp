@@ -2,6 +2,7 @@
 
 #include <apsis/integrate/error_estimate.hpp>
 #include <apsis/integrate/integrate.hpp>
+#include <apsis/method/step_law.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -13,12 +14,10 @@ namespace apsis {
 
 /// Step-size controller: keeps the estimated error err of a step below a tolerance. A step is rejected if err
 /// > tol. L_n = Δt_n (tol/err_n)^{1/k} is the longest step that would have been accepted; the next step is
-///   Δt = 0.9 L_n                                    after a rejected step,
-///   Δt = 0.9 L_n min(1, L_n/L_{n−1})                after an accepted one,
-/// between 0.2 times and twice the last one, and not longer right after a rejection. err ~ Δt^k: k is the
-/// order of the embedded solution plus one. This is Gustafsson's predictive controller (ACM Trans. Math.
-/// Softw. 20 (1994) 496–517; Hairer, Wanner, Solving Ordinary Differential Equations II, section IV.8): a
-/// decrease of L, as where steps approach ε, is expected to continue, an increase, as after a layer, is not.
+/// 0.9 L_n after a rejected step, and that of a step_law after an accepted one, between 0.2 times and twice
+/// the last one, and not longer right after a rejection. err ~ Δt^k: k is the order of the embedded solution
+/// plus one. The usual law is Gustafsson's predictive controller: with it a decrease of L, as where steps
+/// approach ε, is expected to continue, an increase, as after a layer, is not.
 template <class Real>
 class step_controller {
  public:
@@ -26,6 +25,8 @@ class step_controller {
   struct progress {
     Real proposed = std::numeric_limits<Real>::infinity();  ///< proposed length of the next step
     Real longest = Real(0);                                 ///< L_n of the last accepted step; 0 if none
+    Real length = Real(0);                                  ///< its Δt_n
+    Real earlier = Real(1);                                 ///< ℓ of the accepted step before it
     bool after_rejection = false;                           ///< whether the last step was rejected
     long rejected = 0;                                      ///< number of rejected steps
 
@@ -34,6 +35,8 @@ class step_controller {
     static void visit_members(Self& self, Visitor&& visit) {
       visit("proposed", self.proposed);
       visit("longest", self.longest);
+      visit("length", self.length);
+      visit("earlier", self.earlier);
       visit("after_rejection", self.after_rejection);
       visit("rejected", self.rejected);
     }
@@ -41,7 +44,8 @@ class step_controller {
 
   /// `tolerance` has the unit of the errors, `order` is that of the embedded solution, k − 1. Throws
   /// input_error unless the tolerance is positive and finite.
-  step_controller(Real tolerance, int order) : tolerance_(tolerance), order_(order) {
+  step_controller(Real tolerance, int order, step_law law = find_step_law(std::string(usual_step_law)))
+      : tolerance_(tolerance), order_(order), law_(std::move(law)) {
     if (!(tolerance > Real(0)) || !(tolerance < std::numeric_limits<Real>::infinity()))
       throw input_error(
           "the tolerance is not a positive number (errors are compared with it); give one above 0");
@@ -64,10 +68,11 @@ class step_controller {
     const bool good = ratio <= Real(1);
     if (good) {
       const Real longest = dt * pow(std::max(ratio, Real(1e-4)), Real(-1) / k);  // finite for err = 0
-      const Real trend = now_.longest > Real(0) ? std::min(longest / now_.longest, Real(1)) : Real(1);
       const Real most = now_.after_rejection ? Real(1) : Real(2);
-      now_.proposed = std::clamp(Real(0.9) * longest * trend, Real(0.2) * dt, most * dt);
+      now_.proposed = std::clamp(by_law(dt, longest), Real(0.2) * dt, most * dt);
+      now_.earlier = factor_before();
       now_.longest = longest;
+      now_.length = dt;
     } else {
       const bool is_number = ratio < std::numeric_limits<Real>::infinity();
       const Real factor = is_number ? Real(0.9) * pow(ratio, Real(-1) / k) : Real(0);
@@ -82,8 +87,26 @@ class step_controller {
   void resume(const progress& saved) { now_ = saved; }  ///< restores the state of an earlier run
 
  private:
+  /// ℓ of the last accepted step; 1 before the first.
+  Real factor_before() const {
+    return now_.longest > Real(0) ? Real(0.9) * now_.longest / now_.length : Real(1);
+  }
+  /// Returns Δt_{n+1} of the law, of the accepted step n with this L_n.
+  Real by_law(Real dt, Real longest) const {
+    using std::pow;
+    const bool first = !(now_.longest > Real(0));
+    if (law_.predictive) {
+      const Real trend = first ? Real(1) : std::min(longest / now_.longest, Real(1));
+      return Real(0.9) * longest * trend;
+    }
+    const Real factor = Real(0.9) * longest / dt, quotient = first ? Real(1) : dt / now_.length;
+    return dt * pow(factor, Real(law_.beta[0])) * pow(factor_before(), Real(law_.beta[1])) *
+           pow(now_.earlier, Real(law_.beta[2])) * pow(quotient, Real(-law_.alpha));
+  }
+
   Real tolerance_;
   int order_;
+  step_law law_;
   progress now_;
 };
 

@@ -86,11 +86,9 @@ concept problem_with_joint_evaluation =
       p.add_transport_and_collision(x, u, targets);
     };
 
-/// A problem that reports whether it solves collisions exactly, as methods with exact
-/// collisions need:
-///   collides_exactly()   whether solve_collision(t, s, 0, u) is u ← exp(sQ) u, the solution after a time s
-///   of
-///                        v' = Q(v), v(0) = u, instead of an implicit stage
+/// A problem that reports whether it solves collisions exactly, as methods with exact collisions need:
+///   collides_exactly()   whether solve_collision(t, s, 0, u) is u ← exp(sQ) u instead of an implicit stage:
+///                        the solution after a time s of v' = Q(v), v(0) = u
 template <class P>
 concept problem_with_exact_collision = problem<P> && requires(const P p) {
   { p.collides_exactly() } -> std::convertible_to<bool>;

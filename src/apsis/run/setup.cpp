@@ -15,6 +15,7 @@
 #include <apsis/exec/interruption.hpp>
 #include <apsis/mesh/cut_cells.hpp>
 #include <apsis/mesh/on_host.hpp>
+#include <apsis/method/step_law.hpp>
 #include <apsis/model/expression.hpp>
 #include <apsis/run/cfl_limit.hpp>
 #include <apsis/run/initial_file.hpp>
@@ -207,7 +208,13 @@ void run_setup::check_startup() const {
 }
 
 void run_setup::check_tolerance() const {
-  if (!has_tolerance()) return;
+  if (!has_tolerance()) {
+    if (config_.time.controller != usual_step_law)
+      refuse(config_, "time.controller",
+             "time.controller has no meaning without a tolerance (it follows the estimated errors); give "
+             "time.tolerance too, or remove it");
+    return;
+  }
   if (integrator_->needs.equal_steps)
     refuse(
         config_, "time.tolerance",

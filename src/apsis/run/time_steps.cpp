@@ -3,6 +3,7 @@
 #include <apsis/config/method_of_case.hpp>
 #include <apsis/core/errors.hpp>
 #include <apsis/core/log.hpp>
+#include <apsis/method/step_law.hpp>
 #include <apsis/run/promises.hpp>
 #include <apsis/run/ray_warning.hpp>
 #include <apsis/run/state_distance.hpp>
@@ -34,7 +35,8 @@ time_steps::time_steps(running_case& run)
       losses_(run.setup, *run.problem) {
   if (run.setup.has_tolerance()) {
     const auto& of_one_step = *integrator_->one_step();  // others were refused by the setup
-    control_.emplace(*run.config.time.tolerance, estimate_of(run.setup.integrator().starter()).order);
+    control_.emplace(*run.config.time.tolerance, estimate_of(run.setup.integrator().starter()).order,
+                     find_step_law(run.config.time.controller));
     estimate_.emplace(of_one_step.weight_of_estimate(), of_one_step.resolves_collisions());
   }
   limit_for_steps();

@@ -91,6 +91,7 @@ std::optional<step_tolerance<nvector, double>> tolerance_of(const apsis_sundials
         return N_VWrmsNorm(difference->get(), weights->get());
       }};
   if (s.steps == 0) made.first_step = s.limits.first_step;
+  made.controller = s.limits.controller;
   return made;
 }
 

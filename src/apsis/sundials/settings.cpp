@@ -3,6 +3,7 @@
 #include <apsis/c/internal/guarded.hpp>
 #include <apsis/core/errors.hpp>
 #include <apsis/core/graded_start.hpp>
+#include <apsis/method/step_law.hpp>
 
 #include <cmath>
 #include <utility>
@@ -175,6 +176,12 @@ int apsis_sundials_set_tolerances(apsis_sundials* integrator, sunrealtype relati
           "an absolute tolerance is not positive and finite (every unknown needs one); give such numbers");
     s.accuracy.relative = relative;
     s.accuracy.absolute.swap(all);
+  });
+}
+
+int apsis_sundials_set_controller(apsis_sundials* integrator, const char* name) {
+  return set(integrator, [=](auto& s) {
+    s.limits.controller = apsis::find_step_law(&apsis::c::require(name, "the name of the controller")).name;
   });
 }
 

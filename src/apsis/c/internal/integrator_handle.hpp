@@ -4,6 +4,7 @@
 
 #include <apsis/apsis.h>
 #include <apsis/integrate/events.hpp>
+#include <apsis/method/step_law.hpp>
 #include <apsis/method/time_integrator.hpp>
 
 #include <atomic>
@@ -12,6 +13,7 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 namespace apsis::c {
@@ -24,6 +26,7 @@ struct step_limits {
   double safety = 1.0, relative = 0.0;
   numbers absolute;  ///< of each unknown; empty without a tolerance
   int growth = 0;    ///< of a graded start; 0 without
+  std::string controller{usual_step_law};
 };
 
 /// Events, and times at which steps end.

@@ -3,6 +3,7 @@
 #include <apsis/method/method.hpp>
 #include <apsis/method/method_choice.hpp>
 #include <apsis/method/method_file.hpp>
+#include <apsis/method/step_law.hpp>
 #include <apsis/method/time_integrator.hpp>
 
 namespace apsis {
@@ -84,6 +85,10 @@ std::vector<case_key> time_keys() {
                   "the initial layer. Methods without an embedded solution (apsis list methods) compare "
                   "two steps "
                   "of half the length with one instead, and continue with the two."}),
+      key("time.controller", [](auto& c) -> auto& { return c.time.controller; },
+          {.choices = [](const case_config&) { return step_law_names(); },
+           .doc = "With a tolerance: the law by which the next step follows from the errors of the last ones "
+                  "(apsis list controllers)."}),
       key("time.steady", [](auto& c) -> auto& { return c.time.steady; },
           {.dimension = dimensions::none / dimensions::time,
            .lowest = 0.0,

@@ -5,6 +5,7 @@
 
 #include <apsis/apsis_sundials.h>
 #include <apsis/integrate/evolution.hpp>
+#include <apsis/method/step_law.hpp>
 #include <apsis/method/time_integrator.hpp>
 
 #include <atomic>
@@ -12,6 +13,7 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 namespace apsis::sundials {
@@ -21,6 +23,7 @@ struct step_limits {
   std::optional<double> dt, first_step;
   double safety = 1.0;
   int growth = 0;  ///< of a graded start; 0 without
+  std::string controller{usual_step_law};
 };
 
 /// Events, and times at which steps end.

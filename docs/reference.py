@@ -7,7 +7,10 @@ import textwrap
 from pathlib import Path
 
 SHOWN = 4  # stages up to which the coefficients of a method fit on a page
-KINDS = {"imex": "With transport and collisions", "implicit": "Collisions alone", "explicit": "Explicit", "exponential": "Exponential"}
+GROUPS = {"With transport and collisions, bounds preserved": lambda m: m["kind"] == "imex" and m["ssp_coefficient"] != 0,
+          "With transport and collisions, no bounds": lambda m: m["kind"] == "imex" and m["ssp_coefficient"] == 0,
+          "Collisions alone": lambda m: m["kind"] == "implicit", "Explicit": lambda m: m["kind"] == "explicit",
+          "Exponential": lambda m: m["kind"] == "exponential"}
 TERMS = {"all": "exact in steps far longer than ε: viscosity, deviation from equilibrium, initial layer",
          "slow": "exact in steps far longer than ε: viscosity and deviation from equilibrium; an initial layer needs a graded start",
          "none": "not exact: errors may stall at a multiple of ε"}
@@ -70,8 +73,8 @@ def methods(program: Program) -> str:
     text = ("# Methods\n\nAll methods of the catalogue, as `apsis list methods` certifies them; each has a page. *r* is the SSP coefficient: a "
             "step preserves what forward Euler preserves for Δt ≤ r Δt_FE, for every ε. n_F counts evaluations of the transport "
             "per step. [Methods](../methods.md) and [the study](../study.md) define the columns.\n\n")
-    for kind, title in KINDS.items():
-        chosen = [m for m in all_methods if m["kind"] == kind]
+    for title, belongs in GROUPS.items():
+        chosen = [m for m in all_methods if belongs(m)]
         text += f"**{title}**\n\n" + table(
             ["method", "order", "stages", "n_F", "r", "error constant", "recommended for"],
             [[f"[{m['name']}](methods/{m['name']}.md)", m["order"], m["stages"], m["explicit_evaluations"], coefficient(m),

@@ -37,6 +37,11 @@ def table(text, *head):
     return next(rows for first, rows in tables(text) if first[:len(head)] == list(head))
 
 
+def joined_tables(text, *head):
+    """Returns the rows of all tables with this head, in their order."""
+    return [row for first, rows in tables(text) if first[:len(head)] == list(head) for row in rows]
+
+
 def method_problems(rows, methods, members):
     """Returns where rows of the table of methods differ from the certificates; `members` returns members of a family with their S."""
     problems = []
@@ -78,7 +83,7 @@ def method_problems(rows, methods, members):
 class Methods(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        cls.rows = table(METHODS, "name", "order", "of")
+        cls.rows = joined_tables(METHODS, "name", "order", "of")
         cls.methods = {m["name"]: m for m in json.loads(apsis("list", "methods", "--json"))}
         cls.families = {f["name"]: f for f in json.loads(apsis("list", "families", "--json"))}
 

@@ -66,16 +66,18 @@ void set_initial_method(design_task& task, const design_options& given) {
 }
 
 void check_two_steps(const design_task& task, const design_options& given) {
-  const auto refuse = [](const std::string& what, const std::string& why) {
+  const auto refuse = [](const std::string& what, const std::string& why,
+                         const std::string& advice = "change it") {
     throw input_error(
-        fmt::format("command line: {} cannot be combined with --steps 2 ({}); change it", what, why));
+        fmt::format("command line: {} cannot be combined with --steps 2 ({}); {}", what, why, advice));
   };
   if (given.implicit) refuse("--implicit", "two-step methods are IMEX methods");
   if (task.demands.regime == regime_demand::all)
-    refuse("--regime all", "the layer belongs to the first steps, which a method of one step takes: slow");
-  if (given.demands.least_angle > 0.0) refuse("--angle", "it is implemented for methods of one step");
+    refuse("--regime all", "the initial layer lies in the first steps, which a one-step method takes",
+           "use --regime slow");
+  if (given.demands.least_angle > 0.0) refuse("--angle", "it is implemented for one-step methods only");
   if (task.from && task.from->stages() > task.stages)
-    refuse("fewer --stages than --from has", "stages are removed from methods of one step only");
+    refuse("fewer --stages than --from has", "stages are removed from one-step methods only");
 }
 
 }  // namespace

@@ -86,12 +86,12 @@ int sweep(const options& given) {
 }
 
 constexpr const char* description =
-    "Finds the steady states of a case for many values of a key, each from the one before.\n\n"
+    "Finds the steady states of a case for many values of a key, each starting from the previous one.\n\n"
     "  apsis sweep gas/couette --vary delta=0.01..100\n"
     "  apsis sweep gas/cavity --vary U=0.1,0.2,0.5 parameters.delta=10 --out results/lid\n\n"
     "A range a..b has --points values, in constant ratios where it is wide. A key without a dot is one of "
-    "the table [parameters]. A state that is not found from the one before is sought from the initial data; "
-    "if it is not found either, its row has a message, and the exit code is 3.";
+    "the table [parameters]. Where the iteration from the previous state fails, another one starts from the "
+    "initial data. If that fails too, the row has a message, and the exit code is 3.";
 
 action define(CLI::App& command) {
   auto given = std::make_shared<options>();

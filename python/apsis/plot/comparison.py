@@ -84,12 +84,12 @@ def cells_of(run: RunResult) -> int:
 
 
 def finest_of(runs: Runs) -> int:
-    """Index of the run with most cells, the last of several."""
+    """Returns the index of the run with most cells, the last one of several."""
     return max(range(len(runs)), key=lambda k: (cells_of(runs[k][1]), k))
 
 
 def averaged(values: Array, shape: tuple[int, ...]) -> Array | None:
-    """Means over blocks of cells, as many as a coarser mesh has; None if they do not match."""
+    """Returns means over blocks of cells, one for each cell of a coarser mesh with this shape; None if the shapes do not match."""
     if values.ndim != len(shape) or any(fine % coarse != 0 for fine, coarse in zip(values.shape, shape)):
         return None
     blocks = [number for fine, coarse in zip(values.shape, shape) for number in (coarse, fine // coarse)]
@@ -97,8 +97,8 @@ def averaged(values: Array, shape: tuple[int, ...]) -> Array | None:
 
 
 def differences(runs: Runs) -> list[str]:
-    """Returns the largest differences of every run to the finest run, the last one with most cells; its values are averaged onto
-    the coarser cells. Cells in a solid box of either have none."""
+    """Returns the largest differences between every run and the finest one, whose values are averaged over the coarser cells. Cells
+    in a solid box of either run are omitted."""
     finest = finest_of(runs)
     label_of_finest, fine = runs[finest]
     found = []

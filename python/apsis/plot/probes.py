@@ -18,18 +18,18 @@ def fields_of(probe: Probe) -> list[str]:
 
 
 def instants(probe: Probe) -> Array:
-    """Times of the rows of a probe; a single one without snapshots."""
+    """Returns the times of the rows of a probe; zeros without snapshots."""
     return np.asarray(probe.get("t", np.zeros(len(probe["s"]))))
 
 
 def ends(probe: Probe) -> str:
-    """Its first and last point, "from (0, 0.5) to (1, 0.5)"."""
+    """Returns the first and last point of a probe as text, "from (0, 0.5) to (1, 0.5)"."""
     points = [", ".join(f"{float(probe[axis][k]) + 0.0:.4g}" for axis in AXES if axis in probe) for k in (0, -1)]
     return f"from ({points[0]}) to ({points[1]})"
 
 
 def probe_figures(result: RunResult, title: str) -> Iterator[tuple[str, Any]]:
-    """Names and figures of the profiles along the probes of a run, the last one in blue over earlier ones in grey."""
+    """Yields names and figures of the profiles along the probes of a run, the last one in blue over earlier ones in grey."""
     for name, probe in result.probes.items():
         names, times = fields_of(probe), instants(probe)
         figure, axes = panels(len(names))
@@ -51,7 +51,7 @@ def probe_figures(result: RunResult, title: str) -> Iterator[tuple[str, Any]]:
 
 
 def probe_comparisons(runs: Sequence[tuple[str, RunResult]]) -> Iterator[tuple[str, Any]]:
-    """Names and figures of the profiles at the end along the probes that all runs have, a line for each run."""
+    """Yields names and figures of the final profiles along the probes that all runs have, a line for each run."""
     first = runs[0][1]
     for name in first.probes:
         probes = [run.probes.get(name, {}) for _, run in runs]

@@ -61,7 +61,7 @@ def title_of(result: RunResult) -> str:
 
 
 def is_reduced(result: RunResult) -> bool:
-    """Whether f has two functions of one velocity component, g = ∫ f dη and h, one after the other."""
+    """Returns whether a row of f has two functions of one velocity component, g = ∫ f dη followed by h."""
     v, f = result.arrays.get("v"), result.arrays.get("f")
     return v is not None and f is not None and v.ndim == 1 and f.ndim == 2 and f.shape[1] == 2 * len(v)
 

@@ -1,4 +1,4 @@
-"""The style of all pictures (colours, markers, fonts), and writing of picture files."""
+"""Sets the style of all pictures (colours, markers, fonts), and writes picture files."""
 from __future__ import annotations
 
 import os

@@ -1,4 +1,4 @@
-"""Pictures of what the gas gives to a wall: profiles along it in the plane, maps of its faces in space."""
+"""Draws the fluxes from the gas to a wall: profiles along it in the plane, maps of its faces in space."""
 from __future__ import annotations
 
 from collections.abc import Iterator
@@ -18,8 +18,8 @@ NORMALS = {face: axis for axis, faces in FACES.items() for face in faces}
 
 
 def quantities(columns: Columns) -> list[str]:
-    """The columns to draw: pressure, shear stress and heat flux, or with reference values their coefficients; without them every
-    invariant."""
+    """Returns the columns to draw: pressure, shear stress and heat flux, or their coefficients if there are reference values. For
+    a model without these columns, returns all invariants."""
     names = list(columns)
     derived = [name for name in (COEFFICIENTS if "C_p" in columns else DERIVED) if name in columns]
     return derived or names[names.index("area") + 1:]
@@ -32,14 +32,14 @@ def label(result: RunResult, name: str) -> str:
 
 
 def parts(columns: Columns) -> list[NDArray[np.intp]]:
-    """The rows of each stretch of a wall in the plane that no corner or gap interrupts."""
+    """Returns the rows of each stretch of a wall in the plane, from one corner or gap to the next."""
     faces, s, length = columns["face"], columns["s"], columns["area"]
     ends = np.flatnonzero((faces[1:] != faces[:-1]) | (np.diff(s) > 0.75 * (length[1:] + length[:-1]))) + 1
     return np.split(np.arange(len(s)), ends)
 
 
 def profiles(result: RunResult, title: str, columns: Columns) -> Any:
-    """A panel for each quantity over the arc length s. The faces of a box are separated at its corners."""
+    """Draws a panel for each quantity over the arc length s, with separate curves for the faces of a box."""
     names = quantities(columns)
     count = min(len(names), 3)
     rows = -(-len(names) // count)
@@ -65,14 +65,14 @@ def profiles(result: RunResult, title: str, columns: Columns) -> Any:
 
 
 def stream_of(result: RunResult) -> Array:
-    """Unit vector along the stream of the reference values, or along x without them."""
+    """Returns the unit vector along the stream of the reference values, or along x without them."""
     output = result.manifest.get("case", {}).get("output", {})
     stream: Array = np.array(output.get("reference", {}).get("velocity", [1.0, 0.0, 0.0]), dtype=float)
     return stream / float(np.linalg.norm(stream))
 
 
 def angle_profiles(result: RunResult, title: str, columns: Columns) -> Any:
-    """A panel for each quantity of a body in space, over the angle between its normal and the direction from which the stream comes."""
+    """Draws a panel for each quantity of a body in space, over the angle between its normal and the direction against the stream."""
     names = quantities(columns)
     figure, grid = plt.subplots(1, len(names), figsize=(4.2 * len(names) if len(names) > 1 else 6.0, 3.6), squeeze=False)
     normals = np.stack([columns[f"n_{axis}"] for axis in AXES], axis=1)
@@ -88,7 +88,7 @@ def angle_profiles(result: RunResult, title: str, columns: Columns) -> Any:
 
 
 def face_map(result: RunResult, columns: Columns, face: str, name: str) -> tuple[str, str, Array, Array, Array]:
-    """The axes that span a face, the centres of its cells along them, and values[across, up], NaN without gas."""
+    """Returns the axes that span a face, the cell centres along them, and values[across, up], NaN without gas."""
     across, up = (axis for axis in AXES if axis != NORMALS[face])
     rows = columns["face"] == face
     centres, places = {}, {}
@@ -103,7 +103,7 @@ def face_map(result: RunResult, columns: Columns, face: str, name: str) -> tuple
 
 
 def face_maps(result: RunResult, title: str, columns: Columns) -> Any:
-    """A panel for each quantity and face, with one range of colours for a quantity."""
+    """Draws a panel for each quantity and face, with one range of colours for a quantity."""
     names, faces = quantities(columns), list(dict.fromkeys(columns["face"]))
     figure, grid = plt.subplots(len(names), len(faces), figsize=(max(6.0, 4.2 * len(faces)), 3.6 * len(names)), squeeze=False)
     for name, row in zip(names, grid):
@@ -123,11 +123,11 @@ def face_maps(result: RunResult, title: str, columns: Columns) -> Any:
 
 
 def surface_figures(result: RunResult) -> Iterator[tuple[str, Any]]:
-    """Names and figures of the surfaces of a run in several dimensions; none where no step was taken."""
+    """Yields names and figures of the surfaces of a run in several dimensions, if it has taken a step."""
     for name, columns in result.surfaces.items():
         drawn = quantities(columns)
         if dimensions(result) < 2 or not drawn or not len(columns["area"]) or np.isnan(columns[drawn[0]]).all():
             continue
         in_space = angle_profiles if "wall" in columns["face"] else face_maps
         draw = profiles if dimensions(result) == 2 else in_space
-        yield f"surface-{name}", draw(result, f"what the gas gives to '{name}'", columns)
+        yield f"surface-{name}", draw(result, f"fluxes from the gas to '{name}'", columns)

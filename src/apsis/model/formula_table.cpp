@@ -146,7 +146,7 @@ std::pair<std::size_t, double> locate(const std::vector<double>& points, double 
   return {k, after == points.end() ? 0.0 : (x - points[k]) / (points[k + 1] - points[k])};
 }
 
-/// Returns the value between v_0 and v_1; v_1 is not used where the share is 0.
+/// Interpolates linearly between v_0 and v_1; does not evaluate v_1 where the share is 0.
 template <class Value>
 double between(double share, const Value& value) {
   return share == 0.0 ? value(0) : (1.0 - share) * value(0) + share * value(1);

@@ -43,25 +43,24 @@ void gaussians_on(const velocity_line& line, const velocity_rows::gaussian* of_r
 void formula_maxwellian(const velocity_grid& grid, const fluid_state& state, double* m);
 /// Largest number of rows of formula_maxwellians_on_line().
 inline constexpr int most_line_states = 16;
-/// The same for at most most_line_states rows of ω in one velocity dimension, into rows `pitch` apart, with
-/// their states. Returns the number of rows before the first ω that is not admissible.
+/// Computes at most most_line_states rows of ω in one velocity dimension into rows `pitch` apart, with their
+/// states. Returns the number of rows before the first ω that is not admissible.
 int formula_maxwellians_on_line(const velocity_grid& grid, const double* omega, int rows, double* m,
                                 std::ptrdiff_t pitch, line_state* states);
 
 /// Sufficient condition for the midpoint-rule moments of the formula to equal those of `state` to rounding:
-/// Poisson's sum formula bounds their relative error by about 100 exp(−2π²T/Δv²), and what lies beyond the
-/// grid is of the size exp(−(v_max − |u|)²/(2T)). False for nearly empty space, where the formula would lose
-/// values below 1e-300.
+/// Poisson's sum formula bounds their relative error by about 100 exp(−2π²T/Δv²), and the part beyond the
+/// grid is of the size exp(−(v_max − |u|)²/(2T)). Returns false for nearly empty space, where values of the
+/// formula below 1e-300 would be lost.
 bool formula_has_exact_moments(const velocity_grid& grid, const fluid_state& state);
 /// The condition in one velocity dimension.
 bool formula_has_exact_moments(const velocity_grid& grid, const line_state& state);
 
 /// m ← the minimizer of Σ m log m among all m ≥ 0 with the midpoint-rule moments ω, to round-off: the
-/// discrete Maxwellian exp(α + β·v + γ|v|²) (Mieussens, M3AS 10, 2000), and where ω lies on the boundary of
-/// what m ≥ 0 can have, its limit, which is 0 at some points (docs/space.md). Exists for the moments of every
-/// f ≥ 0, a row of zeros included; ω may miss the boundary by the rounding of sums. False for other ω, for
-/// which why_unrealizable() has the reason. Sets `of_m`, if given, to the moments of m, or leaves them
-/// unknown.
+/// discrete Maxwellian exp(α + β·v + γ|v|²) (Mieussens, M3AS 10, 2000). On the boundary of the realizable ω
+/// it is the limit of these, which is 0 at some points (docs/space.md). It exists for the moments of every f
+/// ≥ 0, a row of zeros included; ω may miss the boundary by the rounding of sums. Returns false for other ω;
+/// why_unrealizable() has the reason. Sets `of_m`, if given, to the moments of m, or leaves them unknown.
 bool discrete_maxwellian(const velocity_grid& grid, const double* omega, double* m,
                          line_moments* of_m = nullptr);
 /// The discrete Maxwellian with the moments of a state.
@@ -70,8 +69,8 @@ bool discrete_maxwellian(const velocity_grid& grid, const fluid_state& state, do
 /// "" if one has.
 std::string why_unrealizable(const velocity_grid& grid, const double* omega);
 
-/// Returns the largest defect of the moments of m against `omega`, the moments of `state`; relative to ρ, to
-/// ρ(√T + |u_k|) for each momentum, and to 𝓔.
+/// Returns the largest difference between the moments of m and `omega`, the moments of `state`, relative to
+/// ρ, to ρ(√T + |u_k|) for each momentum, and to 𝓔.
 double moment_defect(const velocity_grid& grid, const double* m, const double* omega,
                      const fluid_state& state);
 

@@ -78,8 +78,8 @@ class dual_minimum {
 
   double value(const dual_sums& of, const parameters& at) const { return of.log_of_sum - 1.5 * T_ * at[3]; }
 
-  /// Largest defect of momentum and energy relative to those of all molecules, as is the rounding of the
-  /// given moments.
+  /// Returns the largest defect of momentum and energy, relative to the sums over all molecules: the scale of
+  /// the rounding of the given moments.
   double defect(const dual_sums& of) const {
     const double momentum = of.mean.head<3>().cwiseAbs().maxCoeff() / std::sqrt(square_);
     const double energy = 2.0 * std::abs(of.mean[3] - 1.5 * T_) / square_;
@@ -87,7 +87,8 @@ class dual_minimum {
     return std::isnan(momentum + energy) ? std::numeric_limits<double>::infinity() : largest;
   }
 
-  /// In units in which the diagonal of the Hessian is 1, since its entries differ by many orders.
+  /// Computes the step in units in which the diagonal of the Hessian is 1, since its entries differ by orders
+  /// of magnitude.
   parameters newton_step(const dual_sums& of, double damping) const {
     parameters gradient = of.mean, unit;
     gradient[3] -= 1.5 * T_;

@@ -41,7 +41,7 @@ class velocity_support {
   /// `of` must outlive the object.
   explicit velocity_support(const gas& of);
 
-  /// Returns what the velocities miss of the Maxwellian of an admissible state.
+  /// Returns the part of the Maxwellian of an admissible state that the velocities miss.
   velocity_fit fit(const fluid_state& state) const;
   /// Returns fit() of the moments ω, whose state is also stored; nothing if it is not admissible.
   std::optional<velocity_fit> fit_of_moments(const double* omega, fluid_state& state) const;
@@ -49,8 +49,8 @@ class velocity_support {
   velocity_margins margins(const double* omega) const;
   static constexpr double safe_room = 6.0,  ///< in thermal speeds
       safe_resolution = 1.0;                ///< thermal speeds per spacing
-  /// Whether both margins are finite and beyond these. Uniform velocities then miss less than 3e-7, other
-  /// sets less than velocity_limits::good.
+  /// Returns whether both margins are finite and above the squares of safe_room and safe_resolution. Uniform
+  /// velocities then miss less than 3e-7, other sets less than velocity_limits::good.
   static bool is_safe(const velocity_margins& of);
   const gas& molecules() const { return gas_; }  ///< the gas
 

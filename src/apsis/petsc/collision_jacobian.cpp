@@ -54,7 +54,8 @@ differenced& attached(Object object) {
   return *static_cast<differenced*>(found);
 }
 
-/// Whether the DM of a SNES provides matrices: PETSc gives a DM without that ability to every other TS.
+/// Returns whether the DM of a SNES provides matrices. A TS without a DM gets a DMSHELL from PETSc, which
+/// provides none.
 bool provides_matrices(SNES snes) {
   DM dm = nullptr;
   check(SNESGetDM(snes, &dm));

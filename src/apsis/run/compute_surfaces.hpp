@@ -22,8 +22,8 @@ struct surface_values {
 ///   x, y, z    centre of the cell face
 ///   n_x, n_y, n_z or n   unit normal into the gas
 ///   area       of the cell face: 1 on a line, a length in the plane
-///   INVARIANT  what the gas gives to the surface per unit of time and area, in the mean over the step: minus
-///              what it receives
+///   INVARIANT  flux from the gas to the surface per unit of time and area, in the mean over the step: minus
+///              the flux to the gas
 /// and, where the model has the momenta m and the energy, with the normal n into the surface,
 ///   pressure       m·n
 ///   shear_stress   the component of m along the surface and an axis, counter-clockwise around a body, or

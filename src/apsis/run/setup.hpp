@@ -73,8 +73,8 @@ class run_setup : public construction_count<run_setup> {
 
   /// Whether the model has space; without it there is a single cell.
   bool has_space() const { return builder_.has_space(); }
-  /// Returns the cell volume, of its ring in axisymmetric flow where unknowns are r f divided by r; 1 without
-  /// space.
+  /// Returns the cell volume, or 1 without space. In axisymmetric flow, where unknowns are r f, it is the
+  /// volume of the ring divided by r.
   double cell_volume() const { return has_space() ? mesh().measure() * mesh().cell_volume() : 1.0; }
   /// Returns f of a state whose unknowns are r f in axisymmetric flow, stored in `room`; else the state.
   const field& densities(const field& u, field& room) const;

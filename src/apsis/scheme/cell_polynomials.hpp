@@ -30,7 +30,7 @@ class cell_polynomials {
   /// in Zhang, Shu, J. Comput. Phys. 229, 2010), where that value is not negative.
   cell_polynomials(const line_rows& rows, bool nonnegative);
 
-  /// u ← the row at x; beyond the ends, that of the parabola at the end. Thread-safe.
+  /// Sets u to the row at x; beyond the ends, to the value of the parabola of the end cell. Thread-safe.
   void operator()(double x, std::span<double> u) const;
   /// Returns the faces between cells in increasing order, where the row jumps.
   std::vector<double> jumps() const;

@@ -31,8 +31,8 @@ struct convergence_reference {
   std::vector<std::string> overrides = {};  ///< "key=value", of kind::given
 };
 
-/// "exact", "next", "time", "space+time", "METHOD@STEP" (method and dt of the reference) or
-/// "key=value,key=value,…". Throws input_error with the valid references.
+/// Reads "exact", "next", "time", "space+time", "METHOD@STEP" (method and dt of the reference) or
+/// "key=value,key=value,…". Throws input_error with the valid references for any other text.
 convergence_reference parse_reference(const std::string& text);
 
 }  // namespace apsis

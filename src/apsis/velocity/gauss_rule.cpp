@@ -18,8 +18,8 @@ struct recurrence {
   std::vector<double> alpha, beta;  ///< β_0 is the integral of the weight function
 };
 
-/// Christoffel's numbers are sums of squares: with ψ_k = p_k exp(−x²/4), w = 1/Σ ψ_k² is accurate to rounding
-/// where the weights of eigenvectors are lost.
+/// Computes nodes and weights. With ψ_k = p_k exp(−x²/4) the Christoffel numbers w = 1/Σ ψ_k² are sums of
+/// squares. They are accurate to rounding, also where weights from eigenvectors have no correct digit.
 gauss_rule rule_of(const recurrence& of) {
   const auto n = of.alpha.size();
   Eigen::VectorXd diagonal(static_cast<Eigen::Index>(n)), beside(static_cast<Eigen::Index>(n) - 1);

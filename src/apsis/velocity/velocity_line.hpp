@@ -24,17 +24,17 @@ class velocity_line {
   bool uniform() const { return uniform_; }
   /// Returns the width of the intervals, or the smallest distance of neighbours.
   double spacing() const { return spacing_; }
-  /// Returns the largest |v|, of equal intervals half an interval beyond the last point.
+  /// Returns the largest |v|; for equal intervals it lies half an interval beyond the last point.
   double max() const { return max_; }
   const aligned_vector<double>& v() const { return v_; }                      ///< points
   const aligned_vector<double>& half_square() const { return half_square_; }  ///< ½v²
   const aligned_vector<double>& weights() const { return weights_; }          ///< w
-  /// Returns the points in units of the last set_unit(), by default spacing(), in which those of equal
-  /// intervals are multiples of ½ without rounding.
+  /// Returns the points in units of the last set_unit(), by default spacing(). In this default, midpoints of
+  /// equal intervals are multiples of ½ without rounding.
   const aligned_vector<double>& places() const { return places_; }
   /// Sets the unit of places().
   void set_unit(double unit);
-  /// Returns the largest distance of neighbours between two velocities.
+  /// Returns the largest distance between neighbours from one velocity to another.
   double widest_gap(double from, double to) const;
   bool operator==(const velocity_line&) const = default;  ///< equal points and weights
 

@@ -67,7 +67,7 @@ class staged_problem {
   /// out ← E_k(mass), for the k-th value of the clock.
   using equilibrium = std::function<void(int k, double mass, std::span<double> out)>;
 
-  /// ε = infinity: no collisions, and E is not used. Throws input_error unless ε > 0.
+  /// With ε = infinity there are no collisions, and E is not used. Throws input_error unless ε > 0.
   staged_problem(motion move, equilibrium relax, double epsilon);
 
   /// acc ← (fresh ? 0 : acc) + α u + β T(u) for every target.

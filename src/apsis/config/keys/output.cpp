@@ -30,9 +30,9 @@ std::vector<case_key> output_keys() {
       key("output.surfaces", [](auto& c) -> auto& { return c.output.surfaces; },
           {.scope = key_scope::space,
            .doc = "Names of faces (left, right, bottom, ...) that are not periodic and of solid boxes, or "
-                  "\"all\": what the gas gives to them in the last step, of mass, momentum and energy per "
-                  "unit of time and area, with pressure, shear stress and heat flux, at every cell face, in "
-                  "surfaces/NAME.csv."}),
+                  "\"all\": the fluxes of mass, momentum and energy from the gas to them in the last step, "
+                  "per unit of time and area, with pressure, shear stress and heat flux, at every cell face, "
+                  "in surfaces/NAME.csv."}),
       key("output.stride", [](auto& c) -> auto& { return c.output.stride; },
           {.unit = "cells",
            .lowest = 1,

@@ -28,8 +28,10 @@ std::vector<case_key> velocity_keys() {
           "velocity.set", [](auto& c) -> auto& { return c.velocity.set; },
           {.scope = key_scope::velocity,
            .choices = names_in(velocity_line_entries),
-           .doc = "Velocities of each direction, or of all: \"uniform\" where not given, or a file NAME.csv "
-                  "or NAME.txt of velocities and weights (relative to where the program runs)."})),
+           .doc =
+               "Velocities along each direction (a list, or one set for all): \"uniform\" where not given, "
+               "or a file NAME.csv or NAME.txt of velocities and weights (relative to where the program "
+               "runs)."})),
       if_given(key(
           "velocity.max", [](auto& c) -> auto& { return c.velocity.max; },
           {.scope = key_scope::velocity,
@@ -50,14 +52,14 @@ std::vector<case_key> velocity_keys() {
                         },
                     .lowest = 4,
                     .highest = 100'000,
-                    .doc = "Number of velocities of each direction, or of all."})),
+                    .doc = "Number of velocities along each direction: a list, or one number for all."})),
       if_axisymmetric(
           key("velocity.rings", [](auto& c) -> auto& { return c.velocity.rings; },
               {.scope = key_scope::velocity,
                .lowest = 4,
                .highest = 10'000,
                .doc = "Rings of velocities about the axis of axisymmetric flow, up to the largest "
-                      "velocity; the set and the points are those along the axis."})),
+                      "velocity. The set and the points are those along the axis."})),
       if_axisymmetric(key("velocity.angles", [](auto& c) -> auto& { return c.velocity.angles; },
                           {.scope = key_scope::velocity,
                            .lowest = 12,

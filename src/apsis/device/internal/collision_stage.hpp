@@ -8,11 +8,11 @@
 namespace apsis::kernels {
 
 /// The part of a stage of the BGK model that does not depend on the kind of velocities: u ← v with
-/// v = u + a Q(v)/ε + b Q̇(v)/ε² in every cell. Cells whose equilibrium the kernel does not find are left as
-/// they are, and are marked.
+/// v = u + a Q(v)/ε + b Q̇(v)/ε² in every cell. Cells whose equilibrium the kernel does not find remain
+/// unchanged and are marked.
 struct collision_stage {
   double* u;                       ///< rows of all cells
-  double* marks;                   ///< of every cell: 1 if it is left, else 0
+  double* marks;                   ///< of every cell: 1 if it remains unchanged, else 0
   const double* epsilon;           ///< ε of every cell
   long stride;                     ///< numbers of a row
   int first, last;                 ///< cells
@@ -20,13 +20,14 @@ struct collision_stage {
   scalar::rate_by_viscosity rate;  ///< this rate
   double a, b;                     ///< a ≥ 0, b ≤ 0
 
-  /// The number of the cell that is the turn of a group; groups behind the last cell take part in the sums.
+  /// Returns the cell of a group. Groups beyond the last cell get the last one, because all lanes join the
+  /// sums.
   template <class Group>
   APSIS_FORMULA int cell_of(const Group& group) const {
     const int number = first + group.number_in_launch();
     return number < last ? number : last - 1;
   }
-  /// Marks a cell that is the turn of a group. Returns whether the group has to solve it.
+  /// Marks the cell of a group. Returns whether the group has to solve it.
   template <class Group>
   APSIS_FORMULA bool takes(const Group& group, bool by_formula) const {
     const int number = first + group.number_in_launch();
@@ -35,15 +36,15 @@ struct collision_stage {
     return by_formula;
   }
 
-  /// The weights of a cell with density ρ > 0 and temperature T.
+  /// Returns the weights of a cell with density ρ > 0 and temperature T.
   APSIS_FORMULA relaxation_weights<double> weights(int cell, double rho, double T) const {
     return relax_weights(a, b, rate_of(rho, T), epsilon[cell]);
   }
-  /// The coefficients of the stage of such a cell.
+  /// Returns the coefficients of the stage of such a cell.
   APSIS_FORMULA stage_coefficients coefficients(int cell, double rho, double T) const {
     return coefficients_of_stage(a, b, rate_of(rho, T), epsilon[cell]);
   }
-  /// The solution from u and the equilibrium e.
+  /// Returns the solution from u and the equilibrium e.
   static APSIS_FORMULA double solution(const relaxation_weights<double>& weights, double u, double e) {
     return weights.of_e <= weights.of_u ? scalar::moved_towards(u, weights.of_e, e)
                                         : scalar::moved_towards(e, weights.of_u, u);

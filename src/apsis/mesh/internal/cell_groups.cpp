@@ -139,7 +139,7 @@ void mesh_cutter::number_groups() {
   for (int group = 0; group < static_cast<int>(result_.groups_.size()); ++group) add_faces(group);
 }
 
-/// Cells across periodic faces get the coordinates next to the first cell of their group.
+/// Shifts the coordinates of cells across periodic faces to the side of the first cell of their group.
 void mesh_cutter::find_centre(int number) {
   cut_group& group = result_.groups_[at(number)];
   std::vector<int> reached = {group.cells.front()};

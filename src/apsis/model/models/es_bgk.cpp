@@ -86,7 +86,7 @@ class es_bgk_model final : public gas_model {
   std::size_t size() const { return static_cast<std::size_t>(molecules().dimensions()); }
   int pairs() const { return molecules().dimensions() * (molecules().dimensions() + 1) / 2; }
 
-  /// The target with `part` of the deviation of the stress, in d velocity dimensions.
+  /// Computes the target in d velocity dimensions, with the deviation of the stress multiplied by `part`.
   template <int d>
   bool gaussian_target(const double* omega, const fluid_state& state, const double* s, double part,
                        const double* f, double keep, double* e, bool& raised) const {

@@ -64,8 +64,7 @@ class gas_columns {
   const gas_model* gas_;
 };
 
-/// The columns of what arrives at a surface and what leaves it, of mass and energy as far as the model has
-/// them.
+/// The columns of the one-way fluxes to and from a surface: of mass and energy, where the model has them.
 class one_way_columns {
  public:
   explicit one_way_columns(const model& equation);

@@ -19,7 +19,7 @@ struct formula {
 extern const stiff_problem_entry stiff_problem_van_der_pol_stiffer;
 const stiff_problem_entry stiff_problem_van_der_pol_stiffer = {
     .name = "van-der-pol-stiffer",
-    .description = "relaxation oscillator y'' = mu (1 - y^2) y' - y, mu = 1e6, in time divided by mu",
+    .description = "relaxation oscillator y'' = mu (1 - y^2) y' - y, mu = 1e6, time in units of mu",
     .source = "van der Pol (1926)",
     .origin = "Radau IIA of order 5 with doubled steps in 40 digits, local errors below 1e-15",
     .times = {0, 2},

@@ -2,7 +2,7 @@
 
     apsis.run("paper/bgk-mixed").fields["rho"]           a kinetic problem from a case
     apsis.open("results/layer").plot()                   a stored run
-    apsis.method("md-imex-6-3").certificate.order        methods and what can be said of them
+    apsis.method("md-imex-6-3").certificate.order        methods and their certificates
     apsis.integrate(problem, u0, t, method=…, dt=…)      a problem of your own, or a KineticProblem on a mesh
     apsis.solve_ivp(transport, collision, t_span, y0)    the form and the result object of scipy.integrate.solve_ivp
     apsis.solve_steady(problem, u0).u                    the steady state of a KineticProblem, without steps in time

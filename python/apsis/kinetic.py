@@ -127,7 +127,7 @@ class KineticProblem:
         return self._core.fields(real_array("u", u))
 
     def velocity_missed(self, u: ArrayLike) -> Array:
-        """Returns what the velocities of a gas miss of the Maxwellian of each cell, [cells]: up to 0.001 is good, above 0.1 initial data are
+        """Returns the part of the Maxwellian of each cell that the velocities of a gas miss, [cells]: up to 0.001 is good, above 0.1 initial data are
         refused (docs/velocities.md). NaN where a cell has no Maxwellian, and for models without."""
         return self._core.velocity_missed(real_array("u", u))
 

@@ -24,14 +24,14 @@ class RelaxationProblem:
     """u' = T(t, u) + C(ω)(E(ω) − u)/ε with conserved moments ω = ℛu, ℛE(ω) = ω.
 
     Stages are convex combinations of u and E in closed form, nonnegative where both are; ε = 0 is the limit scheme. The
-    functions get arrays of the shape of u0, which are read-only copies and may be kept:
+    functions get read-only copies of arrays with the shape of u0, and may store them:
 
         transport(t, u)           T, of the shape of u
-        moments(u)                ω, anything
+        moments(u)                ω, of any type
         equilibrium(omega)        E, of the shape of u
         rate(omega)               C ≥ 0, a number
         forward_euler_step(t, u)  Δt_FE of the transport, for steps without dt
-        admissible(u)             whether a stage may be so
+        admissible(u)             whether u is admissible as a stage
     """
 
     transport: Callable[[float, Array], ArrayLike]

@@ -94,9 +94,8 @@ std::array<const double*, 3> three_inside(const pencil_end& rows);
 /// A boundary condition that prescribes the incoming components. Ghost rows continue all components by the
 /// quadratic through three cells inside. A smooth factor scales the continuation towards the cell at the face
 /// where differences are larger than the value there and unequal, as next to a shock or a vacuum. The value
-/// at the face enters only the flux: near a wall f has a layer of some mean free paths, and a continuation
-/// through the face would carry it, where cells do not resolve it, as a kink into the reconstruction of the
-/// smooth solution inside.
+/// at the face enters only the flux: f has a layer of some mean free paths at a wall, and extrapolation
+/// through the face would put this unresolved kink into interior stencils.
 class incoming_boundary : public boundary {
  public:
   bool prescribes_incoming(int, int) const final { return true; }

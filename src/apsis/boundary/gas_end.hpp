@@ -26,12 +26,12 @@ class gas_end : public incoming_boundary {
                                std::span<const double* const> ghosts, double* incoming) const final;
 
  protected:
-  /// Returns the state of what enters, given the one inside at the face, which is not admissible if there is
-  /// no gas.
+  /// Returns the state of entering gas, given the state inside at the face, which is not admissible if there
+  /// is no gas.
   virtual fluid_state outside(const fluid_state& inside, const face& where, double t,
                               const position& at) const = 0;
 
-  /// Changes what enters, given what leaves; nothing by default.
+  /// Changes the incoming components, given the outgoing ones; changes nothing by default.
   virtual void adjust(const face& /*where*/, double /*t*/, const position& /*at*/, const double* /*outgoing*/,
                       double* /*incoming*/) const {}
 

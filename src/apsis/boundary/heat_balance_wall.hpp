@@ -17,9 +17,9 @@ namespace apsis {
 /// crosses it,
 ///   α (E − m e(T_w)) = q(T_w),  e(T) = Σ_in w v_n ½|v − u_w|² M / Σ_in w v_n M,  M = M[1, u_w, T],
 /// with the mass m = Σ_out w |v_n| f and the heat E = Σ_out w |v_n| ½|v − u_w|² f that arrive, the
-/// accommodation α, and the heat q that the wall gives away. It emits what a diffuse wall of temperature T_w
-/// emits. Discrete sums are those of the fluxes in the step, so that neither mass crosses the wall nor heat
-/// other than q, to rounding. e(T) and q(T) increase with T. Dimensionless.
+/// accommodation α, and the heat q that the wall gives away. It emits like a diffuse wall of temperature T_w.
+/// Discrete sums are those of the fluxes in the step, so that neither mass crosses the wall nor heat other
+/// than q, to rounding. e(T) and q(T) increase with T. Dimensionless.
 class heat_balance_wall : public incoming_boundary, public wall_temperature {
  public:
   /// `equation` must outlive the object. Throws input_error with the name of the kind if it has no
@@ -28,8 +28,8 @@ class heat_balance_wall : public incoming_boundary, public wall_temperature {
                     face_quantity accommodation);
 
   std::shared_ptr<const boundary> prepared(const face& where, const velocity_set& velocities) const final;
-  /// Returns the wall with any normal. Where specular reflection does not match the energy of what arrives,
-  /// as where f has a few values ≠ 0, such a wall re-emits all of it.
+  /// Returns the wall with any normal. Where specular reflection cannot match the arriving energy, for
+  /// example if f has only a few values ≠ 0, this wall re-emits all molecules that arrive.
   std::shared_ptr<const oblique_wall> oblique(const velocity_set& velocities) const final;
   std::array<double, 3> wall_velocity(double t, const position& at) const final;
   bool follows_from_gas() const final { return true; }
@@ -50,7 +50,7 @@ class heat_balance_wall : public incoming_boundary, public wall_temperature {
     double factor = 0.0;        ///< c ≥ 0
     double surroundings = 0.0;  ///< T_0 ≥ 0
   };
-  /// Returns what the wall radiates.
+  /// Returns the radiation of the wall.
   virtual radiation radiated(double t, const position& at) const = 0;
   /// Returns a copy of this object.
   virtual std::shared_ptr<heat_balance_wall> copy() const = 0;

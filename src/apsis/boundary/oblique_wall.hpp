@@ -18,10 +18,10 @@ class oblique_wall {
  public:
   virtual ~oblique_wall() = default;
 
-  /// values[k] ← what leaves the wall in component k, for every component with v·n > 0. `inward`: v·n of
-  /// every component; `arriving`: the distribution at the wall, of components with v·n < 0, ≥ 0 if that is
-  /// promised. Other components of values[], which does not overlap arriving[], are free for scratch. Called
-  /// concurrently. Throws input_error for values of the wall that are not possible.
+  /// Sets values[k] to the distribution that leaves the wall, for every component k with v·n > 0. `inward`:
+  /// v·n of every component; `arriving`: the distribution at the wall, of components with v·n < 0, ≥ 0 if
+  /// that is promised. Other components of values[], which does not overlap arriving[], are free for scratch.
+  /// Called concurrently. Throws input_error for impossible values of the wall.
   virtual void emit(const wall_point& where, const double* inward, const double* arriving,
                     double* values) const = 0;
   /// Returns the velocity of the wall along itself at a point.

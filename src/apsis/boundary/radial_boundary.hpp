@@ -11,13 +11,13 @@
 namespace apsis {
 
 /// Any boundary condition but the axis in axisymmetric flow, where the unknowns are F = r f. The condition
-/// sees f. Outgoing values are divided by r, and so are ghost rows where the condition reads them; what
-/// enters is multiplied by r, that of the point at the face. A value at the face that a condition
-/// extrapolates from ghost rows is then that of F divided by r.
+/// sees f. Outgoing values are divided by r, and so are ghost rows that the condition reads. Incoming values
+/// are multiplied by r at the point of the face. A value at the face that a condition extrapolates from ghost
+/// rows is then that of F divided by r.
 ///
-/// Conditions that prescribe what enters continue F as they continue f. Where a condition repeats the cell at
-/// a face r = const, ghost rows are F of the f there. Other conditions, as planes of symmetry, fill ghost
-/// rows at planes x = const alone, where r is constant along a pencil. Dimensionless.
+/// Conditions that prescribe incoming values continue F as they continue f. Where a condition repeats the
+/// cell at a face r = const, ghost rows are F of the f there. Other conditions, such as planes of symmetry,
+/// fill ghost rows at planes x = const only, where r is constant along a pencil. Dimensionless.
 class radial_boundary final : public boundary {
  public:
   /// `radial`: the direction of r; `spacing`: Δr.

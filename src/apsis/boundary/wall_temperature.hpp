@@ -11,15 +11,15 @@ namespace apsis {
 /// The fluxes of the molecules that arrive at a wall, per area and time. Dimensionless.
 struct arriving_gas {
   double mass = 0.0;                    ///< Σ_out w |v_n| f
-  std::array<double, 3> momentum = {};  ///< the same of v f
-  double energy = 0.0;                  ///< the same of ½|v|² f, with internal energies
+  std::array<double, 3> momentum = {};  ///< the same sums over v f
+  double energy = 0.0;                  ///< the same sums over ½|v|² f, with internal energies
 };
 
 /// A boundary condition that is a wall with a temperature, given or found.
 class wall_temperature {
  public:
   virtual ~wall_temperature() = default;
-  /// Whether the temperature is found from what arrives; the alternative, the default, is that it is given.
+  /// Whether the temperature follows from the molecules that arrive; by default it is given.
   virtual bool follows_from_gas() const { return false; }
   /// Returns T_w at a point of a face or of a wall with any normal, given what arrives; nothing where it has
   /// no effect. Throws as the wall does when it emits.

@@ -19,8 +19,8 @@ void read_boundary_values(const case_text& text, const model& equation, case_con
 std::vector<std::string> boundary_variables(const std::string& kind, const model& equation,
                                             const source_place& place);
 
-/// Returns the place of what describes a face, a solid box or the source, by the path of its table: the
-/// table, its kind, another of its keys, or space.boundary.
+/// Returns the place that describes a face, a solid box or the source, by the path of its table: the table,
+/// its kind, another of its keys, or space.boundary.
 source_place place_of_emitter(const case_config& config, const std::string& path);
 
 /// Returns the boundary of a kind with formulas for its variables, which are the keys "path.NAME". Throws

@@ -96,7 +96,7 @@ struct case_config {
     std::optional<double> dt, cfl, safety;  ///< exactly one is set
     startup_choice startup = startup_choice::none;
     int startup_growth = default_growth;     ///< ratio of the times of a graded start
-    std::optional<double> tolerance;         ///< of a step; dt, cfl or safety then says how long one may be
+    std::optional<double> tolerance;         ///< of a step; dt, cfl or safety then limits its length
     std::string controller{usual_step_law};  ///< with a tolerance: the step_law
     std::optional<double> steady;            ///< change of the state per time at which the run ends
   } time;

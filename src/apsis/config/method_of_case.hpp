@@ -5,8 +5,8 @@
 
 namespace apsis {
 
-/// Returns what the choice of a method for the case depends on. CΔt/ε is that of the initial data at up to
-/// 64 points; C = 1 where the data are not in the case.
+/// Returns the data of the case that determine the choice of a method. CΔt/ε is that of the initial data at
+/// up to 64 points; C = 1 where the data are not in the case.
 method_request request_of(const case_config& config);
 
 /// Returns the case with a method in place of time.method = "auto", and the reason in time.method_reason;

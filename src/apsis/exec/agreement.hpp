@@ -11,7 +11,7 @@ namespace apsis {
 /// process passes its own error or nullptr.
 void agree_on_errors(communicator& processes, const std::exception_ptr& mine);
 
-/// Runs body() on every process, without collective calls inside, and throws on all what one of them throws.
+/// Runs body(), without collective calls inside, on every process. If one throws, all throw the same error.
 template <class Body>
 void run_collectively(communicator& processes, const Body& body) {
   if (processes.is_single()) return body();

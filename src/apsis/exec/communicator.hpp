@@ -76,7 +76,7 @@ class communicator {
   /// Ends all processes with an exit code, for a process that does not respond. A launcher may hang
   /// afterwards.
   [[noreturn]] virtual void abort(int code) const = 0;
-  /// Returns what this process has sent since it was started.
+  /// Returns the numbers of messages, bytes and reductions of this process since its start.
   const communication_count& count() const { return count_; }
 
  protected:
@@ -101,8 +101,8 @@ class communicator {
 /// Returns the communicator of a single process.
 std::shared_ptr<communicator> single_process();
 
-/// Returns what all processes gathered as one list of numbers in the order of the ranks; nothing elsewhere
-/// than on the root.
+/// Returns on the root the numbers of all processes as one list in the order of the ranks, elsewhere an empty
+/// list.
 std::vector<double> gather_numbers(communicator& processes, std::span<const double> mine);
 
 }  // namespace apsis

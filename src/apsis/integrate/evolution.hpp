@@ -66,8 +66,8 @@ class evolution {
             const std::optional<tolerance>& tolerated = std::nullopt)
       : rule_(rule), march_(make_march(m, p, tolerated)) {}
 
-  /// Sets the functions of events, and what observes every event, in the order of time. Throws input_error if
-  /// a list does not have an entry for each function.
+  /// Sets the functions of events, and the observers that are called at events in the order of time. Throws
+  /// input_error if a list does not have an entry for each function.
   void set_events(functions events, event_observer observe = {}) {
     for (const std::size_t length : {events.directions.size(), events.ends.size()})
       if (length != 0 && length != events.count)

@@ -148,8 +148,8 @@ concept problem_with_fused_stages =
       p.add_transport_and_solve(x, u, targets, due);
     };
 
-/// A problem whose errors may come after the call that met them, for processes that must not wait in vain for
-/// one that has failed:
+/// A problem that may throw errors after the call in which they occur, so that a failing process does not
+/// deadlock the others:
 ///   throw_late_errors()   rethrows the first error since its last call; a step calls it before it changes u
 template <class P>
 concept problem_with_late_errors = problem<P> && requires(P p) { p.throw_late_errors(); };
@@ -160,7 +160,7 @@ void throw_late_errors(P& p) {
   if constexpr (problem_with_late_errors<P>) p.throw_late_errors();
 }
 
-/// A problem that keeps what the stages of a step share, such as a derivative:
+/// A problem that stores data shared by the stages of a step, such as a derivative:
 ///   begin_step(t, u)   a step of a method of one step begins with u at t; its stages follow
 ///   end_step()         the step has ended, or failed
 template <class P>
@@ -187,7 +187,7 @@ class step_scope {
   P& problem_;
 };
 
-/// A problem that knows the width of its initial layer, for a graded start:
+/// A problem that provides the width of its initial layer, for a graded start:
 ///   relaxation_time(t, u)   smallest ε/C > 0 of the state; +infinity if nothing relaxes or ε = 0
 template <class P>
 concept problem_with_relaxation_time =

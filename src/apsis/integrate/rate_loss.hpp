@@ -135,10 +135,11 @@ class probe {
 }  // namespace rate_loss_parts
 /// @endcond
 
-/// Estimates at state u what a method with this response loses in steps dt, with two to four evaluations of T
-/// and repeated implicit Euler solves: M + Δt T(M), with the equilibrium M of u, deviates from equilibrium by
-/// zD, and every solve divides that by 1 + z. `distance` as for error_estimate; `with_layer`: also what the
-/// initial layer of u adds. Returns nothing where a solve fails: the run itself reports invalid data.
+/// Estimates at state u the error of the O(ε) terms of a method with this response in steps dt. It takes two
+/// to four evaluations of T and repeated implicit Euler solves: M + Δt T(M), with the equilibrium M of u,
+/// deviates from equilibrium by zD, and every solve divides that by 1 + z. `distance` as for error_estimate;
+/// `with_layer`: includes the initial layer of u. Returns nothing where a solve fails: the run itself reports
+/// invalid data.
 template <problem P, class Distance>
 std::optional<rate_loss<typename P::real>> compute_rate_loss(P& p, typename P::real t,
                                                              const typename P::state& u, typename P::real dt,

@@ -29,8 +29,8 @@ class timed_stage_equation : public stage_equation<Real> {
 /// Differential Equations II, section IV.8). Where more corrections are expected than a new matrix costs, J
 /// is taken at the present v, for this stage and the rest of the step.
 ///
-/// A step depends on its t, Δt and u alone, not on what was solved before: J of an earlier attempt is used
-/// again only where that began with the same t and u.
+/// A step depends on its t, Δt and u alone, not on earlier solves: J of an earlier attempt is reused only if
+/// that began with the same t and u.
 template <class Real>
 class simplified_newton {
  public:

@@ -162,8 +162,8 @@ class time_marcher {
     return every_ > Real(0) ? equal_part(stop, proposed) : proposed;
   }
 
-  /// Whether length or end of the next step depend on t1: a run that may be extended to a later t1 is
-  /// saved before it.
+  /// Whether the length or end of the next step depends on t1. A run that may be extended to a later t1 is
+  /// saved before this step.
   bool shaped_by_end(Real proposed) const {
     if (done()) return false;
     if (!fixed_ && starting() && !(startup_length_ < t1_ - t0_)) return true;  // the only step

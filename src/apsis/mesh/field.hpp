@@ -6,9 +6,9 @@
 
 namespace apsis {
 
-/// One row of `components` numbers per cell, stored in the order of the grid: the unknowns of a semi-discrete
-/// problem, and storage for nothing else. Rows of eight or more numbers are padded with zeros to whole cache
-/// lines, so that every row is aligned and vector loops have no remainder.
+/// One row of `components` numbers per cell, stored in the order of the grid: the storage of the unknowns of
+/// a semi-discrete problem, and of nothing else. Rows of eight or more numbers are padded with zeros to whole
+/// cache lines, so that every row is aligned and vector loops have no remainder.
 class field {
  public:
   field() = default;

@@ -116,8 +116,8 @@ class grid {
   const cut_cells* cut() const { return cut_.get(); }
   /// Returns the number of the group of a cut cell among cut_cells::groups(); −1 for other cells.
   int cut_group(int cell) const { return group_ ? (*group_)[at(cell)] : -1; }
-  /// Returns what ends the segments in front of a cell: the number of a solid box or body, obstacles() for a
-  /// cut cell; −1 for a whole cell of gas.
+  /// Returns the obstacle that ends the segments in front of a cell: the number of a solid box or body, or
+  /// obstacles() for a cut cell; −1 for a whole cell of gas.
   int obstacle(int cell) const { return cut_group(cell) >= 0 ? obstacles() : solid(cell); }
   /// Returns the share of the volume of a cell that has gas, of a cell that is not solid.
   double gas_share(int cell) const;

@@ -75,7 +75,7 @@ void require_own_name(const method& m, const std::string& path) {
     throw input_error(source_place{path, 0, 0}, problem);
 }
 
-/// Certifies a method and completes it by what its certificate says.
+/// Certifies a method and completes it with data of its certificate.
 certificate certify_and_complete(method& m) {
   certificate c = certify(m);
   if (m.embedded && c.embedded) m.embedded->weight = c.embedded->weight;

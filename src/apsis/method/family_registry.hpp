@@ -9,7 +9,7 @@
 
 namespace apsis {
 
-/// Methods in closed form, one for each number S, of stages or of whatever the description says: a file of
+/// Methods in closed form, one for each number S, of stages or as the description states. A file of
 /// method/families/ defines `extern const family_entry family_<file>`. Members are found by name like methods
 /// of the catalogue.
 struct family_entry {

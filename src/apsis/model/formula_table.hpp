@@ -50,9 +50,9 @@ struct text_of_tables {
 
 inline constexpr std::size_t most_tables = 100;  ///< of a formula
 
-/// Takes the tables out of a formula. Calls `fail`, which throws, with the position of what is wrong, the
-/// reason and a suggestion: no list of points, a point that is not a number, arguments that do not increase,
-/// or too many.
+/// Takes the tables out of a formula. Calls `fail`, which throws, with the position of an error, the reason
+/// and a suggestion: no list of points, a point that is not a number, arguments that do not increase, or too
+/// many.
 text_of_tables take_tables(
     const std::string& formula,
     const std::function<void(std::size_t at, const std::string& why, const std::string& advice)>& fail);

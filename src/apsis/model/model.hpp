@@ -121,9 +121,9 @@ class model : public construction_count<model> {
   /// Returns a solver of collisions at points with scratch memory for one thread and batches within `limits`.
   /// The model must outlive it.
   virtual std::unique_ptr<point_collision> make_collision(const batch_limits& limits) const = 0;
-  /// Whether make_collision() knows the exact solution of v' = Q(v)/ε.
+  /// Whether make_collision() provides the exact solution of v' = Q(v)/ε.
   virtual bool has_exact_collision() const { return false; }
-  /// Whether make_collision() knows the relaxation time ε/C.
+  /// Whether make_collision() provides the relaxation time ε/C.
   virtual bool has_relaxation_time() const { return false; }
   /// Returns the number n of unknowns of the systems that Newton's method solves at a point, with n³
   /// operations each; 0 if stages are closed formulas.
@@ -169,7 +169,7 @@ class model : public construction_count<model> {
   /// must outlive them.
   virtual std::vector<data_form> data_forms() const;
 
-  /// Why the discrete model (its velocity grid) cannot hold a row of data, and what could.
+  /// Returns why the discrete model (its velocity grid) cannot represent a row of data, and a remedy.
   virtual unsupported_initial_data check_supported(const double* u) const;
   /// Returns the name of the condition that check_supported() states, if a solution may violate it later, so
   /// that a run checks it after every step: "subcharacteristic condition"; "" without one.

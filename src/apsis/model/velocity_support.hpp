@@ -93,7 +93,7 @@ struct velocity_words {
   bool from_file = false;              ///< the velocities are given, not velocity.max
   double needed = 0.0;                 ///< largest velocity that would do, if more than the state needs
 };
-/// Returns the key that must change, and the problem with what would do.
+/// Returns the key that must change, and the problem with a sufficient value.
 unsupported_initial_data velocity_problem(const gas& of, const fluid_state& state, const velocity_fit& fit,
                                           const velocity_words& words);
 

@@ -28,7 +28,7 @@ class cell_centre_collision final : public collision {
     space_->reserve(equation.components(), centre_rows::reach);
   }
 
-  /// The averages change by M d, d = v − p, whose rows have no moments: collisions conserve whatever p is.
+  /// The averages change by M d with d = v − p. Rows of d have no moments, so collisions conserve for any p.
   void solve(double, double a, double b, field& u) override {
     find_changes(u, limited_, [&](const point_batch& at, scratch& own) {
       double *points = own.points.data(), *d = changes_.row(at.first_cell);

@@ -143,7 +143,7 @@ cut_rows::line cut_transport::beyond(const field& u, const way& one) {
           limited_};
 }
 
-/// Adds what passes through a face of the domain or a wall, and tells the boundary budget.
+/// Adds the flux through a face of the domain or a wall, also to the boundary budget.
 void cut_transport::pass_end(double t, const way& one, const cut_rows::line& here, double* rate,
                              scratch& own) {
   const int n = equation_.components();

@@ -12,10 +12,10 @@
 namespace apsis {
 
 /// Fluxes through the surfaces of a domain: its faces that are not periodic, and those of solid boxes. Sweeps
-/// of the transport record the upwind values at a surface; where its boundary prescribes the incoming
-/// components, it computes them here from the outgoing ones, after the sweep: beyond such a surface a sweep
-/// sees vacuum, so that what enters is added to a state that is nonnegative without it. The invariants that
-/// pass at every end are the rates of a boundary_budget.
+/// of the transport record the upwind values at a surface. A boundary that prescribes the incoming components
+/// computes them here from the outgoing ones, after the sweep. The sweep assumes vacuum beyond such a
+/// surface, so that the incoming flux is added to a state that is nonnegative without it. The fluxes of the
+/// invariants at all ends are the rates of a boundary_budget.
 class face_fluxes {
  public:
   /// `equation` must outlive the object.
@@ -47,7 +47,7 @@ class face_fluxes {
   /// The same at a wall.
   void receive_at_wall(int wall, std::span<const double> inward, const double* values, double* flux);
 
-  /// Number of moments of each invariant that are observed: its density, what arrives and what leaves.
+  /// Number of moments of each invariant that are observed: its density, the arriving and the leaving flux.
   static constexpr std::size_t observed_moments = 3;
   /// Whether complete() and the other members also compute the moments of the distribution at the surfaces.
   void observe(bool wanted) { observes_ = wanted; }
@@ -57,8 +57,8 @@ class face_fluxes {
   /// n being the normal into the gas: per area, that arrives at the surface and that leaves it.
   const std::vector<double>& observed() const { return observed_; }
 
-  /// Stores what a force, the rotation of axisymmetric flow and a source give per unit of time, after the
-  /// rates of all ends.
+  /// Stores the rates of a force, of the rotation of axisymmetric flow and of a source, after the rates of
+  /// all ends.
   void set_inside(std::span<const double> inside);
   /// Returns what is received per unit of time, in the layout of a boundary_budget: by the last complete() of
   /// every end, and by the last set_inside().

@@ -10,10 +10,10 @@
 
 namespace apsis {
 
-/// The groups of cut cells that a process works on. A group whose cells several processes hold is computed by
-/// each of them, from equal rows: they have the same bits, and no rate is sent. Lines are also computed in
-/// groups next to cells of this process. Cells are those of the whole mesh; their rows have a place: the
-/// number of a cell of this process, or −1 − the number of a received row.
+/// The groups of cut cells that a process works on. Processes that share a group all compute it from equal
+/// rows, so they get the same bits without an exchange of rates. Lines are also computed in groups next to
+/// cells of this process. Cells are those of the whole mesh; their rows have a place: the number of a cell of
+/// this process, or −1 − the number of a received row.
 class local_groups {
  public:
   /// `space` has cut cells, and must outlive the object.

@@ -26,8 +26,8 @@ class semidiscrete_problem {
   using state = field;  ///< f[cell][component]
   using real = double;  ///< type of time and coefficients
 
-  /// `equation` must outlive the problem; T and Q are operators on `space`; `stages`: what the collision
-  /// solves.
+  /// `equation` must outlive the problem; T and Q are operators on `space`; `stages`: the stages that the
+  /// collision solves.
   semidiscrete_problem(const model& equation, std::shared_ptr<domain> space, std::unique_ptr<transport> t,
                        std::unique_ptr<collision> q, stage_solution stages = stage_solution::implicit)
       : space_(std::move(space)),
@@ -47,11 +47,11 @@ class semidiscrete_problem {
   /// Adds a source to the transport, of a model with space.
   void set_source(source_rate rate) { transport_->set_source(std::move(rate)); }
 
-  /// For methods that treat T and Q explicitly and preserve what u + Δt (T + Q) preserves: with 1/Δt = 1/Δt_T
-  /// + 1/Δt_Q that is a convex combination of forward Euler steps of T and of Q.
+  /// For methods that treat T and Q explicitly and preserve the properties of u + Δt (T + Q). With 1/Δt =
+  /// 1/Δt_T + 1/Δt_Q this is a convex combination of forward Euler steps of T and of Q.
   void treat_collision_explicitly() { explicit_collision_ = true; }
 
-  /// acc ← (fresh ? 0 : acc) + α u + β T(t, u) for every target; boundaries know the time t.
+  /// acc ← (fresh ? 0 : acc) + α u + β T(t, u) for every target, with boundaries at time t.
   void add_transport(double t, const field& u, std::span<const target<field, double>> targets) {
     guarded(u, [&] { transport_->add_transport(t, u, targets); });
   }

@@ -49,8 +49,8 @@ class transport {
   /// sum ← Σ_k α_k u_k, one term at least, added in their order; `sum` may be the state of the first term.
   virtual void combine(std::span<const linear_term<field, double>> terms, field& sum) const = 0;
 
-  /// Returns what u has received per unit of time in the last evaluation of T: the rates of a
-  /// boundary_budget. Empty without space.
+  /// Returns the rates of a boundary_budget: the amounts that u received per unit of time in the last
+  /// evaluation of T. Empty without space.
   virtual std::span<const double> budget_rates() const = 0;
 
   /// Returns face_fluxes::observed() of the state u at time t; nothing without space.

@@ -16,11 +16,13 @@ namespace apsis {
 /// An implicit step of upwind transport and relaxation, solved exactly by one pass in the direction of flight
 /// of every component: (L + σ) δ = r with L δ = Σ_k v_k ∂_k δ, whose value at the downstream edge of cell i
 /// is δ_i + s (δ_i − δ_{i−1}), δ_i itself next to where the gas begins. Components whose velocities have
-/// equal signs form an octant; one octant follows another, and what leaves at an end of the gas in one of
-/// them enters, by the boundary condition, in those that follow. Across periodic faces nothing enters.
+/// equal signs form an octant. Octants follow one another: components that leave at an end of the gas
+/// determine, by the boundary condition, those that enter in later octants. Across periodic faces nothing
+/// enters.
 ///
 /// In cut cells L is of first order: (Σ_out w + σ) δ_i = r_i + Σ_in w δ_up, w = |v·n| area/volume of the open
-/// faces and walls of a group. Where groups and cells wait for each other, what comes later does not enter.
+/// faces and walls of a group. Where groups and cells depend on each other in a circle, the values computed
+/// later are omitted.
 class octant_sweep {
  public:
   /// All references must outlive the object. `slope`: s, from 0 of first order to ½ of second order.

@@ -55,7 +55,7 @@ nlohmann::ordered_json to_json(const sweep_table& table);
 /// Returns a panel of fluxes for every invariant that has one, and iterations, over the values; without
 /// panels if a value is text.
 picture to_picture(const sweep_table& table);
-/// Returns the indices of the fluxes that matter: above 1e-8 of the largest.
+/// Returns the indices of the fluxes above 1e-8 of the largest one.
 std::vector<std::size_t> visible_fluxes(const sweep_table& table);
 
 }  // namespace apsis

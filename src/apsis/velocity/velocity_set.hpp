@@ -9,7 +9,7 @@
 namespace apsis {
 
 /// Discrete velocities v_j ∈ ℝ^d, j = 0 … n−1, with quadrature weights w_j, and one or more sets of
-/// components on them: component s n + j of a row is transported with v_j, s = 0 … sets−1. Immutable; copies
+/// components at them: component s n + j of a row is transported with v_j, s = 0 … sets−1. Immutable; copies
 /// share their numbers. Dimensionless.
 class velocity_set {
  public:

@@ -73,7 +73,7 @@ class imex_bdf {
       visit(*accumulator(i), sum);
     }
   }
-  /// Continues from a history of `known` values: visit_kept() then gives the places of what was kept.
+  /// Continues from a history of `known` values: visit_kept() then visits the places of the stored values.
   void resume(long known, const state& like) {
     known_ = known;
     allocate(like);

@@ -48,7 +48,7 @@ class open_parts {
     thin_part part = thin_part::none;  ///< without the tip of a body that ends in the cell
     bool loses = false;                ///< whether a part of a body lies between the corners, also a tip
   };
-  /// Returns what passes between the corners of a cell.
+  /// Returns the thin parts of bodies that pass between the corners of a cell.
   thin_cell thin_in(const corner& lowest) const;
   /// Returns the share of a cell where φ ≤ 0, from 8 samples along each direction.
   double closed_share(const corner& lowest) const;

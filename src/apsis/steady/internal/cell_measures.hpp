@@ -34,8 +34,8 @@ class cell_measures {
   double weighted_norm(const field& f, std::span<const double> rates) const;
   /// Returns the largest change of a moment relative to its scale; infinity for NaN.
   double largest_relative_change(const std::vector<double>& omega, const std::vector<double>& changes) const;
-  /// Returns the largest share ≤ 1 of `changes` that changes density and energy of no cell by more than
-  /// `most` relative to them; 1 for other models than gases.
+  /// Returns the largest factor ≤ 1 for which `changes` alter the density and energy of no cell by more than
+  /// the fraction `most`; 1 for models other than gases.
   double largest_share(const std::vector<double>& omega, const std::vector<double>& changes,
                        double most) const;
 

@@ -13,8 +13,9 @@
 
 namespace apsis {
 
-/// The corrections δω of the moments, J δω = ℛT, and when J is built anew or gets a pseudo-time term. A
-/// conserved moment gets the sum that it has in the first state. Members but flags and rates are collective.
+/// Computes the corrections δω of the moments, J δω = ℛT, and decides when J is rebuilt or gets a pseudo-time
+/// term. The sum of a conserved moment remains that of the first state. All members except flags and rates
+/// are collective.
 class moment_correction {
  public:
   /// `start`: of the first state; `first_order`: of J. All references but `start` must outlive the object.

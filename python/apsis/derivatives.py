@@ -177,7 +177,7 @@ def as_square_matrix(subject: str, found: Any, n: int) -> Any:
 
 
 def _directions(u: Array) -> tuple[Array, Array]:
-    """Two directions that excite every unknown in proportion to its size."""
+    """Returns two directions that change every unknown in proportion to its size."""
     scales = np.where(u != 0, np.abs(u), _size(u) or 1.0)
     angles = np.arange(1, u.size + 1).reshape(u.shape)
     return scales * np.sin(angles), scales * np.cos(3 * angles)

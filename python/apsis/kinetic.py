@@ -48,7 +48,7 @@ class KineticProblem:
     collisions   of cell averages: at three "gauss" points of each cell (default), or at the "centres" of the cells, of fourth order in
     space with a third of the solves
     reconstruction, equilibrium   as in a case file
-    positivity   keeps nonnegative data nonnegative for Δt ≤ r Δt_FE; collisions of cell averages at Gauss points make Δt_FE a twelfth
+    positivity   keeps nonnegative data nonnegative for Δt ≤ r Δt_FE; with collisions of cell averages at Gauss points Δt_FE is a twelfth
 
     Functions of the time are called by the threads of a step, one after the other; their exceptions end an integration.
 
@@ -128,7 +128,7 @@ class KineticProblem:
 
     def velocity_missed(self, u: ArrayLike) -> Array:
         """Returns the part of the Maxwellian of each cell that the velocities of a gas miss, [cells]: up to 0.001 is good, above 0.1 initial data are
-        refused (docs/velocities.md). NaN where a cell has no Maxwellian, and for models without."""
+        refused (docs/velocities.md). NaN where a cell, or the model, has no Maxwellian."""
         return self._core.velocity_missed(real_array("u", u))
 
     def transport(self, u: ArrayLike, t: float = 0.0) -> Array:

@@ -77,16 +77,24 @@ def integrate(problem: RelaxationProblem | GeneralProblem | KineticProblem, u0: 
               controller: str = "predictive", threads: int | None = None) -> Solution:
     """Integrates from u0 at t[0] and returns the states at all times of t.
 
-    `method` is a name, a file or a Method. "auto" chooses by the table of `apsis list choices`; the choice and its reason are in the
-    result. Without dt, with forward_euler_step, admissible or positivity, it preserves bounds. A warning on standard error names a
-    method that fits where dt is unfit for ε (docs/plateaus.md). Steps have the length dt, shortened until it divides each interval, or
-    safety · r · Δt_FE, 0 < safety, where r Δt_FE is at most the linear stability limit (Certificate.cfl_limits) on a mesh.
-    startup = "graded" resolves the initial layer of data out of equilibrium by short first
-    steps. startup_growth, from 2 to 64, is the ratio of their successive times: with 4 they are half as many as with 2 and less accurate. With a tolerance steps are
-    shorter where the estimated error of one, the largest difference to the embedded solution of the method, would be above it; then
-    neither dt nor forward_euler_step is needed. Methods without an embedded solution take each step twice, in one piece and in two
-    halves, and compare. `controller` is the law by which the next step follows from the errors of the last ones (`apsis list controllers`). `threads` is for problems on a mesh: all processors for large ones where it is not
-    given; results do not depend on it.
+        method          a name, a file or a Method; "auto" chooses by the table of `apsis list choices`
+        dt              length of steps, shortened until it divides each interval
+        safety          without dt: steps of safety · r · Δt_FE, 0 < safety
+        startup         "graded" resolves the initial layer of data out of equilibrium by short first steps
+        startup_growth  ratio of the successive times of these steps, from 2 to 64; with 4 they are half as many as with 2 and less
+                        accurate
+        tolerance       bound of the estimated error of a step
+        controller      law by which the next step follows from the errors of the last ones (`apsis list controllers`)
+        threads         of a problem on a mesh; all processors for large problems by default, and results do not depend on it
+
+    The result has the chosen method and the reason. Without dt, and with forward_euler_step, admissible or positivity, "auto" preserves
+    bounds. A warning on standard error names a better method if dt is unfit for ε (docs/plateaus.md). On a mesh r Δt_FE is at most the
+    linear stability limit (Certificate.cfl_limits).
+
+    With a tolerance steps are shorter where the estimated error, the largest difference to the embedded solution of the method, would
+    exceed it. Neither dt nor forward_euler_step is then needed. Methods without an embedded solution take each step twice, in one piece
+    and in two halves, and compare.
+
     Raises InputError, NumericalError with step and t, and exceptions of the functions."""
     if not isinstance(problem, (RelaxationProblem, GeneralProblem, KineticProblem)):
         raise InputError(f"problem is a {type(problem).__name__} (an equation is needed); give an apsis.RelaxationProblem, an "

@@ -25,16 +25,26 @@ Initial = Union[ArrayLike, Callable[..., ArrayLike], Mapping[str, Union[ArrayLik
 class Result:
     """The result of a run. Arrays are not copied.
 
-    f[cell, component] is the state at the end, x the cell centres, v[component] the speeds of the components, epsilon the Knudsen
-    number at the centres (empty where the model has none). In two and three space dimensions y and z are the centres in the other
-    directions, and [cell] stands for [i, j] or [i, j, k], the numbers of the cell along x, y and z: a field has the shape (nt, nx, ny).
-    probes[name] has the columns of probes/NAME.csv, surfaces[name] those of surfaces/NAME.csv. walls[name][piece, end] are the ends (x, y)
-    of the pieces of wall of a body in the plane, which is on their left. In space walls[name][piece, corner] are the corners (x, y, z) of
-    its polygons, in the order of the rows of surfaces[name]; those with fewer corners repeat the last one. With two or three velocity dimensions v[component, dimension] are
-    the velocities, v_weights[component] their quadrature weights, so that f @ v_weights is the density; where they are a tensor
-    product, axes["v_x"], … are its nodes and marginals["v_x"][cell, node], … f integrated over the other components. fields[name][k, cell] are the macroscopic fields at the times t[k], ending with
-    the final time, and labels[name] is what an axis says of one. history[name][n] is what was checked after step n. summary has the keys of `apsis run --json`, state how
-    the run ended."""
+        state                    how the run ended
+        f[cell, component]       the state at the end
+        x, y, z                  cell centres along each direction
+        v[component]             speeds of the components; v[component, dimension] with two or three velocity dimensions
+        v_weights[component]     quadrature weights of the velocities: f @ v_weights is the density
+        axes["v_x"], …           nodes of the velocities, where they are a tensor product
+        marginals["v_x"], …      [cell, node]: f integrated over the other components of the velocity
+        epsilon[cell]            Knudsen number at the centres; empty where the model has none
+        t[k]                     times of the fields, ending with the final time
+        fields[name][k, cell]    macroscopic fields at these times
+        labels[name]             axis label of a field
+        history[name][n]         checked quantities after step n
+        summary                  a mapping with the keys of `apsis run --json`
+        probes[name]             columns of probes/NAME.csv
+        surfaces[name]           columns of surfaces/NAME.csv
+        walls[name]              the wall of a body, in the plane [piece, end], in space [piece, corner]
+
+    In two and three space dimensions [cell] stands for [i, j] or [i, j, k], the numbers of the cell along x, y and z: a field has the
+    shape (nt, nx, ny). walls has the ends (x, y) of the pieces of a wall in the plane, with the body on their left. In space it has the
+    corners (x, y, z) of the polygons, in the order of the rows of surfaces. Polygons with fewer corners repeat the last one."""
 
     state: str
     f: Array
@@ -128,23 +138,26 @@ def run(case: Case, *overrides: str, out: str | Path | None = None, restart: str
         initial: Initial | None = None, jumps: Sequence[float] = (), comm: Any = None) -> Result | None:
     """Runs a case: the name of a built-in one, a file, or a mapping such as {"model": {"name": "bgk"}, …}.
 
-    overrides are "key=value" ("space.cells=80"). `out` is a folder for the results, `restart` a checkpoint to continue from, `wall`
-    a limit in seconds. progress(step, steps, t, smallest) is called about 20 times a second; False ends the run, with a checkpoint in
-    `out`.
+        overrides   "key=value", such as "space.cells=80"
+        out         folder for the results
+        restart     checkpoint to continue from
+        wall        limit of the wall time in seconds
+        progress    called as progress(step, steps, t, smallest) about 20 times a second; False ends the run, with a checkpoint in out
+        initial     initial data in place of those of the case
+        jumps       places at which functions of `initial` jump
+        threads     0 for all processors; by default OMP_NUM_THREADS, else all for a large case and 1 for a small one
+        device      a device of this machine (`apsis info`) by its number or place; results have the bits of the host
+        comm        communicator of mpi4py, whose processes share the mesh and call the function together; the first one gets the
+                    result, the others None
 
-    `initial` replaces the initial data of the case: an array [cells, components]; a function that returns all components; or a
-    mapping of the variables of the model, {"rho": lambda x: 1 + x, "T": 1}: numbers, functions of the coordinates x, y, z, or arrays
-    with a value for each cell. A function of all components has the arguments x, y, z, v_x, v_y, v_z in a model with a velocity grid,
-    as many as there are dimensions: coordinates are numbers, and every component of the velocity is an array [components]. So have
-    "f", or "g" and "h", in a mapping, whose arrays of velocities and values are [velocities]. Functions are averaged over cells as
-    formulas are, exactly between their `jumps`. The results and a restart refer to the data as `from = "python"`; a restart takes the state of the checkpoint.
+    `initial` is an array [cells, components], a function that returns all components, or a mapping of the variables of the model,
+    {"rho": lambda x: 1 + x, "T": 1}. The mapping has numbers, functions of the coordinates x, y, z, or arrays with a value for each
+    cell. A function of all components has the coordinates as arguments, which are numbers. In a model with a velocity grid v_x, v_y,
+    v_z follow, arrays [components], as many as there are dimensions. The functions "f", or "g" and "h", of a mapping have the same
+    arguments, with arrays [velocities], and return an array [velocities]. Functions are averaged over cells like formulas, exactly
+    between their `jumps`. Results and restarts name the data `from = "python"`; a restart takes the state of the checkpoint.
 
-    `comm` is a communicator of mpi4py, whose processes share the mesh and call the function together. The result is that of its
-    first process; the others get None.
-
-    `threads`: 0 for all processors; default: OMP_NUM_THREADS, else all for a large case and 1 for a small one.
-    `device`: a device of this machine (`apsis info`) by its number or place; results have the bits of the host.
-    Releases the GIL. Raises InputError, NumericalError, FileError, KeyboardInterrupt; of several processes on all of them."""
+    Releases the GIL. Raises InputError, NumericalError, FileError and KeyboardInterrupt, on all processes."""
     handle = _handle(comm)
     try:
         arguments = (*_arguments(case, overrides, out, restart, wall, threads, device, progress, initial, jumps), handle)

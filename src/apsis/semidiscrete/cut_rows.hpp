@@ -59,14 +59,14 @@ struct line_bounds {
   const double* kept;               ///< shares of u that transport may take in a step, of every component
 };
 
-/// The same with a limiter: slopes[d] ← ϑ Σ weight[d] (row − u).
+/// Fits with a limiter: slopes[d] ← ϑ Σ weight[d] (row − u).
 void fit(const double* u, std::span<const neighbour> around, const line_bounds& within, const extent& of,
          const gradient& slopes);
 
-/// values ← the line where `outward` > 0, and 0 of a negligible value; elsewhere they stay as they are.
+/// Sets values to the line where `outward` > 0, with 0 for negligible values; leaves others unchanged.
 void leave(const double* outward, const line& here, const extent& of, double* values);
 
-/// values ← the line where it leaves, and 0 elsewhere.
+/// Sets values to the line for components that leave through the face, and to 0 for others.
 void leave_alone(const way_out& way, const line& here, const extent& of, double* values);
 
 /// A face to another cell.

@@ -168,9 +168,10 @@ def cases(program: Program) -> str:
     all_cases, known = program.list("cases"), {m["name"] for m in program.list("methods")}
     text = ("# Cases\n\nThe built-in cases, from `apsis list cases`. `apsis run NAME` runs one, and `key=value` after "
             "the name changes a [key](keys.md).\n\n")
-    text += table(["case", "what", "model", "method"],
-                  [[f"[{c['name']}](#{c['name'].replace('/', '')})", plain(c["description"]),
-                    f"[{c['model']}](models.md#{c['model']})", method_link(c['method'], known)] for c in all_cases])
+    for folder in dict.fromkeys(c["name"].partition("/")[0] for c in all_cases):
+        text += f"**{folder}**\n\n" + table(["case", "description", "model", "method"],
+            [[f"[{c['name']}](#{c['name'].replace('/', '')})", plain(c["description"]), f"[{c['model']}](models.md#{c['model']})",
+              method_link(c["method"], known)] for c in all_cases if c["name"].startswith(f"{folder}/")])
     for c in all_cases:
         file = program("show", c["name"])
         comment = re.match(r"(?:#.*\n)*", file)[0]

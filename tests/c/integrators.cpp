@@ -313,7 +313,7 @@ TEST(c_integrators, refuse_bad_settings) {
       {[&] { rethrow(apsis_set_tolerance(s.get(), 1e-6, 0)); }, {"an absolute tolerance is 0"}},
       {[&] { rethrow(apsis_set_tolerances(s.get(), 1e-6, negative)); }, {"an absolute tolerance is -1e-06"}},
       {[&] { rethrow(apsis_set_tolerances(s.get(), 1e-6, nullptr)); }, {"absolute tolerances is NULL"}},
-      {[&] { rethrow(apsis_set_controller(s.get(), "pdi")); }, {"unknown controller 'pdi'", "'pid'"}},
+      {[&] { rethrow(apsis_set_controller(s.get(), "pdi")); }, {"unknown controller 'pdi'", "valid: predictive, integral, pi, pid"}},
       {[&] { rethrow(apsis_set_controller(s.get(), nullptr)); }, {"the name of the controller is NULL"}},
       {[&] { rethrow(apsis_set_graded_start(s.get(), 65)); }, {"the growth of a graded start is 65"}},
       {[&] { rethrow(apsis_set_block_size(s.get(), 3)); }, {"2 unknowns are not a sequence of blocks of 3"}},

@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""Builds the site: docs/build.py [--build build/release] [--work build/docs] [--cases NAME …], pages in WORK/html.
+"""Builds the site: docs/build.py [--build build/release] [--work build/docs] [--cases NAME …] [--methods NAME …], pages
+in WORK/html.
 
 The pages of docs are written for GitHub. A copy in WORK/source adds the parts that only the site has: reference pages from the
 program, a gallery of all cases, a page for each method and for each room of the library, new pictures from the blocks executed by
@@ -74,8 +75,8 @@ class Site:
         return os.path.relpath(to, os.path.dirname(place) or ".") + mark + anchor
 
 
-def assemble(site: Site, program: Path, work: Path, cases: list[str] | None):
-    """All pages; doxygen has been run."""
+def assemble(site: Site, program: Path, work: Path, cases: list[str] | None, methods: list[str] | None):
+    """All pages, with pictures of these cases and methods; None: of all. doxygen has been run."""
     shutil.copytree(ROOT / "docs" / "_static", site.source / "_static")
     unused = shutil.ignore_patterns("*.mjs", "contrib", "*.ttf", "*.woff")
     shutil.copytree(KATEX, site.source / "_static" / "katex", ignore=unused)
@@ -83,7 +84,7 @@ def assemble(site: Site, program: Path, work: Path, cases: list[str] | None):
     for picture in work.glob("run/*/images/*.png"):
         shutil.copy(picture, site.source / "images" / picture.name)
     site.add("gallery.md", write_gallery(program, work / "gallery", site.source / "images", cases))
-    reference = write_reference(program, site.source / "reference", site.source / "images")
+    reference = write_reference(program, site.source / "reference", site.source / "images", methods)
     generated = {"Reference": ["gallery", *(f"reference/{name}" for name in reference)],
                  "C++ interface": ["api/index"], "Python interface": ["python-api"]}
     for page in (site.source / "reference").rglob("*.md"):
@@ -144,6 +145,7 @@ def main() -> int:
     parser.add_argument("--build", type=Path, default=ROOT / "build" / "release")
     parser.add_argument("--work", type=Path, default=ROOT / "build" / "docs")
     parser.add_argument("--cases", nargs="+", help="cases of the gallery; without them all, which takes many minutes")
+    parser.add_argument("--methods", nargs="+", help="methods whose pages have pictures; without them all, which takes a minute")
     given = parser.parse_args()
     build, work = given.build.resolve(), given.work.resolve()
     xml = work / "doxygen" / "xml"
@@ -157,7 +159,7 @@ def main() -> int:
         shutil.rmtree(work / "doctrees", ignore_errors=True)
     site = Site(work / "source")
     try:
-        assemble(site, build / "app" / "apsis", work, given.cases)
+        assemble(site, build / "app" / "apsis", work, given.cases, given.methods)
     except GalleryError as problem:
         print(f"docs/build.py: the gallery is incomplete ({problem}); correct the case, or the sizes in docs/gallery.py", file=sys.stderr)
         return 1

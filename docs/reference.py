@@ -85,7 +85,7 @@ def methods(program: Program) -> str:
     return text + "```{toctree}\n:hidden:\n\n" + "\n".join(f"methods/{m['name']}" for m in all_methods) + "\n```\n"
 
 
-def method(program: Program, m: dict, choices: list[dict]) -> str:
+def method(program: Program, m: dict, choices: list[dict], with_pictures: bool = True) -> str:
     """Returns the page of a method: facts, when to use it, steps, coefficients and pictures."""
     document = json.loads(program("show", m["name"], "--format", "json"))
     stability = m.get("stability") or {}
@@ -107,14 +107,14 @@ def method(program: Program, m: dict, choices: list[dict]) -> str:
     if limits := m.get("cfl_limits"):
         text += "The largest CFL numbers with linear stability, by the reconstruction:\n\n"
         text += table([f"`{name}`" for name in limits], [[number(limit) for limit in limits.values()]])
-    if m["kind"] in DRAWN:
+    if with_pictures and m["kind"] in DRAWN:
         text += f"![regions of linear stability of {m['name']}](../../images/{m['name']}-stability.png)\n\n"
     text += "## Coefficients\n\n"
     if m["stages"] <= SHOWN:
         text += "$$\n" + re.sub(r"^%.*\n", "", program("show", m["name"], "--format", "latex")) + "$$\n\n"
     else:
         text += f"`apsis show {m['name']}` prints all digits.\n\n"
-    if m["kind"] in DRAWN:
+    if with_pictures and m["kind"] in DRAWN:
         text += f"![Butcher form of {m['name']}](../../images/{m['name']}-tableau.png)\n\n"
     return text
 
@@ -131,13 +131,14 @@ def when_to_use(m: dict, choices: list[dict]) -> str:
     return found + "[The choice of a method](../../methods.md#the-choice-of-a-method) compares it with others.\n\n"
 
 
-def write_methods(program: Program, folder: Path, images: Path):
-    """Writes a page for each method, and its pictures."""
+def write_methods(program: Program, folder: Path, images: Path, drawn: list[str] | None):
+    """Writes a page for each method, with pictures of the methods in `drawn`; None: of all."""
     all_methods, choices = program.list("methods"), program.list("choices")
     folder.mkdir(parents=True, exist_ok=True)
+    wanted = [m["name"] for m in all_methods if m["kind"] in DRAWN and (drawn is None or m["name"] in drawn)]
     for m in all_methods:
-        (folder / f"{m['name']}.md").write_text(method(program, m, choices), encoding="utf-8")
-    program("plot", *(m["name"] for m in all_methods if m["kind"] in DRAWN), "--out", str(images))
+        (folder / f"{m['name']}.md").write_text(method(program, m, choices, m["name"] in wanted), encoding="utf-8")
+    program("plot", *wanted, "--out", str(images))
 
 
 def models(program: Program) -> str:
@@ -237,10 +238,11 @@ PAGES = {"commands": commands, "keys": keys, "cases": cases, "methods": methods,
          "claims": claims}
 
 
-def write_reference(program: Path, folder: Path, images: Path) -> list[str]:
-    """Writes one page for each list and each method, and pictures of methods; returns the names of the lists in the order of PAGES."""
+def write_reference(program: Path, folder: Path, images: Path, drawn: list[str] | None) -> list[str]:
+    """Writes one page for each list and each method, with pictures of the methods in `drawn` (None: of all). Returns the names of the
+    lists in the order of PAGES."""
     folder.mkdir(parents=True, exist_ok=True)
-    write_methods(Program(program), folder / "methods", images)
+    write_methods(Program(program), folder / "methods", images, drawn)
     for name, page in PAGES.items():
         (folder / f"{name}.md").write_text(page(Program(program)), encoding="utf-8")
     return list(PAGES)

@@ -1,5 +1,5 @@
 """Blocks of the documentation that take minutes: `make run` of README.md in a copy of the sources, and every block that names
-this test (docs/design.md, docs/models.md)."""
+this test (docs/design.md, docs/models.md, docs/space.md)."""
 import os
 import shutil
 import subprocess

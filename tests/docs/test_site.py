@@ -14,8 +14,9 @@ from browser import Browser  # noqa: E402
 
 BUILD = Path(os.environ.get("APSIS_BUILD", ROOT / "build" / "release"))
 WORK = Path(os.environ.get("APSIS_DOCS", ROOT / "build" / "docs"))
-# Cases of the gallery that take seconds; docs/build.py draws all.
+# Cases of the gallery that take seconds, and a method of each kind with pictures; docs/build.py draws all.
 CASES = ["paper/bgk-mixed-fd", "gas/couette", "laws/dam-break"]
+METHODS = ["md-imex-6-3", "imdrk-2-3", "ssprk-3-3"]
 LOADING = {("script", "src"), ("img", "src"), ("iframe", "src"), ("source", "src"), ("object", "data")}
 
 
@@ -43,8 +44,8 @@ def is_elsewhere(link):
 class Site(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        done = subprocess.run([sys.executable, ROOT / "docs" / "build.py", "--build", BUILD, "--work", WORK, "--cases", *CASES], text=True,
-                              capture_output=True)
+        done = subprocess.run([sys.executable, ROOT / "docs" / "build.py", "--build", BUILD, "--work", WORK, "--cases", *CASES, "--methods", *METHODS],
+                              text=True, capture_output=True)
         if done.returncode != 0:
             raise AssertionError(done.stdout[-8000:] + done.stderr[-8000:])
         cls.html = WORK / "html"
@@ -104,13 +105,15 @@ class Site(unittest.TestCase):
             for name in names:
                 self.assertIn(name, text)
 
-    def test_every_method_has_a_page_and_cases_have_pictures(self):
+    def test_every_method_has_a_page_and_cases_and_methods_have_pictures(self):
         def listed(what):
             return subprocess.run([BUILD / "app" / "apsis", "list", what, "--names"], text=True, capture_output=True, check=True).stdout.split()
 
         for name in listed("methods"):
             page = (self.html / "reference" / "methods" / f"{name}.html").read_text(encoding="utf-8")
             self.assertIn("When to use it", page)
+            for picture in ("stability", "tableau"):
+                self.assertEqual(f"{name}-{picture}.png" in page, name in METHODS)
         gallery = (self.html / "gallery.html").read_text(encoding="utf-8")
         self.assertLessEqual(set(CASES), set(listed("cases")))
         for name in CASES:

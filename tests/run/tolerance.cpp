@@ -192,7 +192,7 @@ TEST(dense_newton, of_more_than_200_unknowns_is_warned_about_once_before_the_run
     testing::internal::CaptureStderr();
     const apsis::simulation run(
         apsis::parse_case(fmt::format("[model]\nname = \"discrete-velocity\"\nvelocities = [{}]\ncollisions "
-                                      "= [{}]\n[space]\ncells = 8\n"
+                                      "= [{}]\n[space]\ncells = 3\nreconstruction = \"upwind1\"\n"
                                       "domain = [0, 1]\n[time]\nmethod = \"{}\"\nend = 1e-3\ndt = 1e-3\n",
                                       velocities, collisions, method),
                           "c.toml"));

@@ -161,7 +161,7 @@ def _integrator(method: str | Method, bounded: bool, tolerance: float | None) ->
         raise InputError(f"method is a {type(method).__name__} (it must be a name, a file or an apsis.Method); see apsis.methods()")
     if method != "auto":
         return find_method(method), ""
-    name, reason = _core.choose_method(False, bounded, False, tolerance, None)
+    name, reason = _core.choose_method(False, True, bounded, False, tolerance, None)
     return find_method(name), reason
 
 

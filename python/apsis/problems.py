@@ -135,7 +135,7 @@ def _chosen(problem: RelaxationProblem | GeneralProblem | KineticProblem, dt: fl
     bounded = problem._positivity or (dt is None and tolerance is None) if isinstance(problem, KineticProblem) else not (
         problem.forward_euler_step is None and problem.admissible is None)
     tolerated = None if tolerance is None else number("tolerance", tolerance)
-    return _core.choose_method(kinetic, bounded, startup == "graded", tolerated, None)
+    return _core.choose_method(kinetic, isinstance(problem, GeneralProblem), bounded, startup == "graded", tolerated, None)
 
 
 def _require_functions(problem: object, needed: Sequence[str], optional: Sequence[str]) -> None:

@@ -122,9 +122,10 @@ py::dict certificate_of(const method& m) {
 }  // namespace
 
 void bind_methods(py::module_& m) {
-  m.def("choose_method", [](bool space, bool signs, bool graded, std::optional<double> tolerance,
-                            std::optional<double> ratio) {
+  m.def("choose_method", [](bool space, bool general, bool signs, bool graded,
+                            std::optional<double> tolerance, std::optional<double> ratio) {
     const method_choice chosen = choose_method({.space = space,
+                                                .general = general,
                                                 .signs = signs,
                                                 .graded_start = graded,
                                                 .tolerance = tolerance,

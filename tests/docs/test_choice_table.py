@@ -111,6 +111,11 @@ class ChoiceTable(unittest.TestCase):
         self.assertEqual(self.chosen("space", True, 0.0), best_on_meshes(("0.001", "0.0003", "0.0001", "1e-05"),
                                                                          lambda name: adaptive(name) and is_ssp(name)))
 
+    def test_systems_with_a_general_collision(self):
+        table = newest("stiff-methods")
+        mean = table["columns"].index("mean")
+        self.assertEqual(self.chosen("general", False, 0.0), min(table["rows"], key=lambda row: float(row[mean]))[0])
+
     def test_systems_of_two_unknowns(self):
         self.assertEqual(self.chosen("system", False, explicit=True), wins_on_systems("best of Apsis", ("1",), ALL))
         self.assertEqual(self.chosen("system", False), wins_on_systems("best of Apsis", STIFF, ALL))

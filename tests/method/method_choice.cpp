@@ -7,6 +7,7 @@
 
 #include <limits>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -20,7 +21,8 @@ const double inf = std::numeric_limits<double>::infinity();
 
 std::vector<apsis::method_request> all_requests() {
   std::vector<apsis::method_request> all;
-  for (const bool space : {false, true})
+  for (const auto& [space, general] :
+       {std::pair(false, false), std::pair(false, true), std::pair(true, false)})
     for (const bool signs : {false, true})
       for (const bool graded : {false, true})
         for (const std::optional<double> tolerance :
@@ -29,7 +31,7 @@ std::vector<apsis::method_request> all_requests() {
                {std::optional<double>(), std::optional(1e-3), std::optional(0.5), std::optional(30.0),
                 std::optional(inf)})
             for (const bool longest : {false, true})
-              all.push_back({space, signs, graded, longest, tolerance, ratio, ratio});
+              all.push_back({space, general, signs, graded, longest, tolerance, ratio, ratio});
   return all;
 }
 
@@ -69,6 +71,10 @@ TEST(choice, depends_on_bounds_tolerance_and_kind_of_problem) {
   EXPECT_EQ(name({.space = true, .signs = true, .tolerance = 1e-4}), "md-imex-10-3-mixed");
   EXPECT_EQ(name({.space = true, .tolerance = 1e-3}), "extrapolated-euler-3");
   EXPECT_EQ(name({.space = true, .tolerance = 1e-6}), "extrapolated-euler-4");
+  EXPECT_EQ(name({.general = true, .tolerance = 1e-3}), "ark-548-2");
+  EXPECT_EQ(name({.general = true, .tolerance = 1e-9}), "ark-548-2");
+  EXPECT_EQ(name({.general = true, .signs = true, .tolerance = 1e-4}), "md-imex-10-3-mixed");
+  EXPECT_EQ(name({.general = true}), "extrapolated-euler-8");
   EXPECT_EQ(name({.lowest_ratio = 0.01, .highest_ratio = 0.01}), "dop853");
   EXPECT_EQ(name({.lowest_ratio = 0.01, .highest_ratio = 100.0}), "extrapolated-euler-8");
   EXPECT_EQ(name({.lowest_ratio = {}, .highest_ratio = {}}), "extrapolated-euler-8");

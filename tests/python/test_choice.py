@@ -44,6 +44,16 @@ def test_the_choice_follows_bounds_and_tolerance():
     assert apsis.integrate(problem, [0.0, 0.0], (0, 1), tolerance=1e-3).method == "md-imex-10-3-mixed"
 
 
+def test_systems_with_any_collision_have_a_choice_of_their_own():
+    problem = apsis.GeneralProblem(lambda u: -1000.0 * (u - np.array([1.0, 2.0])))
+    found = apsis.integrate(problem, [0.0, 0.0], (0, 1), tolerance=1e-5)
+    assert found.method == "ark-548-2" and np.abs(found.u[-1] - [1.0, 2.0]).max() < 1e-4
+    assert found.reason.startswith("tolerance 1e-05 of a system with a general collision: ")
+    assert apsis.integrate(problem, [0.0, 0.0], (0, 1), dt=0.01).method == "extrapolated-euler-8"
+    problem.admissible = lambda u: True
+    assert apsis.integrate(problem, [0.0, 0.0], (0, 1), tolerance=1e-3).method == "md-imex-10-3-mixed"
+
+
 def test_problems_on_meshes_choose_too():
     problem = apsis.KineticProblem("bgk", cells=12, domain=(0, 2), velocities=(9, 24), epsilon=1e-3, formulation="finite-difference")
     u0 = problem.state(rho=1, T=1)

@@ -112,7 +112,7 @@ class race {
 
  private:
   /// The method that "auto" chooses.
-  std::string usual() const { return choose_method({.tolerance = limits_.rtol}).method; }
+  std::string usual() const { return choose_method({.general = true, .tolerance = limits_.rtol}).method; }
   double digits_of(const contestant& one) const { return correct_digits(problem_, one.measured.u); }
 
   const stiff_problem_entry& problem_;

@@ -14,7 +14,9 @@ std::string text_of(const method_request& wanted) {
   std::string out = wanted.tolerance       ? fmt::format("tolerance {:g}", *wanted.tolerance)
                     : wanted.longest_steps ? "longest steps"
                                            : "equal steps";
-  out += wanted.space ? " on a mesh" : " of a system without space";
+  out += wanted.space     ? " on a mesh"
+         : wanted.general ? " of a system with a general collision"
+                          : " of a system without space";
   if (wanted.signs) out += ", bounds preserved";
   if (!wanted.highest_ratio || !wanted.lowest_ratio) return out;
   if (*wanted.lowest_ratio == *wanted.highest_ratio)
@@ -22,8 +24,14 @@ std::string text_of(const method_request& wanted) {
   return out + fmt::format(", C dt/epsilon = {:.2g} to {:.2g}", *wanted.lowest_ratio, *wanted.highest_ratio);
 }
 
+bool belongs(const choice_row& row, const method_request& wanted) {
+  if (row.problem == "space") return wanted.space;
+  if (row.problem == "general") return !wanted.space && wanted.general;
+  return row.problem == "any" || !wanted.space;
+}
+
 bool applies(const choice_row& row, const method_request& wanted) {
-  if (row.problem != "any" && (row.problem == "space") != wanted.space) return false;
+  if (!belongs(row, wanted)) return false;
   if (row.signs && *row.signs != wanted.signs) return false;
   if (row.tolerance_from.has_value() != wanted.tolerance.has_value()) return false;
   if (wanted.tolerance && *wanted.tolerance < *row.tolerance_from) return false;
@@ -55,6 +63,9 @@ const std::vector<choice_row>& choice_table() {
        "mixed-regime contests, best with steps by tolerance over errors 1e-3 to 1e-4"},
       {"space", false, false, any, false, "extrapolated-euler-4", "least CPU time for errors of this size",
        "mixed-regime contests, best with steps by tolerance over errors 1e-4 and 1e-5"},
+      {"general", false, false, any, false, "ark-548-2",
+       "least CPU time where Newton's method solves the stages, and most digits",
+       "stiff systems of the literature, least mean of methods without second derivatives"},
       {"system", false, true, std::nullopt, false, "dop853",
        "steps resolve epsilon/C, so an explicit method is cheapest",
        "contests of systems of two unknowns with epsilon = 1, most wins"},

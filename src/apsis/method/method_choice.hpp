@@ -13,6 +13,7 @@ inline constexpr std::string_view automatic_method = "auto";
 /// The properties of a problem on which the choice of a method depends.
 struct method_request {
   bool space = false;                        ///< the problem is discretized in space
+  bool general = false;                      ///< Q is any function, and Newton's method solves the stages
   bool signs = false;                        ///< bounds of the solution, such as f ≥ 0, must be preserved
   bool graded_start = false;                 ///< the first steps resolve the initial layer
   bool longest_steps = false;                ///< steps are a fraction of the longest that the method allows
@@ -23,7 +24,7 @@ struct method_request {
 
 /// A row of the table of choices. The first row that applies decides.
 struct choice_row {
-  std::string problem;                   ///< "space", "system", or "any"
+  std::string problem;                   ///< "space", "system", "general" (a system with any Q), or "any"
   std::optional<bool> signs;             ///< nothing: with and without
   bool explicit_method = false;          ///< the method resolves ε/C: only where CΔt/ε ≤ resolved_ratio
   std::optional<double> tolerance_from;  ///< smallest tolerance of the row; nothing: equal steps

@@ -216,7 +216,8 @@ int apsis_set_forward_euler_step(apsis_integrator* integrator, apsis_time_functi
 int apsis_set_safety(apsis_integrator* integrator, double safety);
 /// Controls the estimated error e of a step: |e_i| ≤ absolute + relative |u_i| for every i. relative ≥ 0, and
 /// absolute > 0; both 0 removes the control. Methods without an embedded solution take each step twice, as
-/// one and as two halves.
+/// one and as two halves. Newton's method for a single block ends where its error is a thousandth of this,
+/// and stages of methods without second derivatives then share a derivative of Q in a step.
 int apsis_set_tolerance(apsis_integrator* integrator, double relative, double absolute);
 /// The same with an absolute tolerance of each unknown, n positive numbers, which are copied.
 int apsis_set_tolerances(apsis_integrator* integrator, double relative, const double* absolute);

@@ -199,19 +199,39 @@ TEST(c_same_bits, of_stages_by_newtons_method) {
 
 TEST(c_same_bits, of_newtons_method_within_a_tolerance) {
   general g{1e4};
-  apsis::newton_problem<decltype(transport_of_general), general> problem(transport_of_general, g);
-  const auto& m = apsis::find_method("md-imex-6-3");
-  apsis::stepper march(m, problem, apsis::solutions::result_and_embedded);
-  apsis::step_controller<double> control(1.0, apsis::estimate_of(m).order);
-  state expected{1, 0.5};
-  const auto done =
-      apsis::integrate_to_tolerance(march, expected, 0.0, 0.25, rule::unlimited(), control, weighted);
-  const auto s = of_general("md-imex-6-3", g);
-  const double absolute[] = {1e-9, 1e-9};
-  apsis_set_tolerances(s.get(), 1e-6, absolute);
-  EXPECT_EQ(apsis_integrate(s.get(), 0.25), APSIS_OK) << apsis_error_message();
-  EXPECT_EQ(state_of(s), expected);
-  EXPECT_EQ(apsis_count(s.get(), APSIS_STEPS), done.steps);
+  for (const char* name : {"md-imex-6-3", "ark-437"}) {  // with and without second derivatives
+    apsis::newton_problem<decltype(transport_of_general), general> problem(transport_of_general, g);
+    problem.with_tolerances({1e-6, 1e-9});
+    const auto& m = apsis::find_method(name);
+    apsis::stepper march(m, problem, apsis::solutions::result_and_embedded);
+    apsis::step_controller<double> control(1.0, apsis::estimate_of(m).order);
+    state expected{1, 0.5};
+    const auto done =
+        apsis::integrate_to_tolerance(march, expected, 0.0, 0.25, rule::unlimited(), control, weighted);
+    const auto s = of_general(name, g);
+    const double absolute[] = {1e-9, 1e-9};
+    apsis_set_tolerances(s.get(), 1e-6, absolute);
+    EXPECT_EQ(apsis_integrate(s.get(), 0.25), APSIS_OK) << apsis_error_message();
+    EXPECT_EQ(state_of(s), expected) << name;
+    EXPECT_EQ(apsis_count(s.get(), APSIS_STEPS), done.steps);
+  }
+}
+
+TEST(c_same_bits, stages_of_a_step_share_a_derivative) {
+  general g{1e4};
+  const auto derivatives_of = [&g](double relative) {
+    const auto s = of_general("ark-437", g);
+    if (relative > 0.0)
+      apsis_set_tolerance(s.get(), relative, 1e-9);
+    else
+      apsis_set_step(s.get(), 1.0 / 256);
+    EXPECT_EQ(apsis_integrate(s.get(), 0.25), APSIS_OK) << apsis_error_message();
+    return static_cast<double>(apsis_count(s.get(), APSIS_PRODUCT_EVALUATIONS)) /
+           static_cast<double>(apsis_count(s.get(), APSIS_STEPS));
+  };
+  // Two columns of the derivative, in most steps once, for six implicit stages.
+  EXPECT_LE(derivatives_of(1e-6), 4.0);
+  EXPECT_GE(derivatives_of(0.0), 12.0);
 }
 
 }  // namespace c_same_bits_test

@@ -4,10 +4,12 @@
 #include "internal/split_problem.hpp"
 
 #include <apsis/core/errors.hpp>
+#include <apsis/integrate/component_tolerances.hpp>
 #include <apsis/integrate/evolution.hpp>
 
 #include <cmath>
 #include <string>
+#include <type_traits>
 
 namespace apsis::c {
 namespace {
@@ -35,10 +37,14 @@ event_functions<numbers, double> functions_of(callbacks& of, const event_setting
 template <class Problem>
 class run_of final : public any_run {
  public:
-  run_of(const time_integrator& m, callbacks& of, const step_rule<double>& rule,
+  run_of(const time_integrator& m, callbacks& of, const step_rule<double>& rule, const step_limits& limits,
          const std::optional<step_tolerance<numbers, double>>& tolerance, const event_settings& events,
          double t, const numbers& u)
       : problem_(of), evolution_(m, problem_, rule, tolerance) {
+    if constexpr (std::is_same_v<Problem, newton_blocks>) {
+      if (tolerance)
+        problem_.set_tolerances(component_tolerances<double>({limits.relative}, limits.absolute), u.size());
+    }
     evolution_.set_stops(events.stops);
     evolution_.set_events(functions_of(of, events), [&of](std::size_t k, double at, const numbers& now) {
       if (of.event_observer == nullptr) return;
@@ -137,8 +143,8 @@ std::unique_ptr<any_run> make_run(const time_integrator& m, callbacks& of, const
         "a relaxation time is given and Newton's method solves the stages (it belongs to a stage solver); "
         "remove "
         "it, or give a stage solver by apsis_set_stage()");
-  if (by_newton) return std::make_unique<run_of<newton_blocks>>(m, of, rule, tolerance, events, t, u);
-  return std::make_unique<run_of<split_problem>>(m, of, rule, tolerance, events, t, u);
+  if (by_newton) return std::make_unique<run_of<newton_blocks>>(m, of, rule, limits, tolerance, events, t, u);
+  return std::make_unique<run_of<split_problem>>(m, of, rule, limits, tolerance, events, t, u);
 }
 
 }  // namespace apsis::c

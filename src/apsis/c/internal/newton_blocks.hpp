@@ -5,6 +5,7 @@
 
 #include <apsis/core/errors.hpp>
 #include <apsis/integrate/array_state.hpp>
+#include <apsis/integrate/component_tolerances.hpp>
 #include <apsis/integrate/newton_problem.hpp>
 #include <apsis/integrate/problem.hpp>
 
@@ -26,6 +27,12 @@ class newton_blocks {
   /// Stores a reference.
   explicit newton_blocks(callbacks& of) : of_(of), local_({}, block_field(of, now_), options_of(of)) {
     local_.with_admissible([this](std::span<const double> v) { return of_.is_admissible(now_.block, v); });
+  }
+  /// Ends the stage solves of a single block of n unknowns at a share of the tolerances. Its stages with b =
+  /// 0 then share the derivative of a step. Several blocks solve to rounding errors: each would need a
+  /// derivative of its own.
+  void set_tolerances(const component_tolerances<double>& tolerances, std::size_t n) {
+    if (of_.block_size == n) local_.with_tolerances(tolerances);
   }
   newton_blocks(const newton_blocks&) = delete;
   newton_blocks& operator=(const newton_blocks&) = delete;
@@ -72,6 +79,8 @@ class newton_blocks {
     }
     u.swap(solved_);
   }
+  void begin_step(double t, const state& u) { local_.begin_step(t, u); }
+  void end_step() { local_.end_step(); }
   bool has_transport(double t, const state& u) {
     if (of_.transport == nullptr) return false;
     of_.evaluate_transport(t, u, work_);

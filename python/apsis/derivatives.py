@@ -51,7 +51,7 @@ class Derivatives:
         return self._known[1]
 
     def forget(self) -> None:
-        """Evaluates the next matrix again, since Q has changed."""
+        """Evaluates the next matrix again, because Q has changed."""
         self._known = None
 
     def _all_columns(self, u: Array) -> Array:
@@ -147,7 +147,7 @@ class TimedDerivatives:
         return np.asarray(np.imag(np.asarray(self._collision(complex(t, h), _fixed(u.copy())))) / h)
 
     def _difference(self, t: float, u: Array) -> Array:
-        """Of second order, from one side at the ends of the interval."""
+        """Returns a difference of second order, one-sided at the ends of the interval."""
         h = 6e-6 * self._scale(t)
         first, last = self._interval
         shifts, weights = (((0, 1, 2), (-1.5, 2.0, -0.5)) if t - h < first else
@@ -193,7 +193,7 @@ def _size(u: Array) -> float:
 
 
 def _length(u: Array, x: Array, part: float) -> float:
-    """The step h with which u + hx changes every component by at most `part` of itself, or 1e-6 of the largest where it is smaller."""
+    """Returns the step h with which u + hx changes every component by at most `part` of itself, or 1e-6 of the largest where it is smaller."""
     largest = _size(u) or 1.0
     moved = x != 0
     with np.errstate(over="ignore"):  # of the quotient by a tiny direction, which another one bounds

@@ -12,7 +12,7 @@ Array = NDArray[np.float64]
 
 @dataclass
 class GeneralProblem:
-    """u' = T(t, u) + Q(u) for any smooth Q; stages v = u + a Q(v) + b Q'(v)Q(v) are solved by Newton's method.
+    """u' = T(t, u) + Q(u) for any smooth Q. Newton's method solves the stages v = u + a Q(v) + b Q'(v)Q(v).
 
     The functions get read-only copies of arrays with the shape of u0, and may store them:
 
@@ -32,8 +32,8 @@ class GeneralProblem:
     solver    "dense": a Newton step of n unknowns takes n³ operations and at least n evaluations of Q, with a CostWarning above 200
               unknowns; "krylov": iterations without n³ operations and without preconditioner, for Q that is not stiff
 
-    Large systems take less time with local=True. If Q has the form of a RelaxationProblem, use that: its stages are closed
-    formulas."""
+    Large systems take less time with local=True. If Q has the form of a RelaxationProblem, use that class: its stages have a
+    closed form."""
 
     collision: Callable[[Array], ArrayLike]
     transport: Callable[[float, Array], ArrayLike] | None = None

@@ -27,13 +27,13 @@ def solve_ivp(transport: Function | None, collision: Function | None, t_span: Se
               vectorized: bool = False, first_step: float | None = None, max_step: float = math.inf, dt: float | None = None,
               forward_euler_step: Function | None = None, admissible: Function | None = None, solver: str = "dense",
               controller: str = "predictive") -> OptimizeResult:
-    """Solves y' = T(t, y) + Q(t, y), y(t0) = y0, T explicitly and Q implicitly, and returns what SciPy's solve_ivp returns.
+    """Solves y' = T(t, y) + Q(t, y), y(t0) = y0, T explicitly and Q implicitly. Returns the result object of SciPy's solve_ivp.
 
         scipy.integrate.solve_ivp(f, t_span, y0, method="Radau", jac=J)        becomes
         apsis.solve_ivp(None, f, t_span, y0, jac=J)                            or, with the part g of f that is not stiff,
         apsis.solve_ivp(g, lambda t, y: f(t, y) - g(t, y), t_span, y0)
 
-    The functions get read-only arrays of the shape of y0, (n,), which may be kept, and then args:
+    The functions get read-only arrays of the shape of y0, (n,), which they may store, and then args:
 
         transport(t, y)           T, of shape (n,); None: T = 0
         collision(t, y)           Q, of shape (n,), stiff; None: Q = 0. With vectorized=True T and Q get y of shape (n, k) and return
@@ -42,22 +42,22 @@ def solve_ivp(transport: Function | None, collision: Function | None, t_span: Se
                                   where Q accepts complex numbers, else differences (GeneralProblem)
         events                    functions g(t, y) with zeros that are reported; attributes `terminal` (True, or a number of zeros) and
                                   `direction` as in SciPy. A zero at the start of the integration is not an event
-        forward_euler_step(t, y)  Δt_FE of T: steps are at most r Δt_FE, which preserves what forward Euler steps preserve
-        admissible(y)             whether y is allowed, such as positive: no Newton iterate and no step leaves this set
+        forward_euler_step(t, y)  Δt_FE of T: steps are at most r Δt_FE, and preserve the properties that forward Euler steps preserve
+        admissible(y)             whether y is in the set of valid states: no Newton iterate and no step leaves this set
 
     Steps keep the estimated error of every y_i below ``rtol_i |y_i| + atol_i``; both may be arrays. With dt all steps have that length,
-    without error control. first_step and max_step limit the steps. `controller` is the law by which the next step follows from the
-    errors of the last ones (`apsis list controllers`), such as "pi" or "pid". `method` is a name, a file or a Method of one step; "auto"
-    chooses by the table of `apsis list choices`. jac_sparsity, a matrix of shape (n, n) that is not 0 where ∂Q/∂y may be, and a
-    sparse jac choose sparse factorizations; differences then need one call for each group of columns. A constant matrix, or a sparse
-    jac at (t0, y0), defines the places itself. solver="krylov" iterates without matrices, for Q that is not stiff.
+    without error control. first_step and max_step limit the steps. `controller` is the law that computes the next step from the
+    errors of the last steps (`apsis list controllers`), such as "pi" or "pid". `method` is a name, a file or a one-step Method; "auto"
+    chooses from the table of `apsis list choices`. jac_sparsity is a matrix of shape (n, n) that is nonzero where ∂Q/∂y may be
+    nonzero. It or a sparse jac chooses sparse factorizations; differences then need one call for each group of columns. A constant
+    matrix, or a sparse jac at (t0, y0), defines the pattern itself. solver="krylov" iterates without matrices, for Q that is not stiff.
 
     Returns scipy.optimize.OptimizeResult with t (m,), y (n, m), sol (scipy.integrate.OdeSolution or None), t_events, y_events, nfev
     (calls of transport and collision), njev (of jac), nlu (matrices factorized), status (0: end reached, 1: a terminal event, −1: a step
-    failed), message and success; and beyond SciPy's: method, steps, rejected, derivatives.
+    failed), message and success. Further entries are method, steps, rejected and derivatives.
 
-    The solution inside a step, for t_eval, sol and events, is a step of the method from the beginning of that step. It has the order of the
-    method, and is positive where steps are. Each of its values costs a step.
+    A shorter step of the method computes the solution inside a step, for t_eval, sol and events. This solution has the order of the
+    method, and is positive if steps are. Each of its values costs a step.
 
     Raises InputError for arguments that cannot be used, and exceptions of the functions."""
     scipy = _scipy()

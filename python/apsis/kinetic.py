@@ -45,12 +45,12 @@ class KineticProblem:
     acceleration of the molecules: a number or a function of the time and the coordinates, or a list of them for each dimension
     largest_acceleration   bound of the absolute values of functions, a number or one for each dimension
     formulation  "finite-volume" (cell averages) or "finite-difference" (point values)
-    collisions   of cell averages: at three "gauss" points of each cell (default), or at the "centres" of the cells, of fourth order in
+    collisions   of cell averages: at three "gauss" points of each cell (default), or at the "centres" of the cells, with fourth order in
     space with a third of the solves
     reconstruction, equilibrium   as in a case file
     positivity   keeps nonnegative data nonnegative for Δt ≤ r Δt_FE; with collisions of cell averages at Gauss points Δt_FE is a twelfth
 
-    Functions of the time are called by the threads of a step, one after the other; their exceptions end an integration.
+    The threads of a step call functions of the time one after the other. Exceptions of these functions end an integration.
 
     Raises InputError if these are inconsistent."""
 
@@ -142,11 +142,11 @@ class KineticProblem:
     def solve_collision(self, u: ArrayLike, a: float, b: float = 0.0, t: float = 0.0) -> Array:
         """Returns the solution v of the stage equation v = u + a Q(v)/ε + b Q'(v)Q(v)/ε², a ≥ 0, b ≤ 0.
 
-        Raises InputError for other a and b, for which a stage may have no solution, and unless a, b and t are finite."""
+        Raises InputError for other a and b, because a stage may then have no solution, and unless a, b and t are finite."""
         return self._core.solve_collision(real_array("u", u), finite("a", a, lowest=0.0), finite("b", b, highest=0.0), finite("t", t))
 
     def project_to_equilibrium(self, u: ArrayLike, t: float = 0.0) -> Array:
-        """Returns E(ω), the equilibrium with the moments ω of u, where collisions lead after a long time, in the shape of u.
+        """Returns E(ω), the equilibrium with the moments ω of u, in the shape of u: the limit of collisions after a long time.
 
         Raises NumericalError where there is no equilibrium, and InputError unless t is finite."""
         return self._core.project_to_equilibrium(real_array("u", u), finite("t", t))

@@ -23,16 +23,27 @@ Tableau = Sequence[Sequence[Coefficient]]
 class Certificate:
     """Properties of a method, derived from its coefficients in 60 digits.
 
-    name of the method; kind "imex", "implicit", "explicit" or "exponential"; order of accuracy; conditions, the number of order conditions up to it, and
-    order_residual, the largest of their residuals; error_constant, the 2-norm of the residuals of the next order;
-    unconditional, SSP without a bound from Q; ssp_coefficient r, steps up to r Δt_FE keep what forward Euler keeps at any ε, None where any
-    step does; cfl_limits, the CFL number up to which each reconstruction is linearly stable for any Δt/ε, None where any is, empty for
-    implicit methods; explicit_radius, that of the explicit part alone; limiting_entry, the coefficient that limits r; type "A", "ARS", "CK",
-    "explicit" or "none"; gsa, globally stiffly accurate: the last stage is the result; ap, asymptotic preserving from any data, and ap_data,
-    from which; explicit_evaluations of T and implicit_solves in a step; angle in degrees of A(α)-stability of the implicit part, and
-    whether it is l_stable; keeps, the terms of size ε that are right for ε ≪ Δt: "none", "slow" or "all"; estimate of the error of a
-    step, "embedded solution of order 2" or "step doubling"; claims_hold, and the
-    failures where the claims of the file do not."""
+    name                  name of the method
+    kind                  "imex", "implicit", "explicit" or "exponential"
+    order                 order of accuracy
+    conditions            number of order conditions up to this order
+    order_residual        largest of their residuals
+    error_constant        2-norm of the residuals of the next order
+    unconditional         SSP without a bound from Q
+    ssp_coefficient       r: steps up to r Δt_FE preserve the properties of forward Euler at any ε; None if any step does
+    explicit_radius       the coefficient of the explicit part alone
+    limiting_entry        the coefficient of the method that limits r
+    cfl_limits            CFL number up to which each reconstruction is linearly stable for any Δt/ε; None if it always is; empty for
+                          implicit methods
+    type                  "A", "ARS", "CK", "explicit" or "none"
+    gsa                   globally stiffly accurate: the last stage is the result
+    ap, ap_data           asymptotic preserving from any data; the data that it needs
+    explicit_evaluations, implicit_solves    evaluations of T and solves in a step
+    angle, l_stable       angle in degrees of A(α)-stability of the implicit part; whether this part is L-stable
+    keeps                 the terms of size ε that are correct for ε ≪ Δt: "none", "slow" or "all"
+    estimate              estimate of the error of a step, such as "embedded solution of order 2" or "step doubling"
+    claims_hold           whether the claims of the file hold
+    failures              the claims that do not hold"""
 
     name: str
     kind: str
@@ -210,7 +221,7 @@ def read_method(file: str | Path) -> Method:
 def order_conditions(A: Tableau, A_hat: Tableau | None = None, A_dot: Tableau | None = None, *, order: int) -> list[OrderCondition]:
     """Returns all order conditions of a tableau up to `order`: A of Q, A_hat of T, A_dot of Q̇ (s × s each), u^{n+1} the last stage.
 
-    Without A_hat the method is for Q alone. Coefficients may be numbers, fractions or text ("1/3"), and count with every
+    Without A_hat the method is for Q alone. Coefficients may be numbers, fractions or text ("1/3"), and are used with every
     digit. Raises InputError."""
     def texts(tableau: Tableau | None) -> list[list[str]]:
         return [] if tableau is None else [[_text(x) for x in row] for row in tableau]

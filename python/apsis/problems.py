@@ -45,8 +45,8 @@ class RelaxationProblem:
 
 @dataclass(frozen=True, eq=False)
 class Solution:
-    """States u[k] at the times t[k], with the numbers of accepted and rejected steps, the name of the method, and why it was
-    chosen; reason is "" if the caller named the method.
+    """States u[k] at the times t[k], with the numbers of accepted and rejected steps, the name of the method, and the reason for
+    its choice. The reason is "" if the caller named the method.
 
     derivatives of a GeneralProblem: "jacobian", "complex steps" or "finite differences"; "" for other problems."""
 
@@ -77,23 +77,23 @@ def integrate(problem: RelaxationProblem | GeneralProblem | KineticProblem, u0: 
               controller: str = "predictive", threads: int | None = None) -> Solution:
     """Integrates from u0 at t[0] and returns the states at all times of t.
 
-        method          a name, a file or a Method; "auto" chooses by the table of `apsis list choices`
+        method          a name, a file or a Method; "auto" chooses from the table of `apsis list choices`
         dt              length of steps, shortened until it divides each interval
         safety          without dt: steps of safety · r · Δt_FE, 0 < safety
         startup         "graded" resolves the initial layer of data out of equilibrium by short first steps
         startup_growth  ratio of the successive times of these steps, from 2 to 64; with 4 they are half as many as with 2 and less
                         accurate
         tolerance       bound of the estimated error of a step
-        controller      law by which the next step follows from the errors of the last ones (`apsis list controllers`)
+        controller      law that computes the next step from the errors of the last steps (`apsis list controllers`)
         threads         of a problem on a mesh; all processors for large problems by default, and results do not depend on it
 
     The result has the chosen method and the reason. Without dt, and with forward_euler_step, admissible or positivity, "auto" preserves
     bounds. A warning on standard error names a better method if dt is unfit for ε (docs/plateaus.md). On a mesh r Δt_FE is at most the
     linear stability limit (Certificate.cfl_limits).
 
-    With a tolerance steps are shorter where the estimated error, the largest difference to the embedded solution of the method, would
-    exceed it. Neither dt nor forward_euler_step is then needed. Methods without an embedded solution take each step twice, in one piece
-    and in two halves, and compare.
+    The estimated error of a step is the largest difference to the embedded solution of the method. With a tolerance, steps are shortened
+    until this error is below it. Neither dt nor forward_euler_step is then needed. Methods without an embedded solution take each step
+    twice, in one piece and in two halves, and compare the results.
 
     Raises InputError, NumericalError with step and t, and exceptions of the functions."""
     if not isinstance(problem, (RelaxationProblem, GeneralProblem, KineticProblem)):

@@ -145,15 +145,15 @@ def run(case: Case, *overrides: str, out: str | Path | None = None, restart: str
         progress    called as progress(step, steps, t, smallest) about 20 times a second; False ends the run, with a checkpoint in out
         initial     initial data in place of those of the case
         jumps       places at which functions of `initial` jump
-        threads     0 for all processors; by default OMP_NUM_THREADS, else all for a large case and 1 for a small one
+        threads     0 for all processors; by default OMP_NUM_THREADS, otherwise all for a large case and 1 for a small one
         device      a device of this machine (`apsis info`) by its number or place; results have the bits of the host
         comm        communicator of mpi4py, whose processes share the mesh and call the function together; the first one gets the
                     result, the others None
 
     `initial` is an array [cells, components], a function that returns all components, or a mapping of the variables of the model,
     {"rho": lambda x: 1 + x, "T": 1}. The mapping has numbers, functions of the coordinates x, y, z, or arrays with a value for each
-    cell. A function of all components has the coordinates as arguments, which are numbers. In a model with a velocity grid v_x, v_y,
-    v_z follow, arrays [components], as many as there are dimensions. The functions "f", or "g" and "h", of a mapping have the same
+    cell. The arguments of a function of all components are the coordinates, which are numbers. In a model with a velocity grid v_x,
+    v_y, v_z follow, an array [components] for each velocity dimension. The functions "f", or "g" and "h", of a mapping have the same
     arguments, with arrays [velocities], and return an array [velocities]. Functions are averaged over cells like formulas, exactly
     between their `jumps`. Results and restarts name the data `from = "python"`; a restart takes the state of the checkpoint.
 

@@ -38,10 +38,11 @@ def solve_steady(problem: KineticProblem, u0: ArrayLike, tolerance: float = 1e-8
         problem = apsis.KineticProblem("bgk", ..., reconstruction="upwind5")
         steady = apsis.solve_steady(problem, problem.state(rho=1, T=1))
 
-    u0 is the start, and gives the mass between walls. The state has the tolerance if the 2-norm of the residual is at most this
-    times that of u0, or rounding, and the moments change by at most this, relative. `images`: earlier iterates that each one is
-    mixed from (Anderson). reconstruction = "upwind5" is best: nonlinear weights may never settle where f jumps, but those of
-    "weno5-z-smooth" do. With positivity = True the state is nonnegative, of models whose targets are not negative.
+    u0 is the start, and determines the mass between walls. The state satisfies the tolerance under two conditions. The 2-norm of the
+    residual is at most the tolerance times that of u0, or at rounding level. The relative change of the moments is at most the
+    tolerance. `images` is the number of earlier iterates that are mixed into each iterate (Anderson). reconstruction = "upwind5" is
+    best: nonlinear weights may never settle where f jumps, except those of "weno5-z-smooth". With positivity = True the state is
+    nonnegative for models with nonnegative targets.
     Raises InputError for models that do not relax to an equilibrium, without space, and where ε = 0; NumericalError if the
     iteration diverges, stalls, or is not complete after `iterations`. docs/steady.md describes the method."""
     if not isinstance(problem, KineticProblem):

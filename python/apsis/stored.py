@@ -12,8 +12,9 @@ from .runs import Result
 def open(folder: str | Path) -> Result:  # noqa: A001, used as apsis.open
     """Returns the Result of a stored run: `run(…, out=folder)` or `apsis run --out folder`.
 
-    Without snapshots t and fields have the end alone, and without a stored distribution f has no numbers. f is what the file
-    holds: every output.stride-th cell in output.precision, and with output.distribution_at no numbers (points/f of the file). Raises FileError if the folder is not a result folder."""
+    Without snapshots t and fields have only the end. f has the cells of the file: every output.stride-th one, in output.precision. It
+    is empty without a stored distribution, and with output.distribution_at (see points/f of the file). Raises FileError if the folder
+    is not a result folder."""
     from .plot.run_result import read_result  # needs h5py and Matplotlib, which runs do not
     from .plot.style import PictureError
     try:

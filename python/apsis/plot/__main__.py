@@ -35,7 +35,7 @@ def parse(arguments: list[str] | None) -> argparse.Namespace:
 
 
 def method_description(name: str) -> dict[str, Any]:
-    """Name and Butcher form of a method of the catalogue or a file. Raises PictureError."""
+    """Returns name and Butcher form of a method of the catalogue or a file. Raises PictureError."""
     try:
         import apsis  # imported here: all other pictures need no compiled module
         method = apsis.read_method(name) if Path(name).is_file() else apsis.method(name)

@@ -16,20 +16,20 @@ Runs = Sequence[tuple[str, RunResult]]  # labels and results
 
 
 def comparisons(runs: Runs, slice_at: str | None = None) -> Iterator[tuple[str, Any]]:
-    """Suffixes and figures: "" for the fields, and "-probe-NAME" for profiles along every probe that all runs have. Raises PictureError."""
+    """Returns suffixes and figures: "" for the fields, and "-probe-NAME" for profiles along every common probe. Raises PictureError."""
     yield "", comparison_figure(runs, slice_at)
     for name, figure in probe_comparisons(runs):
         yield f"-{name}", figure
 
 
 def comparison_figure(runs: Runs, slice_at: str | None = None) -> Any:
-    """The fields that all runs have: on a line a panel of each, in several dimensions a row of maps of each. Raises PictureError."""
+    """Draws the fields that all runs have: on a line a panel of each, in several dimensions a row of maps of each. Raises PictureError."""
     names = shared_fields(runs)
     return lines(runs, names) if maps.dimensions(runs[0][1]) == 1 else rows_of_maps(runs, names, slice_at)
 
 
 def shared_fields(runs: Runs) -> list[str]:
-    """Names of the fields over space that all runs have. Raises PictureError if no field is common to all, or the dimensions differ."""
+    """Returns the names of the fields over space that all runs have. Raises PictureError if there is no common field, or dimensions differ."""
     dimensions = {maps.dimensions(run) for _, run in runs}
     if len(dimensions) > 1:
         raise PictureError("nothing to compare (the runs have different space dimensions); give runs of one model")
@@ -41,7 +41,7 @@ def shared_fields(runs: Runs) -> list[str]:
 
 
 def lines(runs: Runs, names: list[str]) -> Any:
-    """A panel for each field: the run with most cells as a line, the others with markers; runs with equally many as lines."""
+    """Draws a panel for each field: the run with most cells as a line, the others with markers; runs with equally many cells as lines."""
     finest = finest_of(runs)
     equal = len({len(run.arrays["x"]) for _, run in runs}) == 1
     figure, axes = panels(len(names))
@@ -65,7 +65,7 @@ def lines(runs: Runs, names: list[str]) -> Any:
 
 
 def rows_of_maps(runs: Runs, names: list[str], slice_at: str | None) -> Any:
-    """A row of maps for each field and the speed, a column for each run, with one range of colours in a row; in space on one plane."""
+    """Draws a row of maps for each field and the speed, a column for each run, with one range of colours in a row; in space on one plane."""
     planes = [maps.planes_of(run, slice_at)[0] for _, run in runs]
     fields = [{name: run.fields[name] for name in names} for _, run in runs]
     shown = [maps.with_length(each, plane) for each, plane in zip(fields, planes)]

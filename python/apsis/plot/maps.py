@@ -44,8 +44,8 @@ def dimensions(result: RunResult) -> int:
 
 
 def middle_of(result: RunResult, normal: str) -> int:
-    """The cells in the middle along an axis; where one end alone is a plane of symmetry, the cells beside it, since the flow continues
-    beyond as its mirror image."""
+    """Returns the cells in the middle along an axis. If only one end is a plane of symmetry, returns the cells beside it, because the flow
+    continues beyond it as its mirror image."""
     count = len(result.arrays[normal])
     case = result.manifest.get("case", {})
     usual = case.get("space", {}).get("boundary")
@@ -54,7 +54,7 @@ def middle_of(result: RunResult, normal: str) -> int:
 
 
 def plane_at(result: RunResult, normal: str, place: float | None = None) -> Plane:
-    """The plane of cells nearest to a place along an axis, by default in the middle or at a plane of symmetry."""
+    """Returns the plane of cells nearest to a place along an axis, by default in the middle or at a plane of symmetry."""
     x = result.arrays[normal]
     index = middle_of(result, normal) if place is None else int(np.abs(x - place).argmin())
     across, up = (axis for axis in AXES if axis != normal)
@@ -62,7 +62,7 @@ def plane_at(result: RunResult, normal: str, place: float | None = None) -> Plan
 
 
 def planes_of(result: RunResult, chosen: str | None) -> list[Plane]:
-    """All planes to draw: that of a result in the plane; in space those in the middle or at planes of symmetry, or the
+    """Returns all planes to draw: that of a result in the plane; in space those in the middle or at planes of symmetry, or the
     chosen "z=0.5". Raises PictureError."""
     if dimensions(result) == 2:
         if chosen is not None:
@@ -91,8 +91,8 @@ def borders(centres: Array) -> Array:
 
 
 def limits_of(values: Array, scale: float = 0.0) -> Colours:
-    """Smallest and largest value of a colour map, and its name: symmetric about 0 for fields of both signs. Values below 1e-12 of
-    `scale` are rounding: all have the colour of 0."""
+    """Returns the smallest and largest value of a colour map, symmetric about 0 for fields of both signs, and its name. Values below
+    1e-12 of `scale` are rounding, and have the colour of 0."""
     finite = values[np.isfinite(values)]
     low, high = (float(finite.min()), float(finite.max())) if finite.size else (0.0, 1.0)
     if max(-low, high) < 1e-12 * scale:
@@ -108,23 +108,23 @@ def limits_of(values: Array, scale: float = 0.0) -> Colours:
 
 
 def length_of(fields: Mapping[str, Array], vector: str) -> Array:
-    """Lengths of a vector with the components vector_x, vector_y, …"""
+    """Returns the lengths of a vector with the components vector_x, vector_y, …"""
     return np.sqrt(sum(fields[f"{vector}_{axis}"]**2 for axis in AXES if f"{vector}_{axis}" in fields))
 
 
 def vector_in(fields: Mapping[str, Array], plane: Plane) -> str | None:
-    """The vector whose components in a plane are both known."""
+    """Returns the vector with both components in a plane."""
     return next((name for name in VECTORS if all(f"{name}_{axis}" in fields for axis in (plane.across, plane.up))), None)
 
 
 def with_length(fields: Mapping[str, Array], plane: Plane) -> dict[str, Array]:
-    """Fields and, last, the length of their vector."""
+    """Returns the fields and, last, the length of their vector."""
     vector = vector_in(fields, plane)
     return dict(fields) if vector is None else {**fields, VECTORS[vector]: length_of(fields, vector)}
 
 
 def colours_of(fields: Mapping[str, Array]) -> dict[str, Colours]:
-    """Colours of each field: components of a vector that are zero up to rounding are so on the scale of its length."""
+    """Returns the colours of each field. Components of a vector are zero up to rounding relative to its length."""
     lengths = {name: float(np.nanmax(length_of(fields, name), initial=0.0)) for name in VECTORS if f"{name}_x" in fields}
     return {name: limits_of(values, lengths.get(name.rpartition("_")[0], 0.0)) for name, values in fields.items()}
 
@@ -134,13 +134,13 @@ def without_solids(values: Array) -> Any:
 
 
 def label_of(result: RunResult, name: str) -> str:
-    """Name and unit of a field, or of the length of a vector."""
+    """Returns name and unit of a field, or of the length of a vector."""
     vector = next((vector for vector, length in VECTORS.items() if length == name), None)
     return result.label(name, 44) if vector is None else f"{name} ({result.unit(f'{vector}_x')})"
 
 
 def sizes_of(result: RunResult, planes: Sequence[Plane]) -> list[tuple[float, float]]:
-    """Widths and heights of maps in inches on one scale; a side of less than an inch is enlarged, up to the eighth of the other one."""
+    """Returns widths and heights of maps in inches on one scale. A side of less than an inch is enlarged, up to 1/8 of the other side."""
     extents = [tuple(float(np.ptp(borders(result.arrays[axis]))) for axis in (plane.across, plane.up)) for plane in planes]
     inch = max(max(sides) for sides in extents) / (3.4 if all(up > 0.4 * across for across, up in extents) else 4.8)
     sizes = []
@@ -154,8 +154,8 @@ def sizes_of(result: RunResult, planes: Sequence[Plane]) -> list[tuple[float, fl
 
 def draw_map(panel: Any, result: RunResult, name: str, values: Array, plane: Plane, colours: Colours, size: tuple[float, float],
              title: str = "") -> None:
-    """Draws values[x, y(, z)] on a plane, with contours and a colour bar; cells without a value, those of solids, are grey, and so
-    are the parts of cells that lie in bodies."""
+    """Draws values[x, y(, z)] on a plane, with contours and a colour bar. Cells without a value, those of solids, are grey. So are the
+    parts of cells that lie in bodies."""
     across, up = result.arrays[plane.across], result.arrays[plane.up]
     shown = without_solids(plane.cut(values))
     low, high, name_of_map = colours
@@ -196,8 +196,8 @@ def draw_streamlines(panel: Any, result: RunResult, fields: Mapping[str, Array],
 
 
 def sheet(sizes: Sequence[tuple[float, float]], count: int, title: str = "") -> tuple[Any, list[Any]]:
-    """A figure of `count` maps in rows, the maps of a row with these sizes, and its panels. Panels are placed in inches: a layout by
-    Matplotlib reserves no room for what stands around a panel of given aspect."""
+    """Returns a figure of `count` maps in rows, the maps of a row with these sizes, and its panels. Panels are placed in inches, because
+    Matplotlib's layout reserves no room for labels around a panel of given aspect."""
     left, right, below, above = 0.75, 0.95, 0.5, 0.5  # room for labels, colour bar and title
     rows, height = -(-count // len(sizes)), max(height for _, height in sizes)
     whole = (sum(left + width + right for width, _ in sizes), rows * (below + height + above) + (0.35 if title else 0.0))
@@ -217,7 +217,7 @@ def sheet(sizes: Sequence[tuple[float, float]], count: int, title: str = "") -> 
 
 def maps_of(result: RunResult, fields: Mapping[str, Array], planes: list[Plane], title: str,
             colours: Mapping[str, Colours] | None = None) -> Any:
-    """A map of each field and, with streamlines, of the speed: one after the other, or with several planes a row of each."""
+    """Draws a map of each field and, with streamlines, of the speed: one after the other, or with several planes a row of each."""
     shown = with_length(fields, planes[0])
     colours = colours or colours_of(shown)
     sizes = sizes_of(result, planes)
@@ -237,12 +237,12 @@ def fields_of_plane(result: RunResult) -> dict[str, Array]:
 
 
 def maps_figure(result: RunResult, title: str, t: float, slice_at: str | None = None) -> Any:
-    """Maps of all fields at the end. Raises PictureError."""
+    """Draws maps of all fields at the end. Raises PictureError."""
     return maps_of(result, fields_of_plane(result), planes_of(result, slice_at), f"{title}, {result.moment(t)}")
 
 
 def frames(result: RunResult, title: str, slice_at: str | None = None) -> Iterator[tuple[str, Any]]:
-    """Names and figures of all snapshots, with one range of colours. Raises PictureError."""
+    """Yields names and figures of all snapshots, with one range of colours. Raises PictureError."""
     if len(result.t) < 2 or dimensions(result) < 2:
         raise PictureError("there is nothing to animate (frames are snapshots of a run in two or three dimensions); run with output.every", 2)
     planes = planes_of(result, slice_at)

@@ -114,8 +114,8 @@ def share_y_range(panels: list[Any]) -> None:
 
 
 def measure_of(picture: Document) -> str:
-    """Returns the axis label of the quantity that a study measured, taken from the first sentence of its caption, "The l2 norm of the difference to ….": a difference to
-    the next finer run is not an error."""
+    """Returns the axis label of the quantity that a study measured. It comes from the first sentence of the caption, "The l2 norm of the
+    difference to ….", because a difference to the next finer run is not an error."""
     measure = str(picture["caption"]).partition(". ")[0].removeprefix("The ").removesuffix(".")
     return textwrap.fill(f"{measure} (dimensionless)", 44)
 

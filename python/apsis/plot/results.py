@@ -15,8 +15,8 @@ from .surfaces import surface_figures
 
 
 def fields_figure(result: RunResult, slice_at: str | None = None) -> Any:
-    """A panel for each macroscopic field: over x at the end and, thin, at earlier snapshots; without space over t; in several dimensions
-    a map, on planes in the middle, of symmetry, or at "z=0.5". None if there is nothing to draw."""
+    """Draws a panel for each macroscopic field: over x at the end and, thin, at earlier snapshots; without space over t; in several dimensions
+    a map, on planes in the middle, of symmetry, or at "z=0.5". Returns None if there is nothing to draw."""
     if maps.dimensions(result) > 1:
         return maps.maps_figure(result, title_of(result), end_of(result), slice_at)
     if slice_at is not None:
@@ -67,15 +67,15 @@ def is_reduced(result: RunResult) -> bool:
 
 
 def distribution_name(result: RunResult) -> str:
-    """f over one velocity component: f itself, or its integral over the others and over components η that the grid does not resolve."""
+    """Returns f over one velocity component: f itself, or its integral over the others and over components η that the grid does not resolve."""
     if is_reduced(result):
         return "∫ f dη"
     return {2: "∫ f dv_y", 3: "∫ f dv_y dv_z"}.get(result.velocity_dimensions, "f")
 
 
 def distribution_over_velocity(result: RunResult) -> tuple[Array, Array] | None:
-    """Nodes of v, or of v_x with several velocity dimensions, and f[cell, node] over them, integrated over the other components.
-    None for a model without a velocity grid; a few speeds do not count."""
+    """Returns the nodes of v, or of v_x with several velocity dimensions, and f[cell, node] over them, integrated over the other
+    components. Returns None for a model without a velocity grid, also if it has a few speeds."""
     if result.velocity_dimensions > 1:
         found = result.arrays.get("v_x"), result.marginals.get("v_x")
     else:
@@ -177,7 +177,7 @@ def iterations_figure(result: RunResult) -> Any:
 
 
 def draw_coefficients(panel: Any, history: dict[str, Array], names: list[str]) -> None:
-    """Draws coefficients of bodies after the first step, before which the gas has given them nothing."""
+    """Draws coefficients of bodies from the first step on, because the gas gives no force before it."""
     kinds = list(dict.fromkeys(name[:3] for name in names))
     bodies = list(dict.fromkeys(name[4:] for name in names))
     for name in names:

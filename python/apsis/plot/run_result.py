@@ -61,12 +61,12 @@ class RunResult:
         return 0 if v is None else v.shape[1] if v.ndim == 2 else 1
 
     def label(self, name: str, width: int = 36) -> str:
-        """Words and unit of a field; lines break outside of parentheses."""
+        """Returns words and unit of a field; lines break outside of parentheses."""
         words = self.labels.get(name, f"{name} (dimensionless)")
         return textwrap.fill(re.sub(r"\([^()]*\)", lambda part: part[0].replace(" ", "\N{NO-BREAK SPACE}"), words), width)
 
     def unit(self, name: str) -> str:
-        """Unit of a field, of x, or of a column of the history."""
+        """Returns the unit of a field, of x, or of a column of the history."""
         return str(self.manifest.get("units", {}).get(name, "dimensionless"))
 
 
@@ -150,7 +150,7 @@ def read_result(folder: str | Path) -> RunResult:
 
 
 def number_sets(group: Any) -> Iterator[tuple[str, Any]]:
-    """Names and datasets of real numbers of a group; texts, other objects and dangling links, which others may add, are left out."""
+    """Yields names and datasets of real numbers of a group. Omits texts, other objects and dangling links, which others may add."""
     for name in group if isinstance(group, h5py.Group) else ():
         item = group.get(name)
         if isinstance(item, h5py.Dataset) and item.dtype.kind in "iuf" and item.shape is not None:

@@ -75,7 +75,7 @@ def panels(count: int, width: float = 4.2, height: float = 3.6) -> tuple[Any, li
 
 
 def earlier_times(count: int) -> list[int]:
-    """Which of `count` snapshots to draw below the last one: at most five, equally far apart."""
+    """Returns the snapshots of `count` to draw below the last one: at most five, equally far apart."""
     return [int(k) for k in np.unique(np.linspace(0, count - 1, 5).astype(int))] if count > 0 else []
 
 
@@ -96,8 +96,8 @@ def pictures_in(folder: Path) -> Path:
 
 @contextmanager
 def whole_file(path: Path) -> Iterator[BinaryIO]:
-    """Yields a file of a temporary name that gets its own when complete. It is new, since a link of the temporary name may lead to
-    any file of the user. Raises PictureError."""
+    """Yields a file of a temporary name, and renames it when it is complete. The file is new, because a link of the temporary name may
+    lead to any file of the user. Raises PictureError."""
     partial = path.with_name(f".{path.name}.partial")
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
@@ -113,8 +113,8 @@ def whole_file(path: Path) -> Iterator[BinaryIO]:
 
 
 def show_literally(figure: Any) -> Any:
-    """Makes titles and labels of a figure, which may come from a file, text: Matplotlib takes "$…$" as a formula, and fails where
-    it cannot read one. Numbers at ticks stay, and texts with the gid "formula"."""
+    """Makes titles and labels of a figure plain text, because they may come from a file. Matplotlib takes "$…$" as a formula, and fails if
+    it cannot read the formula. Numbers at ticks and texts with the gid "formula" do not change."""
     numbers = {label for axis in figure.findobj(Axis) for label in (*axis.get_ticklabels(which="both"), axis.get_offset_text())}
     for one in figure.findobj(Text):
         if one not in numbers and one.get_gid() != "formula":

@@ -14,7 +14,7 @@ SOLID = "#D9D9D9"
 
 
 def behind(corners: Array, piece: Array) -> Array:
-    """The part of a convex polygon on the left of a piece [ends, 2], where its body is."""
+    """Returns the part of a convex polygon on the left of a piece [ends, 2], on the side of its body."""
     first, along = piece[0], piece[1] - piece[0]
     sides = along[0] * (corners[:, 1] - first[1]) - along[1] * (corners[:, 0] - first[0])
     kept: list[Array] = []
@@ -27,7 +27,7 @@ def behind(corners: Array, piece: Array) -> Array:
 
 
 def solid_parts(pieces: Array, x: Array, y: Array) -> Iterator[Array]:
-    """The solid part of the cell of each piece [piece, ends, 2], between the edges x and y of the cells."""
+    """Returns the solid part of the cell of each piece [piece, ends, 2], between the edges x and y of the cells."""
     for piece in pieces:
         along = piece[1] - piece[0]
         inside = piece.mean(axis=0) + 1e-6 * np.array([along[1], -along[0]])  # in the gas, if the piece is a side of the cell
@@ -40,7 +40,7 @@ def solid_parts(pieces: Array, x: Array, y: Array) -> Iterator[Array]:
 
 
 def cut_of(polygons: Array, normal: int, place: float) -> Array:
-    """The segments [segment, end, 2] in which polygons [piece, corner, 3] meet a plane across an axis, the body on their left."""
+    """Returns the segments [segment, end, 2] in which polygons [piece, corner, 3] meet a plane across an axis, the body on their left."""
     height = polygons[..., normal] - place
     above = height >= 0
     segments = []
@@ -58,7 +58,7 @@ def cut_of(polygons: Array, normal: int, place: float) -> Array:
 
 
 def solid_cells(polygons: Array, edges: Sequence[Array], normal: int, place: float) -> Iterator[Array]:
-    """The corners of the cells that a plane meets in a body alone, although they are cut: their nearest piece of wall lies before the
+    """Returns the corners of cut cells that a plane meets only inside a body: their nearest piece of wall lies before the
     middle of the cell, and does not reach the plane."""
     following = np.roll(polygons, -1, axis=1)
     outward = np.cross(polygons - polygons[:, :1], following - polygons[:, :1]).sum(axis=1)
@@ -93,7 +93,7 @@ def draw_walls(panel: Any, walls: dict[str, Array], x: Array, y: Array) -> None:
 
 
 def draw_slice(panel: Any, walls: dict[str, Array], edges: Sequence[Array], normal: int, place: float) -> None:
-    """Does so in a plane through bodies in space, between the edges of the cells along x, y and z."""
+    """Covers and draws the same in a plane through bodies in space, between the edges of the cells along x, y and z."""
     for polygons in walls.values():
         cover(panel, list(solid_cells(polygons, edges, normal, place)))
     x, y = (one for k, one in enumerate(edges) if k != normal)

@@ -20,7 +20,7 @@ def overview(claims: list[Claim]) -> str:
 
 
 def deciding(claim: Claim) -> str:
-    """Returns the finding for the overview: the first that fails, else the first."""
+    """Returns the finding for the overview: the first failing one, otherwise the first."""
     if claim.get("error"):
         return str(claim["error"])
     findings = claim["findings"]

@@ -60,7 +60,7 @@ def summary(result: RunResult) -> str:
 
 
 def velocities(manifest: dict[str, Any]) -> str:
-    """A table of how well the velocities represent the gas; nothing for other models, and for results of earlier versions."""
+    """Returns a table of how well the velocities represent the gas; nothing for other models, and for results of earlier versions."""
     numbers = manifest["result"]
     if numbers.get("velocity_room") is None:
         return ""
@@ -79,7 +79,7 @@ def velocities(manifest: dict[str, Any]) -> str:
 
 
 def steady_state(found: dict[str, Any]) -> str:
-    """How far iterations came, or the rate that time.steady bounds and the distance from the steady state if it decays."""
+    """Describes the residual of iterations, or the rate that time.steady bounds and the distance from the steady state if it decays."""
     if "iterations" in found:
         state = "The steady state is found" if found["reached"] else "The steady state is not found"
         return (f"{state} after {found['iterations']} iterations: residual {number(found['residual'])} of that of the start, "
@@ -118,7 +118,8 @@ def promises(manifest: dict[str, Any]) -> str:
 
 
 def balances(result: RunResult) -> str:
-    """A table of the rates at which faces and solid boxes give to the gas at the end, flux_FACE_QUANTITY of the history."""
+    """Returns a table of the rates at which the gas receives quantities from faces and solid boxes at the end, flux_FACE_QUANTITY of the
+    history."""
     quantities = [name.removeprefix("total_") for name in result.history if name.startswith("total_")]
     faces = dict.fromkeys(name.removeprefix("flux_").removesuffix(f"_{quantities[0]}") for name in result.history
                           if quantities and name.startswith("flux_") and name.endswith(f"_{quantities[0]}"))

@@ -11,7 +11,7 @@ from .errors import InputError
 
 
 def number(name: str, value: Any, positive: bool = False) -> float:
-    """`value` as a float. Raises InputError unless it is a real number and, if `positive`, finite and above 0."""
+    """Returns `value` as a float. Raises InputError unless it is a real number and, if `positive`, finite and above 0."""
     if isinstance(value, (str, bytes, bool, np.bool_)) or value is None:
         raise InputError(f"{name} is {value!r} (a real number is needed); give one")
     try:
@@ -24,7 +24,7 @@ def number(name: str, value: Any, positive: bool = False) -> float:
 
 
 def finite(name: str, value: Any, lowest: float = -math.inf, highest: float = math.inf) -> float:
-    """`value` as a finite float in an interval. Raises InputError if it is not."""
+    """Returns `value` as a finite float in an interval. Raises InputError if it is not."""
     found = number(name, value)
     if not math.isfinite(found):
         raise InputError(f"{name} = {found:g} is not finite; give a finite number")
@@ -36,14 +36,14 @@ def finite(name: str, value: Any, lowest: float = -math.inf, highest: float = ma
 
 
 def text(name: str, value: Any) -> str:
-    """`value` as a str. Raises InputError unless it is one."""
+    """Returns `value` as a str. Raises InputError unless it is one."""
     if not isinstance(value, str):
         raise InputError(f"{name} is a {type(value).__name__} (a name is needed); give one")
     return value
 
 
 def whole_number(name: str, value: Any) -> int:
-    """`value` as an int. Raises InputError unless it is an integer."""
+    """Returns `value` as an int. Raises InputError unless it is an integer."""
     if isinstance(value, (bool, np.bool_)) or not isinstance(value, (int, np.integer)):
         raise InputError(f"{name} is {value!r} (an integer is needed); give one")
     if abs(int(value)) > 2**31 - 1:
@@ -52,7 +52,7 @@ def whole_number(name: str, value: Any) -> int:
 
 
 def real_array(name: str, value: Any) -> NDArray[np.float64]:
-    """`value` as an array of floats. Raises InputError if it has text, None, complex numbers or rows of different length."""
+    """Returns `value` as an array of floats. Raises InputError if it has text, None, complex numbers or rows of different length."""
     try:
         found = np.asarray(value)
         if found.dtype.kind == "O":

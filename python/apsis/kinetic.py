@@ -99,8 +99,8 @@ class KineticProblem:
     def sample(self, initial: str | Callable[..., ArrayLike], jumps: Sequence[float] = ()) -> Array:
         """Returns cell averages or point values of initial data.
 
-        `initial` is a name of the model's data, or a function of the coordinates of a point that returns all components;
-        averages are exact to rounding where it is smooth between the `jumps` (in increasing order, on a line).
+        `initial` is a name of the model's data, or a function of the coordinates of a point that returns all components.
+        Averages are exact to rounding if it is smooth between the `jumps` (in increasing order, on a line).
         Raises InputError if the discrete model does not support the data."""
         if isinstance(initial, str):
             return self._core.sample_named(initial)
@@ -116,10 +116,11 @@ class KineticProblem:
             0.7 * problem.state(rho=rho, u=1, T=1) + 0.3 * problem.state(rho=rho, u=-1, T=1)
             problem.state(f=lambda x, v_x: (1 + 0.1 * np.sin(x)) * np.exp(-v_x**2 / 2))
 
-        A variable is a number, a function of the coordinates, or an array with a value for each cell; a vector is a list of
+        A variable is a number, a function of the coordinates, or an array with a value for each cell. A vector is a list of
         these, a function that returns all components, or an array [cells, components]. f, g and h are functions of the coordinates
-        and of v_x, v_y, v_z, an array [velocities] for each velocity dimension, that return an array [velocities]. Functions give averages as in sample(), or
-        point values; arrays are the averages, or the point values, of cells. Raises InputError with the point or the cell."""
+        and of v_x, v_y, v_z, an array [velocities] for each velocity dimension. They return an array [velocities]. Functions give
+        averages as in sample(), or point values. Arrays are the averages, or the point values, of cells. Raises InputError with the
+        point or the cell."""
         return self._core.state(variables, sorted(number("jumps", x) for x in jumps))
 
     def fields(self, u: ArrayLike) -> dict[str, Array]:

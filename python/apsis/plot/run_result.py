@@ -22,12 +22,18 @@ ARRAYS = ("f", "x", "y", "z", "v", "v_weights", "v_x", "v_y", "v_z", "epsilon")
 
 @dataclass(frozen=True)
 class RunResult:
-    """The content of a result folder. fields[name][cell] are the macroscopic fields at the end, snapshots[name][k, cell] at the times t[k];
-    arrays has those of f[cell, component], x, v, epsilon that the model has, and with several velocity dimensions v_weights and
-    the nodes v_x, v_y, v_z; history[column][step] the checks of every step; labels the axis labels; case the case file;
-    marginals[axis][cell, node] f integrated over the other velocity components; probes[name][column] the fields along lines; surfaces[name][column] what the gas
-    gives to faces, solid boxes and bodies; walls[name][piece, corner] the ends (x, y) of the pieces of a body in the plane, or the corners
-    (x, y, z) of its polygons in space. In several space dimensions [cell] stands for [x, y(, z)]."""
+    """The content of a result folder. In several space dimensions [cell] stands for [x, y(, z)].
+
+    fields[name][cell]            macroscopic fields at the end
+    snapshots[name][k, cell]      macroscopic fields at the times t[k]
+    arrays                        those of f[cell, component], x, v, epsilon that the model has; with several velocity dimensions
+                                  also v_weights and the nodes v_x, v_y, v_z
+    history[column][step]         checks of every step
+    labels, case                  axis labels, and the case file
+    marginals[axis][cell, node]   f integrated over the other velocity components
+    probes[name][column]          fields along lines
+    surfaces[name][column]        fluxes from the gas to faces, solid boxes and bodies
+    walls[name][piece, corner]    ends (x, y) of the pieces of a body in the plane, or corners (x, y, z) of its polygons in space"""
 
     folder: Path
     manifest: dict[str, Any]

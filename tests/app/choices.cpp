@@ -71,7 +71,8 @@ TEST(list, of_choices_names_methods_and_the_measurements_behind_them) {
   const auto all = nlohmann::json::parse(run_apsis(folder, {"list", "choices", "--json"}).out);
   ASSERT_GE(all.size(), 6u);
   for (const auto& row : all)
-    EXPECT_THAT(row["origin"].get<std::string>(), AnyOf(HasSubstr("contests"), HasSubstr("flows")));
+    EXPECT_THAT(row["origin"].get<std::string>(),
+                AnyOf(HasSubstr("contests"), HasSubstr("flows"), HasSubstr("stiff systems")));
   EXPECT_THAT(run_apsis(folder, {"list", "choices"}).out, HasSubstr("md-imex-8-3-mixed"));
 }
 

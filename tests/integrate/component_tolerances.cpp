@@ -109,6 +109,23 @@ TEST(component_tolerances, the_first_step_changes_what_has_a_tolerance) {
   EXPECT_NEAR(loose / strict, 50, 5);  // rates relative to u: 1, and 100/2
 }
 
+TEST(component_tolerances, the_first_step_does_not_depend_on_the_length_of_the_interval) {
+  // Robertson's reaction: the change of u_1 over a long time is as large as the tolerance lets it count.
+  const auto g = [](const auto& u, auto& out) {
+    out[0] = -0.04 * u[0] + 1e4 * u[1] * u[2];
+    out[2] = 3e7 * u[1] * u[1];
+    out[1] = -out[0] - out[2];
+  };
+  newton_problem problem(no_transport{}, g);
+  const row u{1, 0, 0};
+  const apsis::error_target<double> target{1.0, 4};
+  const component_tolerances<double> tolerances({1e-6}, {1e-10, 1e-14, 1e-10});
+  const double in_short = apsis::first_step_length(problem, 0.0, u, 1e-6, target, tolerances);
+  EXPECT_LT(in_short, 1e-7);
+  for (const double length : {1e-3, 1.0, 1e5, 1e11})
+    EXPECT_NEAR(apsis::first_step_length(problem, 0.0, u, length, target, tolerances) / in_short, 1.0, 0.1);
+}
+
 TEST(newton_problem, ends_stage_solves_within_the_tolerance) {
   // u' = −u³ at stages v = u + a G(v) of a cubic: without tolerances the root to rounding, with them an error
   // that is far below the tolerance, as Newton's method is quadratic, and fewer matrices.

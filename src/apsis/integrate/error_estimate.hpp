@@ -86,7 +86,9 @@ class error_estimate {
 /// of the moments at equilibrium and, unless the initial layer changes the moments by less than tol, at the
 /// rate D₀/(ε/C) of the layer, D₀ = u − E(ℛu) and ε/C the smallest. The layer changes the moments by
 /// (ε/C) ℛ(T(u) − T(E(ℛu))). For problems without relaxation_time the rate is that of T + Q, or of T if Q
-/// cannot be evaluated. At most `longest`, which is also the result if nothing changes. Dimensionless.
+/// cannot be evaluated. The rate is that of a change much shorter than the step: over a long one the distance
+/// may no longer grow, as where it is relative to the larger state. At most `longest`, which is also the
+/// result if nothing changes. Dimensionless.
 template <problem P, class Distance>
 typename P::real first_step_length(P& p, typename P::real t, const typename P::state& u,
                                    typename P::real longest, const error_target<typename P::real>& wanted,
@@ -102,7 +104,7 @@ typename P::real first_step_length(P& p, typename P::real t, const typename P::s
   if constexpr (problem_with_relaxation_time<P>) layer = p.relaxation_time(t, u);
   const bool relaxes = layer < std::numeric_limits<real>::infinity();
   // Short enough for T to be linear, long enough for rounding errors to be negligible.
-  const real tau = longest * real(1e-5);
+  real tau = longest * real(1e-5);
   state before = u, after = u;
   try {
     combine(p, {{real(0), &u}}, after);
@@ -117,13 +119,20 @@ typename P::real first_step_length(P& p, typename P::real t, const typename P::s
     };
     const bool layer_matters = relaxes && distance(moved_from(u), moved_from(before)) > wanted.tolerance;
     const real of_layer = layer_matters ? distance(u, before) / size / layer : real(0);
-    move(before, tau, after);
-    if constexpr (problem_with_explicit_collision<P> && !problem_with_relaxation_time<P>) {
-      const target<state, real> by_collision{&after, real(0), tau, false};
-      p.add_collision(t, before, {&by_collision, 1});
+    const auto rate_over = [&](real time) {
+      move(before, time, after);
+      if constexpr (problem_with_explicit_collision<P> && !problem_with_relaxation_time<P>) {
+        const target<state, real> by_collision{&after, real(0), time, false};
+        p.add_collision(t, before, {&by_collision, 1});
+      }
+      if (relaxes) project_to_equilibrium(p, t + time, after);
+      return std::max(of_layer, distance(before, after) / size / time) / part;
+    };
+    real rate = rate_over(tau);
+    for (int shorter = 0; shorter < 30 && rate * tau > real(0.1); ++shorter) {
+      tau = real(1e-2) / rate;
+      rate = rate_over(tau);
     }
-    if (relaxes) project_to_equilibrium(p, t + tau, after);
-    const real rate = std::max(of_layer, distance(before, after) / size / tau) / part;
     return rate * longest > real(1) ? real(1) / rate : longest;
   } catch (const numerical_error&) {
     return longest;  // invalid u: the step will report it

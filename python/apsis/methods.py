@@ -23,27 +23,27 @@ Tableau = Sequence[Sequence[Coefficient]]
 class Certificate:
     """Properties of a method, derived from its coefficients in 60 digits.
 
-    name                  name of the method
-    kind                  "imex", "implicit", "explicit" or "exponential"
-    order                 order of accuracy
-    conditions            number of order conditions up to this order
-    order_residual        largest of their residuals
-    error_constant        2-norm of the residuals of the next order
-    unconditional         SSP without a bound from Q
-    ssp_coefficient       r: steps up to r Δt_FE preserve the properties of forward Euler at any ε; None if any step does
-    explicit_radius       the coefficient of the explicit part alone
-    limiting_entry        the coefficient of the method that limits r
-    cfl_limits            CFL number up to which each reconstruction is linearly stable for any Δt/ε; None if it always is; empty for
-                          implicit methods
-    type                  "A", "ARS", "CK", "explicit" or "none"
-    gsa                   globally stiffly accurate: the last stage is the result
-    ap, ap_data           asymptotic preserving from any data; the data that it needs
-    explicit_evaluations, implicit_solves    evaluations of T and solves in a step
-    angle, l_stable       angle in degrees of A(α)-stability of the implicit part; whether this part is L-stable
-    keeps                 the terms of size ε that are correct for ε ≪ Δt: "none", "slow" or "all"
-    estimate              estimate of the error of a step, such as "embedded solution of order 2" or "step doubling"
-    claims_hold           whether the claims of the file hold
-    failures              the claims that do not hold"""
+        name                  name of the method
+        kind                  "imex", "implicit", "explicit" or "exponential"
+        order                 order of accuracy
+        conditions            number of order conditions up to this order
+        order_residual        largest of their residuals
+        error_constant        2-norm of the residuals of the next order
+        unconditional         SSP without a bound from Q
+        ssp_coefficient       r: steps up to r Δt_FE preserve the properties of forward Euler at any ε; None if any step does
+        explicit_radius       the coefficient of the explicit part alone
+        limiting_entry        the coefficient of the method that limits r
+        cfl_limits            CFL number up to which each reconstruction is linearly stable for any Δt/ε; None if it always is; empty for
+                              implicit methods
+        type                  "A", "ARS", "CK", "explicit" or "none"
+        gsa                   globally stiffly accurate: the last stage is the result
+        ap, ap_data           asymptotic preserving from any data; the data that it needs
+        explicit_evaluations, implicit_solves    evaluations of T and solves in a step
+        angle, l_stable       angle in degrees of A(α)-stability of the implicit part; whether this part is L-stable
+        keeps                 the terms of size ε that are correct for ε ≪ Δt: "none", "slow" or "all"
+        estimate              estimate of the error of a step, such as "embedded solution of order 2" or "step doubling"
+        claims_hold           whether the claims of the file hold
+        failures              the claims that do not hold"""
 
     name: str
     kind: str

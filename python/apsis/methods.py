@@ -23,6 +23,8 @@ Tableau = Sequence[Sequence[Coefficient]]
 class Certificate:
     """Properties of a method, derived from its coefficients in 60 digits.
 
+    All numbers are dimensionless. The members are:
+
         name                  name of the method
         kind                  "imex", "implicit", "explicit" or "exponential"
         order                 order of accuracy

@@ -80,14 +80,14 @@ asan: ## run the tests under the address and undefined-behaviour sanitizers
 	ctest --preset asan -LE slow
 
 tsan: ## run the tests of threads and of their users under the thread sanitizer
-	cmake --preset tsan >/dev/null
+	cmake --preset tsan $(WHOLE) >/dev/null
 	cmake --build build/tsan --target tests/all
 	ctest --preset tsan -LE slow
 
+# The list of compile commands suffices: configuring generates all files that a source includes.
 tidy: ## run clang-tidy over the library, the program and the Python package
-	cmake --preset clang -DAPSIS_PYTHON_PACKAGE=ON -DPython3_EXECUTABLE=$(PYTHON) -DAPSIS_PCH=OFF -DCMAKE_UNITY_BUILD=OFF >/dev/null
-	cmake --build build/clang --target app/apsis
-	run-clang-tidy-19 -quiet -p build/clang -j $(CORES) '$(CURDIR)/(src|app|paper|validation|python)/.*'
+	cmake --preset clang -B build/tidy -DAPSIS_PYTHON_PACKAGE=ON -DPython3_EXECUTABLE=$(PYTHON) >/dev/null
+	run-clang-tidy-19 -quiet -p build/tidy -j $(CORES) '$(CURDIR)/(src|app|paper|validation|python)/.*'
 
 bench: ## measure every table of docs/speed.md into results/bench/speed.json (two hours, on an idle machine)
 	@scripts/install-packages.sh test

@@ -128,7 +128,7 @@ TEST(expression, has_the_same_values_at_many_points_as_at_each) {
        {"c", "7", "a/b*(c + (g - 1)*(c - a^2/(2*b)))", "a > b ? c : -a", "exp(a)*b^0.3 - c",
         "(a < b) || (c < 1)", "((a + b)*(a - c) - (b + c)*(b - a))/((a + 1)*(b + 2) + c^4)"}) {
     const expression of(text, {}, kind);
-    for (const std::size_t points : {1, 3, 8, 64, 65, 150}) {
+    for (const std::size_t points : {1u, 3u, 8u, 64u, 65u, 150u}) {
       std::vector<double> rows, columns(3 * points), of_rows(points), of_columns(points);
       for (std::size_t k = 0; k < 3 * points; ++k)
         rows.push_back(0.1 + 0.37 * static_cast<double>((k * k) % 23));

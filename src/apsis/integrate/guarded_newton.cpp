@@ -6,6 +6,7 @@
 #include <apsis/integrate/guarded_newton.hpp>
 
 #include <apsis/core/errors.hpp>
+#include <apsis/integrate/mass_matrix.hpp>
 #include <apsis/integrate/unsquared_newton.hpp>
 
 #include <algorithm>
@@ -46,6 +47,14 @@ std::span<const Real> as_span(const column<Real>& x) {
 }
 
 template <class Real>
+column<Real> masses(const stage_equation<Real>& equation, const column<Real>& x) {
+  if (equation.mass() == nullptr) return x;
+  column<Real> y(x.size());
+  equation.mass()->multiply(as_span(x), as_span(y));
+  return y;
+}
+
+template <class Real>
 class newton_operator : public Eigen::EigenBase<newton_operator<Real>> {
  public:
   using Scalar = Real;
@@ -66,7 +75,7 @@ class newton_operator : public Eigen::EigenBase<newton_operator<Real>> {
   column<Real> apply(const column<Real>& x) const {
     column<Real> y(x.size()), z(x.size());
     equation_.differential(as_span(v_), as_span(x), as_span(y), as_span(z));
-    return x + y + z;
+    return masses(equation_, x) + y + z;
   }
 
  private:
@@ -96,6 +105,7 @@ namespace {
 
 using detail::as_span;
 using detail::column;
+using detail::masses;
 
 template <class Real>
 using square = Eigen::Matrix<Real, Eigen::Dynamic, Eigen::Dynamic>;
@@ -143,8 +153,8 @@ struct newton_step {
   std::function<column<Real>(const column<Real>&)> correct;  ///< r ↦ −R'(v)⁻¹ r; empty if not available
 };
 
-/// Solves R'(v) Δ = −r by LU. Rows and columns are scaled by the terms of R' before they cancel, so that the
-/// test for singularity measures cancellation and neither stiffness nor units.
+/// Solves R'(v) Δ = −r by LU, without a mass matrix. Rows and columns are scaled by the terms of R' before
+/// they cancel, so that the test for singularity measures cancellation and neither stiffness nor units.
 template <class Real>
 newton_step<Real> dense_step(stage_equation<Real>& equation, const column<Real>& v, const column<Real>& r,
                              int iteration) {
@@ -193,17 +203,18 @@ newton_step<Real> krylov_step(stage_equation<Real>& equation, const column<Real>
   const column<Real> step = gmres.solve(-r / size) * size;
   column<Real> y(v.size()), z(v.size());
   equation.differential(as_span<Real>(v), as_span<Real>(step), as_span(y), as_span(z));
-  const Real applied = largest<Real>(step + y + z);
-  const Real terms = largest<Real>(step.cwiseAbs() + y.cwiseAbs() + z.cwiseAbs());
+  const column<Real> moved = masses(equation, step);
+  const Real applied = largest<Real>(moved + y + z);
+  const Real terms = largest<Real>(moved.cwiseAbs() + y.cwiseAbs() + z.cwiseAbs());
   if (applied < singular_below<Real> * terms) fail_singular(iteration, static_cast<double>(applied / terms));
-  if (!step.allFinite() || !(largest<Real>(step + y + z + r) <= Real(0.1) * size))
+  if (!step.allFinite() || !(largest<Real>(moved + y + z + r) <= Real(0.1) * size))
     throw numerical_error(
         fmt::format("GMRES does not solve the linear system of Newton iteration {} (nearly singular, or too "
                     "stiff without a preconditioner); reduce the time step, or use linear_solver::dense",
                     iteration));
   equation.differential(as_span<Real>(v), as_span<Real>(v), as_span(y), as_span(z));
-  const Real noise =
-      std::numeric_limits<Real>::epsilon() * largest<Real>(v.cwiseAbs() + y.cwiseAbs() + z.cwiseAbs());
+  const Real noise = std::numeric_limits<Real>::epsilon() *
+                     largest<Real>(masses(equation, v).cwiseAbs() + y.cwiseAbs() + z.cwiseAbs());
   return {step, noise, Real(0), {}};
 }
 
@@ -219,6 +230,8 @@ class newton {
         trial_r_(v_.size()) {}
 
   newton_report solve(std::span<Real> out) {
+    // The measure of stiffness of dense_step() compares terms with an entry 1 of every row.
+    if (equation_.mass() != nullptr && is_dense()) return unsquared_newton<Real>(equation_, out, options_);
     inside_ = equation_.admissible(as_span<Real>(std::as_const(v_)));
     norm_ = evaluate(v_, r_);
     if (!std::isfinite(norm_)) fail_at_start();
@@ -243,11 +256,9 @@ class newton {
   /// Takes one Newton step with backtracking; returns false when v is a root to round-off.
   bool iterate() {
     if (++iteration_ > options_.max_iterations) fail_to_converge();
-    const bool dense =
-        options_.solver == linear_solver::dense ||
-        (options_.solver == linear_solver::automatic && equation_.size() <= options_.dense_limit);
-    const auto [delta, noise, stiffness, correct] = dense ? dense_step<Real>(equation_, v_, r_, iteration_)
-                                                          : krylov_step<Real>(equation_, v_, r_, iteration_);
+    const auto [delta, noise, stiffness, correct] = is_dense()
+                                                        ? dense_step<Real>(equation_, v_, r_, iteration_)
+                                                        : krylov_step<Real>(equation_, v_, r_, iteration_);
     too_stiff_ = stiffness > stiffest(equation_);
     if (too_stiff_) return false;
     const Real of_v = largest<Real>(v_);
@@ -285,6 +296,11 @@ class newton {
     }
     if (near) return false;
     fail_to_reduce();
+  }
+
+  bool is_dense() const {
+    return options_.solver == linear_solver::dense ||
+           (options_.solver == linear_solver::automatic && equation_.size() <= options_.dense_limit);
   }
 
   Real size_of(const column<Real>& delta) {

@@ -6,6 +6,9 @@
 
 namespace apsis {
 
+template <class Real>
+class mass_matrix;
+
 /// Coefficients and explicit part of R(v) = v − u_e − a G(v) − b Ġ(v).
 template <class Real>
 struct stage_terms {
@@ -17,11 +20,15 @@ struct stage_terms {
 
 /// Interface of a stage equation R(v) = v − u_e − a G(v) − b Ġ(v) = 0 to Newton's method;
 /// n unknowns, dimensionless.
+///
+/// With a mass matrix M the rate of v is M⁻¹ G(v), and R is multiplied by M: R(v) = M (v − u_e) − a G(v) −
+/// b Ġ(v), Ġ(v) = G'(v) M⁻¹ G(v). Sparse M and G' then have sparse stage systems.
 template <class Real>
 class stage_equation {
  public:
   virtual ~stage_equation() = default;
-  virtual stage_terms<Real> terms() const = 0;  ///< a, b and u_e
+  virtual stage_terms<Real> terms() const = 0;                       ///< a, b and u_e
+  virtual const mass_matrix<Real>* mass() const { return nullptr; }  ///< M; null for the unit matrix
   /// Sets g ← G(v).
   virtual void rate(std::span<const Real> v, std::span<Real> g) = 0;
   /// Sets jk ← G'(v) k, the derivative of G along a flow with the rate k; plus ∂G/∂t where time flows too.
@@ -33,8 +40,8 @@ class stage_equation {
   virtual std::size_t size() const = 0;  ///< n
   /// Sets r ← R(v).
   virtual void residual(std::span<const Real> v, std::span<Real> r) = 0;
-  /// Sets the terms of R'(v) x = x + y + z: y ← −a G'(v) x, z ← −b Ġ'(v) x. They are separate because a stage
-  /// is singular where they cancel.
+  /// Sets the terms of R'(v) x = M x + y + z: y ← −a G'(v) x, z ← −b Ġ'(v) x. They are separate because a
+  /// stage is singular where they cancel.
   virtual void differential(std::span<const Real> v, std::span<const Real> x, std::span<Real> y,
                             std::span<Real> z) = 0;
   /// Whether v is admissible; Newton iterates never leave the admissible set once they are inside.

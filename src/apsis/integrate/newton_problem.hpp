@@ -6,6 +6,8 @@
 #include <apsis/integrate/autodiff.hpp>
 #include <apsis/integrate/component_tolerances.hpp>
 #include <apsis/integrate/guarded_newton.hpp>
+#include <apsis/integrate/internal/newton_stage.hpp>
+#include <apsis/integrate/mass_matrix.hpp>
 #include <apsis/integrate/problem.hpp>
 #include <apsis/integrate/simplified_newton.hpp>
 #include <apsis/integrate/unsquared_newton.hpp>
@@ -15,6 +17,7 @@
 #include <limits>
 #include <optional>
 #include <span>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -29,6 +32,8 @@ namespace apsis {
 ///   g(t, u, out)   instead, for G that depends on time; t has the scalar type of u
 /// g may also be an object with derivatives written by hand (`differentiated`, autodiff.hpp).
 /// newton_problem{f, g} has the state std::vector<double>, make_newton_problem<State>(f, g) any other.
+///
+/// with_mass(M) makes it M u' = F(t, u) + G(u).
 ///
 /// A stage with d = 0 and ḋ < 0 is singular where Δt λ = ±i/√|ḋ| for an eigenvalue λ of G'. That cannot
 /// happen for real negative spectra (relaxation); for other G it is detected and reported.
@@ -72,8 +77,17 @@ class newton_problem {
   /// Solves stages by sparse factorizations (sparse_newton): G' has entries at the places of the pattern
   /// only.
   newton_problem& with_sparsity(const sparsity_pattern& pattern) {
-    sparse_.emplace(pattern);
-    simplified_ = simplified_newton<real>(pattern);
+    places_ = pattern;
+    choose_matrices();
+    return *this;
+  }
+
+  /// Makes the system M u' = F(t, u) + G(u). F and G are functions of u as before, but Δt_FE is that of
+  /// u' = M⁻¹ F, and what G conserves is conserved by M u. Stage systems with a sparsity pattern get the
+  /// places of M, too. M does not change, and stages of another number of unknowns throw input_error.
+  newton_problem& with_mass(mass_matrix<real> mass) {
+    equation_.mass_of_rates = std::move(mass);
+    choose_matrices();
     return *this;
   }
 
@@ -82,6 +96,7 @@ class newton_problem {
     accumulate<State>(targets, u, [&]() -> const State& {
       work_ = u;
       f_(t, u, work_);
+      divide_by_mass(work_);
       return work_;
     });
   }
@@ -94,6 +109,7 @@ class newton_problem {
       equation_.field.value(v_, equation_.g);
       work_ = u;
       unload(equation_.g, work_);
+      divide_by_mass(work_);
       return work_;
     });
   }
@@ -108,6 +124,7 @@ class newton_problem {
       equation_.field.value(v_, equation_.g);
       using size_type = decltype(u.size());
       for (std::size_t i = 0; i < v_.size(); ++i) work_[static_cast<size_type>(i)] += equation_.g[i];
+      divide_by_mass(work_);
       return work_;
     });
   }
@@ -159,64 +176,6 @@ class newton_problem {
   const newton_report& report() const { return report_; }
 
  private:
-  struct equation final : timed_stage_equation<real> {
-    explicit equation(G callable) : field(std::move(callable)) {}
-
-    std::size_t size() const override { return explicit_part.size(); }
-    bool admissible(std::span<const real> v) override { return !admissible_set || admissible_set(v); }
-    stage_terms<real> terms() const override { return {a, b, explicit_part}; }
-    void rate(std::span<const real> v, std::span<real> out) override { field.value(v, out); }
-    void rate_product(std::span<const real> v, std::span<const real> k, std::span<real> jk) override {
-      field.flow_product(v, k, jk);
-    }
-    real size_of_correction(std::span<const real> v, std::span<const real> delta) override {
-      return tolerances ? tolerances->of_change(v, delta) / share : std::numeric_limits<real>::infinity();
-    }
-    void rate_curvature(std::span<const real> v, std::span<const real> k, std::span<const real> x,
-                        std::span<real> jx, std::span<real> hx) override {
-      field.curvature(v, k, x, jx, hx);
-    }
-
-    void residual(std::span<const real> v, std::span<real> r) override {
-      if (b != real(0)) {
-        field.time_derivatives(v, g, g_dot);
-      } else {
-        field.value(v, g);
-      }
-      for (std::size_t i = 0; i < v.size(); ++i) {
-        r[i] = (v[i] - explicit_part[i]) - a * g[i];
-        if (b != real(0)) r[i] -= b * g_dot[i];
-      }
-    }
-
-    void differential(std::span<const real> v, std::span<const real> x, std::span<real> y,
-                      std::span<real> z) override {
-      if (b != real(0)) {
-        field.second_product(v, x, y, z);
-      } else {
-        field.jacobian_product(v, x, y);
-      }
-      for (std::size_t i = 0; i < v.size(); ++i) {
-        y[i] *= -a;
-        z[i] = b != real(0) ? -b * z[i] : real(0);
-      }
-    }
-
-    void product_at(real at, std::span<const real> v, std::span<const real> x, std::span<real> jx) override {
-      field.set_time(at, theta);
-      field.jacobian_product(v, x, jx);
-      field.set_time(t, theta);
-    }
-
-    field_of<real, G> field;
-    real t = real(0), theta = real(0);  ///< set_time() of the stage
-    std::function<bool(std::span<const real>)> admissible_set;
-    std::optional<component_tolerances<real>> tolerances;
-    real share = real(0);
-    real a = real(0), b = real(0);
-    std::vector<real> explicit_part, g, g_dot;
-  };
-
   /// The stage at time t, in which time passes at the rate θ along the flow of G.
   void solve(real t, real theta, real a, real b, State& u) {
     load(u);
@@ -230,6 +189,7 @@ class newton_problem {
       return;
     }
     warn_of_cost();
+    require_size_of_mass(v_.size());
     equation_.t = t;
     equation_.theta = theta;
     equation_.a = a;
@@ -252,6 +212,33 @@ class newton_problem {
     const auto found = simplified_.solve(equation_, equation_.t, v_);
     if (found) report_ = *found;
     return found.has_value();
+  }
+
+  /// Sets up the matrices of stages for the pattern and the mass matrix.
+  void choose_matrices() {
+    const auto& mass = equation_.mass_of_rates;
+    std::optional<sparsity_pattern> places = places_;
+    if (places && mass) places = places->joined_with(mass->places());
+    if (places) sparse_.emplace(*places, mass);
+    simplified_ = simplified_newton<real>(std::move(places), mass);
+  }
+
+  /// Sets x ← M⁻¹ x.
+  void divide_by_mass(State& x) {
+    if (!equation_.mass_of_rates) return;
+    require_size_of_mass(static_cast<std::size_t>(x.size()));
+    using size_type = decltype(x.size());
+    std::vector<real>& k = equation_.moved;
+    k.resize(static_cast<std::size_t>(x.size()));
+    for (std::size_t i = 0; i < k.size(); ++i) k[i] = x[static_cast<size_type>(i)];
+    equation_.mass_of_rates->divide(k);
+    unload(k, x);
+  }
+  void require_size_of_mass(std::size_t n) const {
+    if (const auto& mass = equation_.mass_of_rates; mass && mass->size() != n)
+      throw input_error("the mass matrix has " + std::to_string(mass->size()) + " rows and the state " +
+                        std::to_string(n) +
+                        " unknowns (they differ in number); give the matrix of this system");
   }
 
   /// Warns once, before the first solve.
@@ -286,8 +273,9 @@ class newton_problem {
   }
 
   F f_;
-  equation equation_;
+  newton_stage<real, G> equation_;
   newton_options options_;
+  std::optional<sparsity_pattern> places_;
   std::optional<sparse_newton<real>> sparse_;
   simplified_newton<real> simplified_;
   bool warned_ = false;  ///< of the cost of dense systems

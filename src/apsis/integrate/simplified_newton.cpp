@@ -158,18 +158,18 @@ class simplified_stage {
 
 template <class Real>
 struct simplified_newton<Real>::parts {
-  explicit parts(std::optional<sparsity_pattern> pattern = {}) : kept(std::move(pattern)) {}
+  parts(std::optional<sparsity_pattern> pattern, std::optional<mass_matrix<Real>> mass)
+      : kept(std::move(pattern), std::move(mass)) {}
   kept_derivative<Real> kept;
 };
 
 template <class Real>
-simplified_newton<Real>::simplified_newton() : parts_(std::make_unique<parts>()) {}
-template <class Real>
-simplified_newton<Real>::simplified_newton(const sparsity_pattern& pattern)
-    : parts_(std::make_unique<parts>(pattern)) {}
+simplified_newton<Real>::simplified_newton(std::optional<sparsity_pattern> pattern,
+                                           std::optional<mass_matrix<Real>> mass)
+    : parts_(std::make_unique<parts>(std::move(pattern), std::move(mass))) {}
 template <class Real>
 simplified_newton<Real>::simplified_newton(const simplified_newton& other)
-    : parts_(std::make_unique<parts>(other.parts_->kept.places())) {}
+    : parts_(std::make_unique<parts>(other.parts_->kept.places(), other.parts_->kept.mass())) {}
 template <class Real>
 simplified_newton<Real>& simplified_newton<Real>::operator=(const simplified_newton& other) {
   if (this != &other) *this = simplified_newton(other);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <apsis/integrate/guarded_newton.hpp>
+#include <apsis/integrate/mass_matrix.hpp>
 #include <apsis/integrate/sparsity_pattern.hpp>
 
 #include <memory>
@@ -18,10 +19,10 @@ class timed_stage_equation : public stage_equation<Real> {
 };
 
 /// Simplified Newton method for the stages v = u_e + a G(v) of a step,
-///   v ← v + δ,   (1 − aJ) δ = −R(v),
-/// where J is the derivative of G at the beginning of the step. All stages of the step share it, and stages
-/// of the same a share the factors of 1 − aJ. The linear invariants of G are those of J too: every correction
-/// conserves them.
+///   v ← v + δ,   (M − aJ) δ = −R(v),
+/// where M is the mass matrix, or 1, and J is the derivative of G at the beginning of the step. All stages of
+/// the step share J, and stages of the same a share the factors of M − aJ. The linear invariants of G are
+/// those of J too: every correction conserves them.
 ///
 /// θ = |δ_k|/|δ_{k−1}|, in the units of stage_equation::size_of_correction(), is the measured contraction. A
 /// stage is accepted where the estimated remaining error θ/(1 − θ) |δ_k| is at most 1/8 of the accuracy that
@@ -34,12 +35,12 @@ class timed_stage_equation : public stage_equation<Real> {
 template <class Real>
 class simplified_newton {
  public:
-  /// With full matrices.
-  simplified_newton();
-  /// With sparse matrices that have entries at the places of the pattern only.
-  explicit simplified_newton(const sparsity_pattern& pattern);
-  simplified_newton(const simplified_newton& other);                 ///< copies the pattern
-  simplified_newton& operator=(const simplified_newton& other);      ///< copies the pattern
+  /// With full matrices for no pattern, else with sparse ones that have entries at its places only. The
+  /// pattern contains the places of the mass matrix.
+  explicit simplified_newton(std::optional<sparsity_pattern> pattern = {},
+                             std::optional<mass_matrix<Real>> mass = {});
+  simplified_newton(const simplified_newton& other);                 ///< copies pattern and mass matrix
+  simplified_newton& operator=(const simplified_newton& other);      ///< copies pattern and mass matrix
   simplified_newton(simplified_newton&& other) noexcept;             ///< moves
   simplified_newton& operator=(simplified_newton&& other) noexcept;  ///< moves
   ~simplified_newton();

@@ -38,6 +38,12 @@ sparsity_pattern sparsity_pattern::banded(std::size_t n, std::size_t lower, std:
   return {n, places};
 }
 
+sparsity_pattern sparsity_pattern::joined_with(std::vector<place> more) const {
+  for (std::size_t j = 0; j < size(); ++j)
+    for (const std::size_t i : rows(j)) more.emplace_back(i, j);
+  return {size(), more};
+}
+
 void sparsity_pattern::group_columns() {
   const std::size_t n = size();
   // Columns with an entry in each row, to find the neighbours of a column.

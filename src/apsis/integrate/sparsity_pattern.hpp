@@ -23,6 +23,9 @@ class sparsity_pattern {
   /// The places with −upper ≤ row − column ≤ lower. Throws input_error for n = 0.
   static sparsity_pattern banded(std::size_t n, std::size_t lower, std::size_t upper);
 
+  /// The pattern with more places. Throws input_error for a place outside.
+  sparsity_pattern joined_with(std::vector<place> more) const;
+
   std::size_t size() const { return begin_.size() - 1; }  ///< n
   std::size_t entries() const { return rows_.size(); }    ///< number of places
   /// Index of the first entry of a column among all entries, which are in the order of columns; begin(n) is

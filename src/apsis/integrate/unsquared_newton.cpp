@@ -42,7 +42,8 @@ class unsquared {
         trial_(2 * n_),
         trial_r_(2 * n_),
         jk_(n_),
-        g_(n_) {
+        g_(n_),
+        mass_(equation.mass()) {
     x_.head(n_) = Eigen::Map<column>(start.data(), n_);
     x_.tail(n_).setZero();
   }
@@ -99,7 +100,7 @@ class unsquared {
 
   Real size_of(const column& delta) { return equation_.size_of_correction(v_of(x_), v_of(delta)); }
 
-  /// Repeats corrections with the same M while they become much smaller; returns false at the root.
+  /// Repeats corrections with the same S while they become much smaller; returns false at the root.
   bool repeat(Real size) {
     for (int k = 0; k < 8; ++k) {
       const column next = correction(r_);
@@ -137,8 +138,8 @@ class unsquared {
   /// Sets r to the residual at x; returns whether it is finite.
   bool residual(const column& x, column& r) {
     equation_.rate(v_of(x), span_of(g_));
-    r.head(n_) = (x.head(n_) - explicit_part_) - a_ * x.tail(n_);
-    r.tail(n_) = x.tail(n_) - g_;
+    r.head(n_) = masses((x.head(n_) - explicit_part_) - a_ * x.tail(n_));
+    r.tail(n_) = masses(x.tail(n_)) - g_;
     if (b_ != Real(0)) {
       equation_.rate_product(v_of(x), k_of(x), span_of(jk_));
       r.head(n_) -= b_ * jk_;
@@ -146,16 +147,32 @@ class unsquared {
     return r.allFinite();
   }
 
-  /// Factorizes M at x_ and estimates the rounding errors of its unknowns.
+  /// Returns M x.
+  column masses(const column& x) const {
+    if (mass_ == nullptr) return x;
+    column y(n_);
+    mass_->multiply(v_of(x), span_of(y));
+    return y;
+  }
+  /// Returns |M| x.
+  column mass_sizes(const column& x) const {
+    if (mass_ == nullptr) return x;
+    column y(n_);
+    mass_->multiply_sizes(v_of(x), span_of(y));
+    return y;
+  }
+
+  /// Factorizes S at x_ and estimates the rounding errors of its unknowns.
   void linearize() {
     if (!system_.linearize(equation_, x_)) fail("has no finite derivative");
     // Sizes of the terms of the residual, G being a sum of terms about |G'| |v|.
     column terms(2 * n_);
-    terms.head(n_) = x_.head(n_).cwiseAbs() + explicit_part_.cwiseAbs() +
-                     std::abs(a_) * x_.tail(n_).cwiseAbs() +
+    terms.head(n_) = mass_sizes(x_.head(n_).cwiseAbs() + explicit_part_.cwiseAbs() +
+                                std::abs(a_) * x_.tail(n_).cwiseAbs()) +
                      std::abs(b_) * system_.sizes_times(x_.tail(n_).cwiseAbs());
     equation_.rate(v_of(x_), span_of(g_));
-    terms.tail(n_) = x_.tail(n_).cwiseAbs() + g_.cwiseAbs() + system_.sizes_times(x_.head(n_).cwiseAbs());
+    terms.tail(n_) =
+        mass_sizes(x_.tail(n_).cwiseAbs()) + g_.cwiseAbs() + system_.sizes_times(x_.head(n_).cwiseAbs());
     noise_ = rounding * (system_.spread(terms) + x_.cwiseAbs());
     // A rate need not be more accurate than the residual shows: one that vanishes has no terms, but rounding
     // errors of the linear solve.
@@ -214,7 +231,8 @@ class unsquared {
   Eigen::Index n_;
   Real a_, b_;
   column explicit_part_, x_, r_, trial_, trial_r_, jk_, g_;
-  column noise_;  ///< rounding errors of the unknowns
+  const mass_matrix<Real>* mass_;  ///< M; null for 1
+  column noise_;                   ///< rounding errors of the unknowns
   Real step_ = Real(0);
   int iteration_ = 0;
   bool inside_ = true;
@@ -235,19 +253,22 @@ template newton_report unsquared_newton(stage_equation<long double>&, std::span<
 
 template <class Real>
 struct sparse_newton<Real>::parts {
-  explicit parts(const sparsity_pattern& of) : pattern(of), system(of) {}
+  parts(const sparsity_pattern& of, std::optional<mass_matrix<Real>> with)
+      : pattern(of), mass(std::move(with)), system(pattern, mass) {}
   sparsity_pattern pattern;
+  std::optional<mass_matrix<Real>> mass;
   sparse_stage_system<Real> system;
 };
 
 template <class Real>
-sparse_newton<Real>::sparse_newton(const sparsity_pattern& pattern)
-    : parts_(std::make_unique<parts>(pattern)) {}
+sparse_newton<Real>::sparse_newton(const sparsity_pattern& pattern, std::optional<mass_matrix<Real>> mass)
+    : parts_(std::make_unique<parts>(pattern, std::move(mass))) {}
 template <class Real>
-sparse_newton<Real>::sparse_newton(const sparse_newton& other) : sparse_newton(other.parts_->pattern) {}
+sparse_newton<Real>::sparse_newton(const sparse_newton& other)
+    : sparse_newton(other.parts_->pattern, other.parts_->mass) {}
 template <class Real>
 sparse_newton<Real>& sparse_newton<Real>::operator=(const sparse_newton& other) {
-  if (this != &other) parts_ = std::make_unique<parts>(other.parts_->pattern);
+  if (this != &other) *this = sparse_newton(other);
   return *this;
 }
 template <class Real>

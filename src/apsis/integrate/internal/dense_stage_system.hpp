@@ -1,6 +1,7 @@
 #pragma once
 
 #include <apsis/integrate/internal/stage_system.hpp>
+#include <apsis/integrate/mass_matrix.hpp>
 
 #include <algorithm>
 #include <limits>
@@ -8,7 +9,7 @@
 
 namespace apsis {
 
-/// M as a full matrix.
+/// S as a full matrix.
 template <class Real>
 class dense_stage_system final : public stage_system<Real> {
   using column = typename stage_system<Real>::column;
@@ -21,7 +22,10 @@ class dense_stage_system final : public stage_system<Real> {
     const auto half = [n](const column& of, Eigen::Index from) {
       return std::span<const Real>(of.data() + from, static_cast<std::size_t>(n));
     };
-    square m = square::Identity(2 * n, 2 * n);
+    const square mass = mass_of(equation, n);
+    square m(2 * n, 2 * n);
+    m.topLeftCorner(n, n) = mass;
+    m.bottomRightCorner(n, n) = mass;
     column unit = column::Zero(n), jx(n), hx = column::Zero(n);
     square jacobian(n, n);
     for (Eigen::Index i = 0; i < n; ++i) {
@@ -32,8 +36,7 @@ class dense_stage_system final : public stage_system<Real> {
       jacobian.col(i) = jx;
       if (b != Real(0)) m.col(i).head(n) -= b * hx;
     }
-    m.topRightCorner(n, n) = -b * jacobian;
-    m.topRightCorner(n, n).diagonal().array() -= a;
+    m.topRightCorner(n, n) = -b * jacobian - a * mass;
     m.bottomLeftCorner(n, n) = -jacobian;
     if (!m.allFinite()) return false;
     sizes_ = jacobian.cwiseAbs();
@@ -58,6 +61,11 @@ class dense_stage_system final : public stage_system<Real> {
   }
 
  private:
+  static square mass_of(const stage_equation<Real>& equation, Eigen::Index n) {
+    if (equation.mass() == nullptr) return square::Identity(n, n);
+    return Eigen::Map<const square>(equation.mass()->columns().data(), n, n);
+  }
+
   /// Chooses powers of 2 that bring the largest entries of rows and columns near 1.
   void equilibrate(const square& m) {
     rows_ = column::Ones(m.rows());
@@ -72,10 +80,10 @@ class dense_stage_system final : public stage_system<Real> {
     }
   }
 
-  square sizes_, effects_,          ///< |J|, |−a − bJ|
-      inverse_;                     ///< |M⁻¹|
-  column rows_, cols_;              ///< scales of M
-  Eigen::PartialPivLU<square> lu_;  ///< of the scaled M
+  square sizes_, effects_,          ///< |J|, |−aM − bJ|
+      inverse_;                     ///< |S⁻¹|
+  column rows_, cols_;              ///< scales of S
+  Eigen::PartialPivLU<square> lu_;  ///< of the scaled S
 };
 
 }  // namespace apsis

@@ -3,6 +3,7 @@
 #include <apsis/integrate/internal/band_factors.hpp>
 #include <apsis/integrate/internal/sparse_factors.hpp>
 #include <apsis/integrate/internal/stage_system.hpp>
+#include <apsis/integrate/mass_matrix.hpp>
 #include <apsis/integrate/simplified_newton.hpp>
 
 #include <algorithm>
@@ -60,15 +61,15 @@ class derivative_entries {
   std::vector<Real> values;
 };
 
-/// Factors of 1 − aJ for one a.
+/// Factors of M − aJ for one a; M is the mass matrix, or 1.
 template <class Real>
 class kept_factors {
  public:
   using column = Eigen::Matrix<Real, Eigen::Dynamic, 1>;
   virtual ~kept_factors() = default;
-  /// Factorizes 1 − aJ.
+  /// Factorizes M − aJ.
   virtual void factorize(Real a, const std::vector<Real>& j) = 0;
-  /// Sets x ← (1 − aJ)⁻¹ x; its numbers are not finite where the matrix is singular.
+  /// Sets x ← (M − aJ)⁻¹ x; its numbers are not finite where the matrix is singular.
   virtual void solve(column& x) const = 0;
 };
 
@@ -81,10 +82,18 @@ class kept_dense_factors final : public kept_factors<Real> {
  public:
   using column = typename kept_factors<Real>::column;
 
+  /// With the mass matrix, which null replaces by 1.
+  explicit kept_dense_factors(const mass_matrix<Real>* mass) {
+    if (mass != nullptr) mass_ = mass->columns();
+  }
+
   void factorize(Real a, const std::vector<Real>& j) override {
     const auto n = static_cast<Eigen::Index>(std::llround(std::sqrt(static_cast<double>(j.size()))));
     m_ = -a * Eigen::Map<const square>(j.data(), n, n);
-    m_.diagonal().array() += Real(1);
+    if (mass_.empty())
+      m_.diagonal().array() += Real(1);
+    else
+      m_ += Eigen::Map<const square>(mass_.data(), n, n);
     rows_ = m_.cwiseAbs().rowwise().maxCoeff().cwiseInverse();
     m_ = rows_.asDiagonal() * m_;
     cols_ = m_.cwiseAbs().colwise().maxCoeff().cwiseInverse().transpose();
@@ -98,6 +107,7 @@ class kept_dense_factors final : public kept_factors<Real> {
   }
 
  private:
+  std::vector<Real> mass_;  ///< M by columns; empty for 1
   square m_;
   column rows_, cols_;
   Eigen::PartialPivLU<square> lu_;
@@ -109,27 +119,26 @@ class kept_sparse_factors final : public kept_factors<Real> {
  public:
   using column = typename kept_factors<Real>::column;
 
-  explicit kept_sparse_factors(const sparsity_pattern& pattern) {
+  kept_sparse_factors(const sparsity_pattern& pattern, const mass_matrix<Real>* mass)
+      : masses_(masses_at(pattern, mass)) {
     const auto n = static_cast<int>(pattern.size());
     std::vector<Eigen::Triplet<Real>> places;
     for (std::size_t j = 0; j < pattern.size(); ++j)
-      for (const std::size_t i : pattern.rows(j)) {
-        diagonal_.push_back(i == j ? Real(1) : Real(0));
+      for (const std::size_t i : pattern.rows(j))
         places.emplace_back(static_cast<int>(i), static_cast<int>(j), Real(1));
-      }
     factors_.entries.resize(n, n);
     factors_.entries.setFromTriplets(places.begin(), places.end());
   }
 
   void factorize(Real a, const std::vector<Real>& j) override {
     Real* to = factors_.entries.valuePtr();
-    for (std::size_t e = 0; e < j.size(); ++e) to[e] = diagonal_[e] - a * j[e];
+    for (std::size_t e = 0; e < j.size(); ++e) to[e] = masses_[e] - a * j[e];
     factors_.factorize();
   }
   void solve(column& x) const override { x = factors_.solve(x); }
 
  private:
-  std::vector<Real> diagonal_;  ///< entries of 1
+  std::vector<Real> masses_;  ///< entries of M
   sparse_factors<Real> factors_;
 };
 
@@ -156,15 +165,19 @@ class kept_band_factors final : public kept_factors<Real> {
   using column = typename kept_factors<Real>::column;
 
   /// Stores a reference to the pattern.
-  kept_band_factors(const sparsity_pattern& pattern, pattern_band band)
-      : pattern_(pattern), factors_(pattern.size(), band.lower, band.upper) {}
+  kept_band_factors(const sparsity_pattern& pattern, pattern_band band, const mass_matrix<Real>* mass)
+      : pattern_(pattern),
+        masses_(masses_at(pattern, mass)),
+        factors_(pattern.size(), band.lower, band.upper) {}
 
   void factorize(Real a, const std::vector<Real>& values) override {
     factors_.clear();
     for (std::size_t j = 0; j < pattern_.size(); ++j) {
       std::size_t e = pattern_.begin(j);
-      for (const std::size_t i : pattern_.rows(j))
-        factors_.at(i, j) = (i == j ? Real(1) : Real(0)) - a * values[e++];
+      for (const std::size_t i : pattern_.rows(j)) {
+        factors_.at(i, j) = masses_[e] - a * values[e];
+        ++e;
+      }
     }
     factors_.factorize();
   }
@@ -172,6 +185,7 @@ class kept_band_factors final : public kept_factors<Real> {
 
  private:
   const sparsity_pattern& pattern_;
+  std::vector<Real> masses_;  ///< entries of M
   band_factors<Real> factors_;
 };
 
@@ -179,12 +193,16 @@ class kept_band_factors final : public kept_factors<Real> {
 template <class Real>
 class kept_derivative {
  public:
-  explicit kept_derivative(std::optional<sparsity_pattern> pattern) : pattern_(std::move(pattern)) {}
+  /// The pattern contains the places of the mass matrix.
+  kept_derivative(std::optional<sparsity_pattern> pattern, std::optional<mass_matrix<Real>> mass)
+      : pattern_(std::move(pattern)), mass_(std::move(mass)) {}
   kept_derivative(const kept_derivative&) = delete;  // factors refer to the pattern
   kept_derivative& operator=(const kept_derivative&) = delete;
 
   /// The pattern; nothing for full matrices.
   const std::optional<sparsity_pattern>& places() const { return pattern_; }
+  /// The mass matrix; nothing for 1.
+  const std::optional<mass_matrix<Real>>& mass() const { return mass_; }
   /// Number of products that a derivative costs.
   std::size_t products(std::size_t n) const { return pattern_ ? pattern_->groups().size() : n; }
   /// Number of matrices factorized so far.
@@ -224,7 +242,7 @@ class kept_derivative {
     return true;
   }
 
-  /// Returns the factors of 1 − aJ, valid until J changes.
+  /// Returns the factors of M − aJ, valid until J changes.
   const kept_factors<Real>& factors(Real a) {
     for (std::size_t k = 0; k < used_; ++k)
       if (all_[k].first == a) return *all_[k].second;
@@ -249,13 +267,15 @@ class kept_derivative {
   }
 
   std::unique_ptr<kept_factors<Real>> make_factors() const {
-    if (!pattern_) return std::make_unique<kept_dense_factors<Real>>();
+    const mass_matrix<Real>* mass = mass_ ? &*mass_ : nullptr;
+    if (!pattern_) return std::make_unique<kept_dense_factors<Real>>(mass);
     if (const pattern_band band(*pattern_); band.is_narrow())
-      return std::make_unique<kept_band_factors<Real>>(*pattern_, band);
-    return std::make_unique<kept_sparse_factors<Real>>(*pattern_);
+      return std::make_unique<kept_band_factors<Real>>(*pattern_, band, mass);
+    return std::make_unique<kept_sparse_factors<Real>>(*pattern_, mass);
   }
 
   std::optional<sparsity_pattern> pattern_;
+  std::optional<mass_matrix<Real>> mass_;
   bool inside_ = false;                            ///< whether a step has begun
   Real t_ = Real(0);                               ///< time at which it began
   std::vector<Real> u_;                            ///< its beginning

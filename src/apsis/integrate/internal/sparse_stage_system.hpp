@@ -2,12 +2,14 @@
 
 #include <apsis/integrate/internal/sparse_factors.hpp>
 #include <apsis/integrate/internal/stage_system.hpp>
+#include <apsis/integrate/mass_matrix.hpp>
 #include <apsis/integrate/sparsity_pattern.hpp>
 
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -16,18 +18,22 @@
 
 namespace apsis {
 
-/// M as a sparse matrix. Its entries come from one product for each group of columns of the pattern, and the
-/// order of elimination is found once for each pattern of M. Without b the rates are eliminated, which takes
-/// no squares: (1 − aJ) δv = r_v + a r_k, δk = J δv + r_k.
+/// S as a sparse matrix. Its entries come from one product for each group of columns of the pattern, and the
+/// order of elimination is found once for each pattern of S. Without b the rates are eliminated, which takes
+/// no squares: (M − aJ) δv = r_v + a r_k, M δk = J δv + r_k.
 template <class Real>
 class sparse_stage_system final : public stage_system<Real> {
   using column = typename stage_system<Real>::column;
   using matrix = Eigen::SparseMatrix<Real, Eigen::ColMajor, int>;
 
  public:
-  /// Of a problem whose G' has this pattern.
-  explicit sparse_stage_system(sparsity_pattern pattern)
-      : pattern_(std::move(pattern)), jacobian_(pattern_.entries()), curved_(pattern_.entries()) {
+  /// Of a problem whose G', and mass matrix if there is one, has this pattern.
+  sparse_stage_system(sparsity_pattern pattern, std::optional<mass_matrix<Real>> mass)
+      : pattern_(std::move(pattern)),
+        mass_(std::move(mass)),
+        masses_(masses_at(pattern_, mass_ ? &*mass_ : nullptr)),
+        jacobian_(pattern_.entries()),
+        curved_(pattern_.entries()) {
     reduced_.entries = make_matrix(false);
     whole_.entries = make_matrix(true);
   }
@@ -50,6 +56,7 @@ class sparse_stage_system final : public stage_system<Real> {
     x.tail(n) = r.tail(n);
     for_each_entry(
         [&](std::size_t i, std::size_t j, std::size_t e) { x[n + index(i)] += jacobian_[e] * x[index(j)]; });
+    if (mass_) mass_->divide({x.data() + n, static_cast<std::size_t>(n)});
     return x;
   }
 
@@ -64,7 +71,7 @@ class sparse_stage_system final : public stage_system<Real> {
   column changes_of_rates(const column& sizes) const override {
     column least = column::Constant(index(pattern_.size()), std::numeric_limits<Real>::infinity());
     for_each_entry([&](std::size_t i, std::size_t j, std::size_t e) {
-      const Real effect = std::abs(b_ * jacobian_[e] + (i == j ? a_ : Real(0)));
+      const Real effect = std::abs(b_ * jacobian_[e] + a_ * masses_[e]);
       if (effect > Real(0)) least[index(j)] = std::min(least[index(j)], sizes[index(i)] / effect);
     });
     return least;
@@ -129,7 +136,7 @@ class sparse_stage_system final : public stage_system<Real> {
     return none == Real(0);
   }
 
-  /// Makes a matrix with the pattern of M, or of 1 − aJ.
+  /// Makes a matrix with the pattern of S, or of M − aJ.
   matrix make_matrix(bool whole) const {
     const std::size_t n = pattern_.size();
     std::vector<Eigen::Triplet<Real>> places;
@@ -139,7 +146,7 @@ class sparse_stage_system final : public stage_system<Real> {
       if (!whole) return;
       places.emplace_back(below + row, col, Real(1));
       places.emplace_back(row, below + col, Real(1));
-      if (i == j) places.emplace_back(below + row, below + col, Real(1));
+      if (i == j || mass_) places.emplace_back(below + row, below + col, Real(1));
     });
     const int size = static_cast<int>(whole ? 2 * n : n);
     matrix made(size, size);
@@ -156,8 +163,7 @@ class sparse_stage_system final : public stage_system<Real> {
       const std::size_t begin = pattern_.begin(j);
       const auto rows = pattern_.rows(j);
       for (std::size_t k = 0; k < rows.size(); ++k)
-        *to++ = (rows[k] == j ? Real(1) : Real(0)) -
-                (whole ? b_ * curved_[begin + k] : a_ * jacobian_[begin + k]);
+        *to++ = masses_[begin + k] - (whole ? b_ * curved_[begin + k] : a_ * jacobian_[begin + k]);
       if (!whole) continue;
       for (std::size_t k = 0; k < rows.size(); ++k) *to++ = -jacobian_[begin + k];
     }
@@ -165,14 +171,17 @@ class sparse_stage_system final : public stage_system<Real> {
       const std::size_t begin = pattern_.begin(j);
       const auto rows = pattern_.rows(j);
       for (std::size_t k = 0; k < rows.size(); ++k)
-        *to++ = -b_ * jacobian_[begin + k] - (rows[k] == j ? a_ : Real(0));
-      *to++ = Real(1);
+        *to++ = -b_ * jacobian_[begin + k] - a_ * masses_[begin + k];
+      for (std::size_t k = 0; k < rows.size(); ++k)
+        if (rows[k] == j || mass_) *to++ = masses_[begin + k];
     }
   }
 
   sparsity_pattern pattern_;
-  std::vector<Real> jacobian_, curved_;   ///< entries of J and H
-  sparse_factors<Real> whole_, reduced_;  ///< M; 1 − aJ, if b = 0
+  std::optional<mass_matrix<Real>> mass_;
+  std::vector<Real> masses_,              ///< entries of M
+      jacobian_, curved_;                 ///< entries of J and H
+  sparse_factors<Real> whole_, reduced_;  ///< S; M − aJ, if b = 0
   sparse_factors<Real>* now_ = nullptr;
   Real a_ = Real(0), b_ = Real(0);
 };

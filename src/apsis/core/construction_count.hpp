@@ -4,12 +4,12 @@
 
 namespace apsis {
 
-/// Base of classes whose objects are expensive and should be made once: counts how many were made, copies
-/// included. Tests compare the count before and after.
+/// Base of classes whose objects are expensive and should be constructed once. Counts the objects that were
+/// constructed, including copies but not moves. Tests compare the counts before and after.
 template <class T>
 class construction_count {
  public:
-  /// Returns the number of objects made by this process so far.
+  /// Returns the number of objects that this process has constructed so far.
   static long so_far() { return made_; }
 
  private:

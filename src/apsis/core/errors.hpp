@@ -17,11 +17,11 @@ enum class exit_code : int {
   interrupted = 130  ///< interrupted by a signal
 };
 
-/// Position of an input error in a text; line and column count from 1, 0 means unknown.
+/// Position of an input error in a text.
 struct source_place {
   std::string file;  ///< path, or another name of the text in messages; "" means unknown
-  int line = 0;      ///< from 1
-  int column = 0;    ///< from 1; ignored without a line
+  int line = 0;      ///< counts from 1; 0 means unknown
+  int column = 0;    ///< counts from 1; 0 means unknown; ignored without a line
 };
 
 /// Formats a position as "file:line:column: ", leaving out unknown parts; "" if everything is unknown.
@@ -56,14 +56,14 @@ struct failure_site {
   double value = std::numeric_limits<double>::quiet_NaN();  ///< the offending value
 };
 
-/// The computation cannot continue, or violates a promise made at its start.
+/// A computation that cannot continue, or that violates a promise made at its start.
 class numerical_error : public error {
  public:
   /// what() is `problem` followed by the known parts of the site in brackets.
   explicit numerical_error(const std::string& problem, failure_site site = {});
   const failure_site& site() const { return site_; }       ///< where it occurred, as far as known
   const std::string& problem() const { return problem_; }  ///< the message without the site
-  /// Returns the same failure with step and time, which only the time loop knows.
+  /// Returns the same failure with step and time, which only the time loop can add.
   numerical_error at(long step, double t) const;
 
  private:
@@ -78,7 +78,7 @@ class io_error : public error {
   explicit io_error(const std::string& message) : error(exit_code::output, message) {}
 };
 
-/// A method (or a result) does not have the properties that are claimed for it.
+/// A method or a result that lacks a claimed property.
 class claim_error : public error {
  public:
   /// `message` states the claimed and the computed value.

@@ -13,8 +13,8 @@ double rounded(const std::int64_t* digits, std::size_t count) {
   std::size_t top = count;
   while (top > 0 && digits[top - 1] == 0) --top;
   if (top == 0) return 0.0;
-  // 64 leading bits and whether anything follows them: more than the 53 of the result, so that it is rounded
-  // once.
+  // Collects the 64 leading bits, and whether a nonzero bit follows them. These are more than the 53 bits of
+  // the result, so that the result is rounded only once.
   std::uint64_t leading = 0;
   bool rest = false;
   int exponent = 0, missing = 64;
@@ -37,7 +37,7 @@ double rounded(const std::int64_t* digits, std::size_t count) {
     }
   }
   if (rest) leading |= 1U;
-  // Below 2^-1022 there are at most 52 bits, which no rounding changes.
+  // A result below 2^-1022 has at most 52 bits and needs no rounding.
   return std::ldexp(static_cast<double>(leading), exponent - 1074);
 }
 
@@ -76,7 +76,7 @@ double exact_sum::value() const {
     return std::numeric_limits<double>::quiet_NaN();
   if (words_[plus_at] > 0) return std::numeric_limits<double>::infinity();
   if (words_[minus_at] > 0) return -std::numeric_limits<double>::infinity();
-  // All digits but the last are nonnegative, so that the last one has the sign of the sum.
+  // All digits but the last are nonnegative, so that the last one determines the sign of the sum.
   if (all.words_[digits - 1] >= 0) return rounded(all.words_.data(), digits);
   for (std::size_t k = 0; k < digits; ++k) all.words_[k] = -all.words_[k];
   all.carry();

@@ -8,10 +8,10 @@
 
 namespace apsis {
 
-/// The sum of any numbers without rounding: their integer multiples of 2^-1074 are added in a fixed-point
-/// number that spans all exponents, so that the result does not depend on the order of the terms, nor on how
-/// they are distributed among threads and processes (Neal, Fast exact summation using small and large
-/// superaccumulators, 2015).
+/// A sum of doubles without rounding. It adds the terms, integer multiples of 2^-1074, in a fixed-point
+/// number that spans all exponents. The result therefore depends neither on the order of the terms nor on
+/// their distribution among threads and processes. Source: Neal, Fast exact summation using small and
+/// large superaccumulators, 2015.
 class exact_sum {
  public:
   /// Number of words of a sum.
@@ -40,18 +40,18 @@ class exact_sum {
   /// Adds the terms of another sum.
   void add(const exact_sum& other);
 
-  /// Returns the sum, rounded once to nearest: NaN if a term is NaN or both infinities are among them;
-  /// ±infinity if one is, or the sum exceeds the largest number.
+  /// Returns the sum, rounded once to nearest. The value is NaN if a term is NaN or if the terms include both
+  /// infinities. It is ±∞ if the terms include one infinity or the sum exceeds the largest number.
   double value() const;
 
-  /// Returns words whose elementwise sums over several sums are the words of their total. Valid for up to
-  /// 2^31 of them.
+  /// Returns the words of the sum. The elementwise sums of the words of several exact sums, at most 2^31, are
+  /// the words of their total.
   std::span<std::int64_t, length> words();
 
  private:
-  // A word holds 32 bits and carries of this many additions of numbers below 2^53.
+  // A word has room for 32 bits and the carries of this many additions of mantissas below 2^53.
   static constexpr int most_terms = 1000;
-  static constexpr std::size_t digits = 68;  // of 32 bits, then the numbers of NaN, +infinity and −infinity
+  static constexpr std::size_t digits = 68;  // of 32 bits; the counts of NaN, +∞ and −∞ follow
 
   void add_special(double x);
   void carry();

@@ -5,10 +5,11 @@
 
 namespace apsis {
 
-/// The first exception of several pieces of work that all have to run, because other processes wait for them.
+/// Stores the first exception of several pieces of work. All of them have to run, because other processes
+/// wait for them.
 class first_error {
  public:
-  /// Runs body() and keeps its exception if there is none yet.
+  /// Runs body() and stores its exception unless an earlier one is stored.
   template <class Body>
   void run(const Body& body) {
     try {
@@ -17,11 +18,11 @@ class first_error {
       if (!kept_) kept_ = std::current_exception();
     }
   }
-  /// Whether an exception is kept.
+  /// Returns true if an exception is stored.
   explicit operator bool() const { return static_cast<bool>(kept_); }
-  /// Returns the exception and keeps none.
+  /// Returns the stored exception and clears it; null if there is none.
   std::exception_ptr take() { return std::exchange(kept_, nullptr); }
-  /// Throws the exception if there is one.
+  /// Throws the stored exception, if any, and clears it.
   void rethrow() {
     if (kept_) std::rethrow_exception(take());
   }

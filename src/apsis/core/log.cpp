@@ -16,7 +16,7 @@ namespace {
 
 std::atomic<level> lowest_shown{level::info};
 
-/// Whether standard error is a terminal that supports colours.
+/// Returns true if standard error is a terminal that supports colours.
 bool supports_colour() {
   static const bool answer = [] {
     const char* terminal = std::getenv("TERM");
@@ -28,7 +28,7 @@ bool supports_colour() {
 /// Writes a line with one fwrite call, so that lines of several threads do not interleave.
 void write(std::string_view name, std::string_view colour, const std::string& message) {
   std::string line(name);
-  // The line may hold a progress bar.
+  // A progress bar may occupy the line.
   if (supports_colour()) line = "\r\033[K" + std::string(colour) + line + "\033[m";
   line += ": " + printable(message) + "\n";
   std::fwrite(line.data(), 1, line.size(), stderr);

@@ -12,11 +12,12 @@ enum class level {
   info      ///< all messages
 };
 
-/// Sets the verbosity of the process, initially level::info, and returns that before.
+/// Sets the verbosity of the process, initially level::info, and returns the previous one.
 level set_level(level lowest);
-/// Reports what the program does or has written.
+/// Reports what the program does or has written. Shown at level::info.
 void info(const std::string& message);
-/// Reports a likely mistake; the program continues.
+/// Reports a likely mistake; the program continues. A live warnings_once hides repeated messages. Every live
+/// warning_record stores the others.
 void warning(const std::string& message);
 
 }  // namespace apsis::log

@@ -5,8 +5,8 @@
 
 namespace apsis {
 
-/// A small dense row-major matrix for tableaux. Not over-aligned, so that it can cross library boundaries
-/// whatever instruction sets both sides are compiled for.
+/// A small dense row-major matrix for tableaux. It is not over-aligned, and therefore can cross library
+/// boundaries even if both sides are compiled for different instruction sets.
 template <class Real>
 class matrix {
  public:
@@ -33,7 +33,7 @@ class matrix {
   std::vector<Real> data_;
 };
 
-/// Matrix product ab. Requires a.cols() = b.rows(), which is not checked.
+/// Returns the matrix product ab. Requires a.cols() = b.rows(), which is not checked.
 template <class Real>
 matrix<Real> operator*(const matrix<Real>& a, const matrix<Real>& b) {
   matrix<Real> c(a.rows(), b.cols());
@@ -43,7 +43,7 @@ matrix<Real> operator*(const matrix<Real>& a, const matrix<Real>& b) {
   return c;
 }
 
-/// Matrix-vector product ax. Requires a.cols() = x.size(), which is not checked.
+/// Returns the matrix-vector product ax. Requires a.cols() = x.size(), which is not checked.
 template <class Real>
 std::vector<Real> operator*(const matrix<Real>& a, const std::vector<Real>& x) {
   std::vector<Real> y(a.rows(), Real(0));
@@ -52,7 +52,8 @@ std::vector<Real> operator*(const matrix<Real>& a, const std::vector<Real>& x) {
   return y;
 }
 
-/// Returns the inverse of a lower triangular matrix with nonzero diagonal, by forward substitution.
+/// Returns the inverse of a square lower triangular matrix with nonzero diagonal, by forward substitution.
+/// Neither requirement is checked.
 template <class Real>
 matrix<Real> inverse_lower(const matrix<Real>& lower) {
   const std::size_t n = lower.rows();

@@ -8,7 +8,7 @@
 namespace apsis {
 namespace {
 
-/// A code point and its number of bytes; 0 bytes where the text is not UTF-8.
+/// A code point and its number of bytes; 0 bytes if the text is not UTF-8.
 struct code_point {
   std::uint32_t value;
   std::size_t bytes;
@@ -30,13 +30,14 @@ code_point first_of(std::string_view text) {
     if ((byte(k) & 0xC0U) != 0x80) return {head, 0};
     value = value << 6U | (byte(k) & 0x3FU);
   }
-  // Longer than needed, half of a pair, or beyond the last code point.
+  // An overlong encoding, half of a surrogate pair, or a number beyond the last code point.
   const bool invalid = (bytes == 3 && value < 0x800) || (bytes == 4 && value < 0x10000) ||
                        (value >= 0xD800 && value < 0xE000) || value > 0x10FFFF;
   return {invalid ? head : value, invalid ? 0 : bytes};
 }
 
-/// Controls of both blocks, marks and overrides of the direction of writing, separators of lines.
+/// Returns true for control characters of both blocks, bidirectional marks and overrides,
+/// and line separators.
 bool controls(std::uint32_t c) {
   if (c == '\n' || c == '\t') return false;
   return c < 0x20 || (c >= 0x7F && c < 0xA0) || c == 0x061C || c == 0x200E || c == 0x200F ||

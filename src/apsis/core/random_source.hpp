@@ -6,8 +6,8 @@
 
 namespace apsis {
 
-/// Random numbers for experiments. Reproducible on every platform, unlike the distributions of
-/// the standard library.
+/// Random numbers for experiments. Unlike the distributions of the standard library, they are reproducible
+/// on every platform.
 class random_source {
  public:
   /// Seeds the 64-bit Mersenne twister; equal seeds give equal sequences.

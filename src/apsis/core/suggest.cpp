@@ -11,7 +11,7 @@
 namespace apsis {
 namespace {
 
-/// Damerau–Levenshtein distance with adjacent transpositions.
+/// Returns the Damerau–Levenshtein distance with adjacent transpositions.
 std::size_t edit_distance(const std::string& a, const std::string& b) {
   const std::size_t n = a.size(), m = b.size();
   std::vector<std::vector<std::size_t>> d(n + 1, std::vector<std::size_t>(m + 1));
@@ -33,7 +33,7 @@ std::string in_lower_case(std::string text) {
   return text;
 }
 
-/// Strips the table, folder or dashes that both words share: "time.foo" is no closer to "time.dt" than "foo"
+/// Removes the table, folder or dashes that both words share. "time.foo" is no closer to "time.dt" than "foo"
 /// is to "dt".
 std::pair<std::string, std::string> without_common_prefix(const std::string& a, const std::string& b) {
   std::size_t common = 0;
@@ -42,7 +42,7 @@ std::pair<std::string, std::string> without_common_prefix(const std::string& a, 
   return {a.substr(common), b.substr(common)};
 }
 
-/// Whether at most a third of the letters of the longer word differ, or two neighbours are swapped.
+/// Returns true if at most a third of the letters of the longer word differ, or two neighbours are swapped.
 bool is_close(const std::string& a, const std::string& b, std::size_t d) {
   if (3 * d <= std::max(a.size(), b.size())) return true;
   return d == 1 && a.size() > 1 && std::is_permutation(a.begin(), a.end(), b.begin(), b.end());
@@ -51,7 +51,7 @@ bool is_close(const std::string& a, const std::string& b, std::size_t d) {
 }  // namespace
 
 std::string nearest_word(const std::string& word, const std::vector<std::string>& candidates) {
-  // Longer words are no typing errors of known ones, and the table grows with their length.
+  // A longer word is hardly a typing error, and the table of distances grows with its length.
   if (word.size() > 64) return "";
   std::string best;
   std::size_t best_distance = std::numeric_limits<std::size_t>::max();

@@ -22,7 +22,7 @@ std::string read_text_file(const std::string& path, std::size_t longest, const s
     text.append(block, 0, static_cast<std::size_t>(in.gcount()));
   }
   std::error_code ignored;
-  // A read may fail after the file was opened; a partial content is not used.
+  // A read may fail after the file was opened. Partial contents are not returned.
   if (in.bad() || !in.is_open() || std::filesystem::is_directory(path, ignored))
     throw io_error(
         fmt::format("cannot read '{}' (it is a folder or not readable); give a readable {}", path, kind));

@@ -9,7 +9,7 @@
 
 namespace apsis {
 
-/// Returns line and column, counted from 1, of a byte of a text that was read from `file`.
+/// Returns the line and the column, both from 1, of a byte of a text that was read from `file`.
 inline source_place place_at(std::string_view text, std::size_t byte, const std::string& file) {
   const std::string_view before = text.substr(0, byte);
   const auto line = std::count(before.begin(), before.end(), '\n') + 1;

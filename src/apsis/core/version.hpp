@@ -4,7 +4,7 @@
 /// IMEX Runge–Kutta methods.
 namespace apsis {
 
-/// Returns the version of the library and the program, "1.2.3".
+/// Returns the version of the library and the program, such as "1.2.3".
 const char* version();
 
 /// Returns the commit of the sources: 40 hexadecimal digits, followed by "-dirty" if version-controlled files

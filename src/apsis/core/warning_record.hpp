@@ -6,7 +6,8 @@
 
 namespace apsis {
 
-/// The warnings of this process during the life of the object, also those that log::level hides. Thread-safe.
+/// Records the warnings of this process while the object lives, including those that
+/// log::level hides. Thread-safe.
 class warning_record {
  public:
   warning_record();
@@ -14,7 +15,7 @@ class warning_record {
   warning_record(const warning_record&) = delete;
   warning_record& operator=(const warning_record&) = delete;
 
-  /// Returns the warnings so far, in their order.
+  /// Returns the warnings so far, in order.
   std::vector<std::string> messages() const;
   /// Adds a warning to all records of this process.
   static void add_to_all(const std::string& message);

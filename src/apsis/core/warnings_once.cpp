@@ -18,7 +18,7 @@ seen_warnings& warnings_so_far() {
   return instance;
 }
 
-/// Removes numbers, but for those in quoted names such as 'md-imex-6-3'.
+/// Removes numbers except those in quoted names such as 'md-imex-6-3'.
 std::string without_numbers(const std::string& message) {
   constexpr std::string_view in_numbers = "0123456789.+-e";
   const auto is_digit = [&](std::size_t k) {

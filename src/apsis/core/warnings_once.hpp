@@ -4,8 +4,8 @@
 
 namespace apsis {
 
-/// Hides repeated warnings of this process during its life: those that differ from an earlier one in numbers
-/// alone. Many runs of a study give such warnings. Thread-safe.
+/// Hides repeated warnings of this process while an object lives. A warning is repeated if it differs from an
+/// earlier one only in numbers, as warnings of the runs of a study do. Thread-safe.
 class warnings_once {
  public:
   warnings_once();
@@ -13,7 +13,7 @@ class warnings_once {
   warnings_once(const warnings_once&) = delete;
   warnings_once& operator=(const warnings_once&) = delete;
 
-  /// Whether no object lives, or none of its earlier warnings differs from this one in numbers alone.
+  /// Returns true if no object lives, or if the message differs from all earlier ones in more than numbers.
   static bool is_new(const std::string& message);
 };
 

@@ -6,14 +6,14 @@
 
 namespace apsis {
 
-/// The border of whole cells to cut ones. The values that enter are those of the cut cells, which the
-/// transport has. Ghost rows continue the state inside: by a parabola for components that leave, by a
-/// straight line for those that enter. A parabola through cells downstream would make the edge behind the
-/// first cell a downwind value. Along a border at 45° to the grid, modes that alternate from cell to cell
-/// then grow at a rate of 0.13 |v|/Δx.
+/// The border between whole cells and cut cells. The transport takes the entering values from the cut cells.
+/// Ghost rows continue the state inside: by a parabola for components that leave, by a straight line for
+/// those that enter. A parabola through cells downstream would make the edge value behind the first cell a
+/// downwind value. Along a border at 45° to the grid, modes that alternate from cell to cell would then grow
+/// at a rate of 0.13 |v|/Δx.
 class border_of_cut_cells final : public boundary {
  public:
-  /// `where`: the side of the whole cells at which the border is.
+  /// `where` is the side of the whole cells on which the border lies.
   border_of_cut_cells(const face& where, const velocity_set& velocities)
       : inward_(inward_speeds(where, velocities)) {}
 

@@ -35,7 +35,7 @@ std::optional<data_variable> variable_of(const std::string& kind, const model& e
 
 namespace {
 
-/// Throws where a variable is needed that is not among the values.
+/// Throws input_error if a required variable has no value.
 void check_absence(const std::string& kind, const data_variable& variable, const face_quantities& values) {
   if (variable.value || values.contains(variable.alternative)) return;
   throw input_error(fmt::format(
@@ -43,7 +43,7 @@ void check_absence(const std::string& kind, const data_variable& variable, const
       variable.alternative.empty() ? "" : fmt::format(", or '{}'", variable.alternative)));
 }
 
-/// Throws where a variable and its alternative both have values.
+/// Throws input_error if a variable and its alternative both have values.
 void check_alternatives(const std::string& kind, const data_variable& variable,
                         const face_quantities& values) {
   if (values.contains(variable.name) && values.contains(variable.alternative))

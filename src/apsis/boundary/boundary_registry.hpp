@@ -16,41 +16,41 @@
 
 namespace apsis {
 
-/// Where a case gives a quantity at a face. Messages name it.
+/// The place in a case that gives a quantity at a face, for messages.
 struct quantity_origin {
-  source_place place = {};   ///< of its key
-  std::string surface = {};  ///< "[boundary.left]", "body 'disc'"
-  int dimensions = 0;        ///< of space
+  source_place place = {};   ///< place of the key
+  std::string surface = {};  ///< surface in messages: "[boundary.left]", "body 'disc'"
+  int dimensions = 0;        ///< dimensions of space
 };
 
-/// A quantity at a face: a number, or a function of time and of the position on the face, and of the velocity
-/// where it is a variable of_velocity. Dimensionless.
+/// A quantity at a face (dimensionless). It is a number or a function of time and the position on the face.
+/// It depends on the velocity too if the variable allows this (data_variable::of_velocity).
 class face_quantity {
  public:
   /// A function of t and x, which may be called concurrently.
   using function = std::function<double(double t, const position& at)>;
   /// A function of t, x and the velocity v, which may be called concurrently.
   using velocity_function = std::function<double(double t, const position& at, const position& v)>;
-  /// A number.
+  /// Makes the quantity a number.
   face_quantity(double value = 0.0) : number_(value) {}
-  /// A function.
+  /// Makes the quantity a function of t and x.
   face_quantity(function value)
       : function_(
             [of = std::move(value)](double t, const position& at, const position&) { return of(t, at); }) {}
-  /// A function of the velocity too.
+  /// Makes the quantity a function of t, x and v.
   face_quantity(velocity_function value) : function_(std::move(value)) {}
 
-  /// Returns the value at time t at a point of the face, for a velocity.
+  /// Returns the value at time t at the point x of the face, for the velocity v.
   double at(double t, const position& x, const position& v = {}) const {
     return function_ ? function_(t, x, v) : number_;
   }
-  /// Whether it is a number.
+  /// Returns true if the quantity is a number.
   bool is_constant() const { return !function_; }
-  /// Sets where a case gives it.
+  /// Sets the place of the quantity in a case.
   void set_origin(quantity_origin origin) {
     origin_ = std::make_shared<const quantity_origin>(std::move(origin));
   }
-  /// Returns where a case gives it; null if no case does.
+  /// Returns the place of the quantity in a case; null if no case gives it.
   const quantity_origin* origin() const { return origin_.get(); }
 
  private:
@@ -62,14 +62,14 @@ class face_quantity {
 /// Components of the variables of a boundary condition by name: "velocity" → {0, 0.1}.
 using face_quantities = std::map<std::string, std::vector<face_quantity>>;
 
-/// The model and the values from which a boundary condition is made. The model, null only for kinds without
-/// variables, must outlive the boundary.
+/// The model and the values from which a boundary condition is made. The model must outlive the boundary; it
+/// is null only for kinds without variables.
 struct boundary_source {
   const model* equation = nullptr;         ///< the model on whose components the condition acts
-  std::vector<face_quantity> values = {};  ///< of boundary_entry::variables, vectors component by component
+  std::vector<face_quantity> values = {};  ///< values of boundary_entry::variables, by component
   std::vector<std::string> given = {};     ///< names of the variables that a user gave
 
-  /// Whether a variable is given.
+  /// Returns true if a user gave the variable.
   bool is_given(const std::string& variable) const {
     return std::find(given.begin(), given.end(), variable) != given.end();
   }
@@ -80,11 +80,12 @@ struct boundary_source {
 struct boundary_entry {
   std::string name;         ///< name in a case file: "periodic"
   std::string description;  ///< one line
-  /// Returns the variables of the condition for a model, keys of the tables [boundary.left] and
-  /// [boundary.right]; null if it has none. Throws input_error where the model cannot have the condition.
+  /// Returns the variables of the condition for a model, which are keys of the tables [boundary.left]
+  /// and [boundary.right]; null if the condition has none. Throws input_error if the model does not
+  /// allow the condition.
   std::vector<data_variable> (*variables)(const model& equation) = nullptr;
   std::unique_ptr<boundary> (*make)(const boundary_source& from) = nullptr;  ///< returns a new object
-  bool any_normal = false;  ///< whether boundary::oblique() serves walls with any normal, with some models
+  bool any_normal = false;  ///< whether boundary::oblique() serves walls with any normal for some models
 };
 
 /// Returns all kinds, sorted by file name (generated).
@@ -93,10 +94,10 @@ std::vector<const boundary_entry*> boundary_entries();
 /// Returns the names of all kinds: "outflow", "periodic", …
 std::vector<std::string> boundary_names();
 
-/// Returns the kind of a name. Throws input_error with the nearest name for an unknown one.
+/// Returns the kind called `name`. Throws input_error with the nearest name if there is none.
 const boundary_entry& find_boundary(const std::string& name);
-/// Returns a variable of a kind; nothing if it has no such variable. Throws input_error as find_boundary()
-/// does, or if the model cannot have this kind.
+/// Returns a variable of a kind, or nothing if the kind has no such variable. Throws input_error if there is
+/// no such kind or the model does not allow it.
 std::optional<data_variable> variable_of(const std::string& kind, const model& equation,
                                          const std::string& variable);
 
@@ -104,14 +105,16 @@ std::optional<data_variable> variable_of(const std::string& kind, const model& e
 /// such kind, or if it has variables.
 std::shared_ptr<const boundary> make_boundary(const std::string& name);
 
-/// Returns the boundary of a kind for a model, with values of its variables; a vector of one value is that
-/// value along x. Throws input_error: no such kind, a variable that it does not have, that is missing or of
-/// another size, a variable and its alternative, or a model that cannot have it.
+/// Returns the boundary of a kind for a model, with values of its variables. A vector with one value has this
+/// value along x and zeros otherwise. Throws input_error in these cases:
+/// - the kind does not exist, or the model does not allow it,
+/// - a variable is unknown, missing or of another size,
+/// - both a variable and its alternative have values.
 std::shared_ptr<const boundary> make_boundary(const std::string& name, const model& equation,
                                               const face_quantities& values = {});
 
-/// Returns a domain with the same kind of boundary, without variables, at every face. Throws input_error as
-/// make_boundary() does.
+/// Returns a domain with the same kind of boundary, without variables, at every face. Throws input_error
+/// as make_boundary() does.
 domain make_domain(const phase_space& space, const std::string& name);
 
 }  // namespace apsis

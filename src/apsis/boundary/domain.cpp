@@ -32,7 +32,7 @@ std::array<bool, 3> periodic_directions(const grid& mesh, const std::vector<doma
   return periodic;
 }
 
-/// Whether an open part of a face is part of a face of the domain.
+/// Returns true if an open part of a face is part of a face of the domain.
 bool is_at(const open_face& part, const face& where) {
   return part.direction == where.direction && (where.upper ? part.above : part.below) < 0;
 }
@@ -89,7 +89,7 @@ void domain::set_sides(const std::vector<faces>& sides,
         sides_[at(number)] = std::move(whole);
 }
 
-/// Sums over the whole mesh in its order, so that all processes have the bits of a single one.
+/// Sums over the whole mesh in its order, so that all processes get the same bits as a single one.
 double domain::open_area(const budget_surface& one) const {
   const grid& whole = distribution_ ? distribution_->whole : mesh();
   const segment_table of_whole(whole, periodic_);
@@ -110,7 +110,7 @@ double domain::open_area(const budget_surface& one) const {
   return whole.measure() * area;
 }
 
-/// Faces of the domain, and walls, that belong to cut cells.
+/// Finds the faces of the domain and the walls that belong to cut cells of this process.
 void domain::add_cut_ends() {
   if (mesh().cut() == nullptr) return;
   const cut_cells& cut = *mesh().cut();
@@ -207,8 +207,8 @@ int domain::pencil_of(int direction, const segment& one) const {
   return one.first / (inner * mesh().cells(direction)) * inner + one.first % inner;
 }
 
-/// Number of cells between an end and the opposite one, as far as this process sees them; a pencil that
-/// continues across periodic faces counts to the face.
+/// Returns the number of cells from an end to the opposite one, as far as this process has their rows. A
+/// pencil that continues across periodic faces is counted to the face.
 int domain::visible(int direction, const segment& one, bool upper) const {
   const int seen = one.beyond[0] + one.cells + one.beyond[1];
   if (!halo_ || !periodic(direction)) return seen;
@@ -225,7 +225,7 @@ bool domain::prescribes_incoming(int surface, int place) const {
   return sides_[at(surface)]->prescribes_incoming(visible(where.direction, one, where.upper), width_);
 }
 
-/// The row of a cell counted inwards from an end.
+/// Returns the row of a cell counted inwards from an end.
 const double* domain::inside_row(const field& u, int direction, const segment& one, bool upper,
                                  int cell) const {
   const int others = one.beyond[upper ? 1 : 0];
@@ -235,8 +235,8 @@ const double* domain::inside_row(const field& u, int direction, const segment& o
   return u.row(one.first + (upper ? one.cells - 1 - cell : cell) * mesh().stride(direction));
 }
 
-/// Whether the ghost rows of an end depend on cells of other processes. A boundary reads as many rows inside
-/// as there are ghost rows, and at least three, if there are so many.
+/// Returns true if the ghost rows of an end depend on cells of other processes. A boundary reads as many rows
+/// inside as there are ghost rows, but at least three if the pencil has as many.
 bool domain::needs_others(int direction, const segment& one, bool upper) const {
   return !one.ends_here(upper) || (one.cells < rows_inside() && visible(direction, one, upper) > one.cells);
 }
@@ -301,7 +301,7 @@ bool domain::is_inner(const cell_box& box) const {
   return true;
 }
 
-/// A segment that crosses periodic faces continues in another one of its pencil, or in itself.
+/// A segment that ends at a periodic face continues in another segment of its pencil, or in itself.
 const double* domain::ghost_row(const field& u, int direction, int number, bool upper, int ghost) const {
   for (;;) {
     const segment& one = segment_at(direction, number);

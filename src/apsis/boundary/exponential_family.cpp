@@ -8,7 +8,7 @@ namespace {
 
 using family_vector = exponential_family::vector;
 
-/// Σ m c^p, p = 0 … 4, along a line.
+/// The sums Σ m c^p, p = 0 … 4, along a line.
 struct line_powers_of_flux {
   double s0 = 0.0, s1 = 0.0, s2 = 0.0, s3 = 0.0, s4 = 0.0;
 };
@@ -63,8 +63,8 @@ double product(const family_vector& a, const family_vector& b) {
 /// A step of Newton's method along the vectors of a basis.
 struct newton_step {
   family_vector step{};
-  double residual = 0.0;  ///< of the sums, relative to the wanted ones
-  double slope = 0.0;     ///< gradient along the step
+  double residual = 0.0;  ///< largest residual of the sums, relative to the wanted ones
+  double slope = 0.0;     ///< directional derivative along the step
   bool is_found = false;
 };
 

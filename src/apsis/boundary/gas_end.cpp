@@ -39,9 +39,9 @@ double gas_end::sound(double T) const {
   return std::sqrt(gamma_ * T);
 }
 
-/// The ghost averages a₁, a₂, a₃ of a quadratic have the value (11 a₁ − 7 a₂ + 2 a₃)/6 at the face. Where
-/// that is no state of a gas, as next to a vacuum, the nonnegative part of the first ghost cell represents
-/// it.
+/// The ghost averages a₁, a₂, a₃ of a quadratic give the value (11 a₁ − 7 a₂ + 2 a₃)/6 at the face. Next to a
+/// vacuum, for example, this value may be no state of a gas. The nonnegative part of the first ghost cell
+/// then replaces it.
 fluid_state gas_end::state_at_face(std::span<const double* const> ghosts, double* row) const {
   std::array<double, most> omega{};
   const auto moments_of = [&](std::size_t ghost) {
@@ -83,7 +83,7 @@ void gas_end::incoming_given_outgoing(const face& where, double t, const positio
              name_, state.rho, outward(state, where), state.T,
              state.admissible() ? ": " + molecules_.why_inadmissible(omega.data()) : ""),
          t);
-  // Gas that leaves faster than the velocities of the grid: nothing enters.
+  // The gas leaves faster than the velocities of the grid, so that nothing enters.
   std::fill_n(values, molecules_.velocities().components(), 0.0);
 }
 

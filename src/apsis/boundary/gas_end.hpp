@@ -10,28 +10,29 @@
 
 namespace apsis {
 
-/// Returns the gas of a model. Throws input_error with the name of the boundary that needs it if the model is
-/// no gas.
+/// Returns the gas of a model. Throws input_error with the name of the boundary if the model is no gas.
 const gas& gas_of(const model& equation, const std::string& boundary_name);
 
-/// An open end of a gas whose incoming components are those of the Maxwellian of a state that follows from
-/// the gas inside, such as a far field or a given pressure. Dimensionless.
+/// An open end of a gas with incoming components of a Maxwellian. The state of this Maxwellian follows from
+/// the gas inside, as for a far field or a given pressure. Dimensionless.
 class gas_end : public incoming_boundary {
  public:
-  /// `equation` must outlive the object. Throws input_error with the name of the boundary if it is no gas.
+  /// Takes a model, which must outlive the object, and the name of the kind. Throws input_error with this
+  /// name if the model is no gas.
   gas_end(const model& equation, std::string boundary_name);
 
-  /// Throws numerical_error if no Maxwellian has the state outside.
+  /// Throws numerical_error if no Maxwellian has the state outside. If such gas leaves faster than sound,
+  /// nothing enters instead.
   void incoming_given_outgoing(const face& where, double t, const position& at, const double* outgoing,
                                std::span<const double* const> ghosts, double* incoming) const final;
 
  protected:
-  /// Returns the state of entering gas, given the state inside at the face, which is not admissible if there
-  /// is no gas.
+  /// Returns the state of the entering gas. `inside` is the state inside at the face, which is not admissible
+  /// if there is no gas.
   virtual fluid_state outside(const fluid_state& inside, const face& where, double t,
                               const position& at) const = 0;
 
-  /// Changes the incoming components, given the outgoing ones; changes nothing by default.
+  /// Changes the incoming components, given the outgoing ones. The default changes nothing.
   virtual void adjust(const face& /*where*/, double /*t*/, const position& /*at*/, const double* /*outgoing*/,
                       double* /*incoming*/) const {}
 
@@ -40,7 +41,7 @@ class gas_end : public incoming_boundary {
   double sound(double T) const;                        ///< speed of sound √(γT)
 
  private:
-  /// `row`: scratch of one row.
+  /// `row` is scratch memory for one row.
   fluid_state state_at_face(std::span<const double* const> ghosts, double* row) const;
 
   const gas& molecules_;
@@ -48,11 +49,11 @@ class gas_end : public incoming_boundary {
   double gamma_;
 };
 
-/// Component of u along the outward normal of a face.
+/// Returns the component of u along the outward normal of a face.
 inline double outward(const fluid_state& state, const face& where) {
   return where.upper ? state.u[where.direction] : -state.u[where.direction];
 }
-/// Replaces that component.
+/// Replaces the component of u along the outward normal of a face.
 inline void set_outward(fluid_state& state, const face& where, double velocity) {
   state.u[where.direction] = where.upper ? velocity : -velocity;
 }

@@ -11,7 +11,7 @@ namespace {
 constexpr double lowest_drift = -4.0, drift_step = 0.25;
 constexpr std::size_t drifts = 113;
 
-/// I_3/I_1 and (I_1/I_2)² of a drift.
+/// The ratios I_3/I_1 and (I_1/I_2)² of a drift.
 struct drift_ratios {
   double cubic = 0.0, linear = 0.0;
 
@@ -36,7 +36,7 @@ std::optional<half_range_gaussian> gaussian_of_fluxes(double z, double square, i
     return made;
   }();
   const double wanted = square / (z * z);
-  // The ratio decreases with a.
+  // The ratio square/z² decreases with a.
   if (!(wanted < table.front().of_square(dimensions) && wanted > table.back().of_square(dimensions)))
     return std::nullopt;
   std::size_t below = 0, above = drifts - 1;

@@ -19,7 +19,7 @@ namespace {
 
 prescribed_state emission(const model& equation, const std::string& kind,
                           const std::vector<face_quantity>& velocity) {
-  // A temperature that is a function: rows are made by try_other() alone.
+  // The temperature is a function, so that the state is not constant. Only try_other() computes rows.
   std::vector<face_quantity> state = {1.0};
   state.insert(state.end(), velocity.begin(), velocity.end());
   state.emplace_back([](double, const position&) { return 1.0; });
@@ -28,10 +28,11 @@ prescribed_state emission(const model& equation, const std::string& kind,
 
 }  // namespace
 
-/// The balance at one face and time, per mass that arrives: α e(T) + c T⁴ = α E/m + c T_0⁴ with c = factor/m.
+/// The balance at one face and time, divided by the arriving mass m: α e(T) + c T⁴ = α E/m + c T_0⁴ with
+/// c = factor/m.
 class heat_balance_wall::balance {
  public:
-  /// `mass_flux`: that of unit components of the first set, > 0 where it leaves the wall.
+  /// `mass_flux` is that of unit components of the first set, > 0 where it leaves the wall.
   balance(const heat_balance_wall& wall, const velocity_set& velocities, std::span<const double> mass_flux,
           const std::array<double, 3>& u, double t, std::span<double> row)
       : wall_(wall), velocities_(velocities), mass_flux_(mass_flux), u_(u), t_(t), row_(row) {}
@@ -40,7 +41,7 @@ class heat_balance_wall::balance {
   double alpha = 1.0;
   radiation radiated;
 
-  /// Adds what arrives in a row.
+  /// Adds the mass and the heat that arrive in a row.
   void add_arriving(const double* row) {
     for (std::size_t j = 0; j < mass_flux_.size(); ++j)
       if (mass_flux_[j] < 0.0) {
@@ -49,7 +50,8 @@ class heat_balance_wall::balance {
       }
   }
 
-  /// row ← the Maxwellian of density 1 of the temperature that balances; returns the factor of its density.
+  /// row ← the Maxwellian of density 1 with the temperature that satisfies the balance. Returns the density
+  /// at which the wall emits all arriving mass.
   double solve() {
     given_ = arriving_heat / arriving_mass;
     c_ = radiated.factor / arriving_mass;
@@ -58,13 +60,13 @@ class heat_balance_wall::balance {
       fail(given_, "what arrives has no heat");
     trial last = first_trial(start()), before = last, best = last;
     double low = 0.0, high = std::numeric_limits<double>::infinity();
-    // The difference of sums of this size is rounding.
+    // An excess of this size is the rounding of the sums.
     const double small = 2.0 * std::numeric_limits<double>::epsilon() * (sum_ + c_ * fourth(last.T));
     constexpr int most = 200, between_halvings = 6;
     for (int n = 1; n < most && !(std::abs(best.excess) <= small); ++n) {
       (last.excess > 0.0 ? high : low) = last.T;
       double next = last.T - last.excess / slope(before, last);
-      const bool halve = n % between_halvings == 0;  // or double
+      const bool halve = n % between_halvings == 0;  // or doubles T while there is no upper bound
       if (halve || !(next > low && next < high))
         next = std::isfinite(high) ? 0.5 * (low + high) : 2.0 * last.T;
       if (!(next > low && next < high)) break;
@@ -75,7 +77,7 @@ class heat_balance_wall::balance {
         (next < last.T ? low : high) = next;
       }
     }
-    constexpr double accurate = 1e-10;  // of sums, far above their rounding
+    constexpr double accurate = 1e-10;  // relative to the sums, far above their rounding
     if (!(std::abs(best.excess) <= accurate * (sum_ + c_ * fourth(best.T))))
       fail(best.T, "no temperature on the velocities has this heat");
     excess_at(best.T);
@@ -87,14 +89,14 @@ class heat_balance_wall::balance {
   double temperature() const { return temperature_; }
 
  private:
-  /// A temperature that the velocities represent, and α e(T) + c T⁴ − sum.
+  /// A temperature that the velocities represent, and its excess α e(T) + c T⁴ − sum_.
   struct trial {
     double T, excess;
   };
 
   static double fourth(double T) { return T * T * (T * T); }
 
-  /// The root for continuous velocities, by Newton's method from above on a convex function.
+  /// Returns the root for continuous velocities, by Newton's method from above on a convex function.
   double start() const {
     const double slope = alpha * wall_.heat_of_mass_;
     double T = slope > 0.0 ? sum_ / slope : std::numeric_limits<double>::infinity();
@@ -108,7 +110,7 @@ class heat_balance_wall::balance {
     return T;
   }
 
-  /// The first of T, 2T, T/2, 4T, … that the velocities represent.
+  /// Returns the first of T, 2T, T/2, 4T, … that the velocities represent.
   trial first_trial(double T) {
     constexpr int most_doublings = 10;
     double factor = 1.0;
@@ -119,15 +121,16 @@ class heat_balance_wall::balance {
     fail(T, why_);
   }
 
-  /// The slope between two temperatures. At one alone e is proportional to T, as with continuous velocities.
+  /// Returns the slope of the excess between two temperatures. For a single one it assumes that e is
+  /// proportional to T, as with continuous velocities.
   double slope(const trial& before, const trial& last) const {
     if (before.T != last.T)
       if (const double found = (last.excess - before.excess) / (last.T - before.T); found > 0.0) return found;
     return (last.excess + sum_ + 3.0 * c_ * fourth(last.T)) / last.T;
   }
 
-  /// row ← the Maxwellian of a temperature; returns its excess, nothing if the velocities do not represent
-  /// it.
+  /// row ← the Maxwellian of a temperature. Returns its excess, or nothing if the velocities do
+  /// not represent it.
   std::optional<double> excess_at(double T) {
     std::array<double, 5> numbers = {1.0};
     const std::size_t d = wall_.velocity_.size();
@@ -147,7 +150,7 @@ class heat_balance_wall::balance {
     return std::nullopt;
   }
 
-  /// ½(|v − u|² g + h) at velocity j.
+  /// Returns ½(|v − u|² g + h) at velocity j.
   double heat(const double* row, std::size_t j) const {
     double square = 0.0;
     for (int k = 0; k < velocities_.dimensions(); ++k) {
@@ -173,11 +176,11 @@ class heat_balance_wall::balance {
   std::span<double> row_;
   double given_ = 0.0, c_ = 0.0, sum_ = 0.0;  ///< E/m, c, and the right-hand side
   double emitted_mass_ = 0.0, temperature_ = 0.0;
-  std::string why_;  ///< the velocities do not represent the last temperature
+  std::string why_;  ///< reason why the velocities do not represent the last temperature
 };
 
-/// The wall with any normal. Specular reflection returns the heat that arrives. Where it matches the mass
-/// alone, all that arrives is re-emitted: the balance is then exact too.
+/// The wall with any normal. Specular reflection returns the arriving heat. If it can match only the mass,
+/// the wall re-emits all arriving molecules, and the balance is exact too.
 class heat_balance_wall::oblique_form final : public oblique_wall {
  public:
   oblique_form(std::shared_ptr<const heat_balance_wall> wall, const velocity_set& velocities)
@@ -205,7 +208,7 @@ class heat_balance_wall::oblique_form final : public oblique_wall {
       of.alpha = 1.0;
     if (of.alpha == 0.0) return;
     of.add_arriving(arriving);
-    // Where nothing arrives nothing leaves, whatever the temperature.
+    // If nothing arrives, nothing leaves at any temperature.
     const bool emits = of.arriving_mass != 0.0;
     const double rho = emits ? of.alpha * of.solve() : 0.0;
     for (std::size_t k = 0; k < n; ++k)
@@ -285,7 +288,7 @@ void heat_balance_wall::incoming(const face& where, double t, const position& at
   of.alpha = accommodation_at(accommodation_, t, at);
   of.radiated = radiated(t, at);
   of.add_arriving(outgoing);
-  // Where nothing arrives nothing leaves, whatever the temperature.
+  // If nothing arrives, nothing leaves at any temperature.
   const bool emits = of.alpha > 0.0 && of.arriving_mass != 0.0;
   const double rho = emits ? of.alpha * of.solve() : 0.0;
   for (std::size_t k = 0; k < mirrored_.size(); ++k)

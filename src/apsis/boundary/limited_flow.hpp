@@ -6,7 +6,8 @@ namespace apsis {
 class limited_flow {
  public:
   virtual ~limited_flow() = default;
-  /// Returns whether less than its flow crossed a face since the last call, in any stage. Thread-safe.
+  /// Returns true if less than the required flow crossed a face in any stage since the
+  /// last call. Thread-safe.
   virtual bool take_shortfall() const = 0;
 };
 

@@ -30,7 +30,7 @@ struct cell_corners {
   }
 };
 
-/// Calls act(j, v'_j) for all velocities whose v·n has a sign.
+/// Calls act(j, v'_j) for all velocities with the given sign of v·n.
 template <std::size_t D, class Act>
 void for_mirrored(const tensor_axes& axes, const std::array<double, 3>& normal, const double* inward,
                   double sign, const Act& act) {
@@ -48,7 +48,7 @@ void for_mirrored(const tensor_axes& axes, const std::array<double, 3>& normal, 
       for (std::size_t k = 0; k < D; ++k) {
         mirrored[k] = v[k] - 2.0 * inward[j] * normal[k];
         const double end = mirrored[k] > 0.0 ? axes.points(k).back() : axes.points(k).front();
-        // Axes that do not contain 0 have no shorter velocity.
+        // On an axis without 0, this end may have the opposite sign.
         if (std::abs(mirrored[k]) > std::abs(end) && end * mirrored[k] > 0.0)
           shorter = std::min(shorter, end / mirrored[k]);
       }
@@ -58,7 +58,7 @@ void for_mirrored(const tensor_axes& axes, const std::array<double, 3>& normal, 
   }
 }
 
-/// Returns v·n below which all corners of the cell around a velocity have v·n < 0.
+/// Returns a depth such that v·n < −depth implies v·n < 0 at all corners of the cell around v.
 double depth_of_cells(const tensor_axes& axes, const std::array<double, 3>& normal) {
   double depth = 0.0;
   for (std::size_t k = 0; k < axes.dimensions(); ++k) {

@@ -13,11 +13,11 @@
 
 namespace apsis {
 
-/// The Maxwellian M of the gas that arrives.
+/// The Maxwellian M of the arriving gas.
 struct oblique_reflection::reference {
   exponential_family family;
   exponential_family::vector multipliers{};  ///< λ without the constant
-  exponential_family::vector wanted{};       ///< fluxes of the gas that arrives
+  exponential_family::vector wanted{};       ///< fluxes of the arriving gas
   int passes = 0;
 };
 
@@ -25,7 +25,7 @@ namespace {
 
 using multipliers_of_wall = exponential_family::vector;
 
-/// Factors of more than e^600 leave no room for the distribution in the range of numbers.
+/// Larger exponents would leave no room for the distribution in the range of doubles.
 constexpr double most_exponent = 600.0;
 
 /// Returns the unit vectors of the constant, of the tangential directions and of the energy.
@@ -71,7 +71,7 @@ std::array<multipliers_of_wall, 5> full_basis() {
   return basis;
 }
 
-/// Returns memory of at least n numbers of this thread.
+/// Returns memory for at least n numbers of this thread.
 template <int Use>
 double* memory_of_wall(std::size_t n) {
   thread_local std::vector<double> memory;
@@ -112,7 +112,7 @@ oblique_reflection::report oblique_reflection::reflect(const std::array<double, 
   return {a.is_matched && b.is_matched, a.passes + b.passes};
 }
 
-/// Reflects at a normal along an axis, and returns whether it is one.
+/// Reflects exactly at a normal along a symmetric axis. Returns false for other normals.
 bool oblique_reflection::mirror(const std::array<double, 3>& normal, const double* inward,
                                 const double* arriving, double* values) const {
   for (std::size_t k = 0; k < axes_.dimensions(); ++k) {
@@ -127,7 +127,8 @@ bool oblique_reflection::mirror(const std::array<double, 3>& normal, const doubl
   return false;
 }
 
-/// flux ← the fluxes w |v·n| times the scaled values of a set where v·n has a sign. Returns their sum.
+/// flux ← w |v·n| times the scaled values of a set for components with the given sign of v·n, 0 for others.
+/// Returns the sum.
 double oblique_reflection::flux_of(std::size_t set, double sign, const double* inward, const double* values,
                                    double scale, double* flux) const {
   const std::size_t n = axes_.size();
@@ -145,7 +146,7 @@ oblique_reflection::report oblique_reflection::reflect_nonnegative(const std::ar
                                                                    const double* inward,
                                                                    const double* arriving, double most,
                                                                    double* values) const {
-  constexpr double least_share = 1e-3;  // of the flux, without which interpolation has missed the gas
+  constexpr double least_share = 1e-3;  // with a smaller part of the flux, interpolation has missed the gas
   constexpr int most_binary = 1000;
   const std::size_t n = axes_.size(), sets = at(velocities_.sets());
   int binary = 0;
@@ -185,7 +186,7 @@ oblique_reflection::report oblique_reflection::reflect_nonnegative(const std::ar
   return made;
 }
 
-/// Finds M.
+/// Computes M; λ is 0 if Newton's method does not find it.
 oblique_reflection::reference oblique_reflection::reference_of(const std::array<double, 3>& normal,
                                                                const double* inward, const double* arriving,
                                                                double scale, double* flux) const {
@@ -230,7 +231,7 @@ oblique_reflection::reference oblique_reflection::reference_of(const std::array<
   return made;
 }
 
-/// ratios ← f/M of components with v·n < 0, 0 of others.
+/// ratios ← scale f/M of components with v·n < 0, and 0 for others.
 void oblique_reflection::divide(const reference& by, const double* inward, const double* arriving,
                                 double scale, double* ratios) const {
   const std::size_t n = axes_.last().size();
@@ -247,7 +248,7 @@ void oblique_reflection::divide(const reference& by, const double* inward, const
     }
 }
 
-/// Multiplies values of components with v·n > 0 of a set by exp(ν·φ).
+/// Multiplies the values of a set by exp(ν·φ) for components with v·n > 0.
 void oblique_reflection::multiply(const exponential_family& family, const multipliers_of_wall& multipliers,
                                   const double* inward, std::size_t set, double* values) const {
   const std::size_t n = axes_.last().size();

@@ -15,15 +15,15 @@ namespace apsis {
 /// - M = exp(λ·(1, v, |v|²)) has the discrete fluxes of mass, momentum and energy of the gas that arrives.
 /// - I interpolates linearly along each axis between components that arrive (mirrored_interpolation.hpp).
 /// - a, b, c match the discrete fluxes of mass, tangential momentum and energy of both halves to rounding.
-/// Hence the wall has no shear and no heat flux.
+/// The wall therefore has neither shear nor heat flux.
 ///
-/// With (g, h) these are sums of g. The factors of h are the same, times a number that matches the flux of h.
-/// Both parts of the energy are thus reflected on their own.
+/// With (g, h) the discrete fluxes are those of g. The factors of h are the same, times a number that matches
+/// the flux of h. Both parts of the energy are thus reflected separately.
 ///
-/// A gas at rest in equilibrium is reflected into itself to rounding, since f/M is 1. Errors of Maxwellians
-/// that move are those of sums over half of the velocities. With 32 velocities in each direction of [−7, 7]
-/// and T = 1, they are 2e-8 along the wall and 1.3e-4 where they move towards it (interpolation of
-/// f: 1.2e-2).
+/// A gas at rest in equilibrium is reflected into itself to rounding, since f/M is 1. Errors for moving
+/// Maxwellians are those of sums over half of the velocities. With 32 velocities in each direction of [−7, 7]
+/// and T = 1, the error is 2e-8 for motion along the wall. For motion towards the wall it is 1.3e-4
+/// (interpolation of f: 1.2e-2).
 ///
 /// Values are ≥ 0 if f ≥ 0; otherwise positive and negative values are reflected separately. A normal along
 /// an axis gives the mirrored components themselves. Sometimes no a, b, c exist, or Newton's method does not
@@ -31,19 +31,19 @@ namespace apsis {
 /// flux of h are then matched. Dimensionless.
 class oblique_reflection {
  public:
-  /// How a row was reflected.
+  /// The outcome of a reflection.
   struct report {
     bool is_matched = true;  ///< whether momentum and energy are matched too
-    int passes = 0;          ///< over the row, in Newton's method
+    int passes = 0;          ///< passes over the row in Newton's method
   };
 
-  /// Throws input_error unless the velocities are all combinations of numbers in each direction, with one or
-  /// two sets of components: g, or (g, h).
+  /// Throws input_error unless the velocities form a tensor product (tensor_axes), with one or two sets of
+  /// components: g, or (g, h).
   explicit oblique_reflection(const velocity_set& velocities);
 
-  /// values[k] ← the reflected distribution, for every component with v·n > 0. `normal`: n. `inward`: v·n of
-  /// every component. `arriving`: the distribution of components with v·n < 0. Other components of
-  /// values[], which does not overlap arriving[], are undefined afterwards. Thread-safe.
+  /// values[k] ← the reflected distribution, for every component with v·n > 0. `normal` is n, and `inward` is
+  /// v·n of every component. `arriving` is the distribution of components with v·n < 0. Other components of
+  /// values[] are undefined afterwards. The two arrays do not overlap. Thread-safe.
   report reflect(const std::array<double, 3>& normal, const double* inward, const double* arriving,
                  double* values) const;
 

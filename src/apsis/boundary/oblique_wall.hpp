@@ -18,13 +18,13 @@ class oblique_wall {
  public:
   virtual ~oblique_wall() = default;
 
-  /// Sets values[k] to the distribution that leaves the wall, for every component k with v·n > 0. `inward`:
-  /// v·n of every component; `arriving`: the distribution at the wall, of components with v·n < 0, ≥ 0 if
-  /// that is promised. Other components of values[], which does not overlap arriving[], are free for scratch.
-  /// Called concurrently. Throws input_error for impossible values of the wall.
+  /// values[k] ← the distribution that leaves the wall, for every component k with v·n > 0. `inward` is v·n
+  /// of every component. `arriving` is the distribution at the wall for components with v·n < 0; it is ≥ 0 if
+  /// positivity is promised. Other components of values[] are free for scratch. The two arrays do not
+  /// overlap. Calls are concurrent. Throws input_error for impossible values of the wall.
   virtual void emit(const wall_point& where, const double* inward, const double* arriving,
                     double* values) const = 0;
-  /// Returns the velocity of the wall along itself at a point.
+  /// Returns the velocity of the wall at a point; it lies along the wall.
   virtual std::array<double, 3> velocity(const wall_point& where) const = 0;
 };
 

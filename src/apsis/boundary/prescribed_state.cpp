@@ -33,7 +33,7 @@ prescribed_state::prescribed_state(data_form form, std::vector<face_quantity> va
 }
 
 void prescribed_state::compute(double t, const position& x, std::span<double> row) const {
-  constexpr std::size_t usual = 8;  // not on the heap
+  constexpr std::size_t usual = 8;  // needs no heap
   boost::container::small_vector<double, usual> numbers;
   for (const auto& value : values_) numbers.push_back(value.at(t, x));
   write_other({numbers.data(), numbers.size()}, t, x, row);
@@ -49,8 +49,8 @@ void prescribed_state::write_other(std::span<const double> numbers, double t, co
                            form_.description, time_and_point(value, t, x), problem));
 }
 
-/// Returns the number of the value that a problem is about, whose variable is described by the first word of
-/// the problem; of another one that a case gives.
+/// Returns the index of the value that caused a problem. The problem begins with the first word of the
+/// description of its variable. If no such value comes from a case, returns the last value that does.
 std::size_t prescribed_state::index_of_problem(const std::string& problem) const {
   const auto first_word = [](const std::string& text) { return text.substr(0, text.find(' ')); };
   std::size_t found = values_.size() - 1, first = 0;

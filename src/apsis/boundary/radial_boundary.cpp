@@ -10,10 +10,10 @@
 namespace apsis {
 namespace {
 
-/// More cells than a pencil needs for ghost rows.
+/// A number of cells that suffices for all ghost rows.
 constexpr int many_cells = std::numeric_limits<int>::max();
 
-/// Row k of `count` rows of scratch memory of this thread.
+/// Rows of scratch memory of this thread.
 class scratch_rows {
  public:
   scratch_rows(std::size_t count, std::size_t width) : width_(width) {
@@ -37,7 +37,7 @@ void divide(const double* row, double by, int n, double* to) {
   for (int k = 0; k < n; ++k) to[k] = row[k] / by;
 }
 
-/// A wall with any normal.
+/// A wall with any normal in axisymmetric flow.
 class radial_wall final : public oblique_wall {
  public:
   radial_wall(std::shared_ptr<const oblique_wall> of, int radial, int components)
@@ -91,7 +91,7 @@ std::shared_ptr<const oblique_wall> radial_boundary::oblique(const velocity_set&
   return wall ? std::make_shared<radial_wall>(std::move(wall), radial_, velocities.components()) : nullptr;
 }
 
-/// Repeated rows of f are other rows of F where r changes.
+/// Where r changes, a ghost row with the repeated f differs from the repeated row of F.
 std::optional<int> radial_boundary::cell_of_ghost(int ghost, int cells) const {
   return crosses_ ? std::nullopt : of_->cell_of_ghost(ghost, cells);
 }

@@ -10,20 +10,20 @@
 
 namespace apsis {
 
-/// Any boundary condition but the axis in axisymmetric flow, where the unknowns are F = r f. The condition
-/// sees f. Outgoing values are divided by r, and so are ghost rows that the condition reads. Incoming values
-/// are multiplied by r at the point of the face. A value at the face that a condition extrapolates from ghost
-/// rows is then that of F divided by r.
+/// Applies a boundary condition to axisymmetric flow, with the unknowns F = r f. The axis is a condition of
+/// its own. This object passes f to the condition: it divides outgoing values and the ghost rows that the
+/// condition reads by r. It multiplies incoming values by r at the point of the face. A condition may
+/// extrapolate a value at the face from ghost rows. This value is then that of F, divided by r.
 ///
-/// Conditions that prescribe incoming values continue F as they continue f. Where a condition repeats the
-/// cell at a face r = const, ghost rows are F of the f there. Other conditions, such as planes of symmetry,
-/// fill ghost rows at planes x = const only, where r is constant along a pencil. Dimensionless.
+/// Conditions that prescribe incoming values continue F in the same way as f. If a condition repeats a cell
+/// beyond a face r = const, ghost rows are r f with the f of this cell. Other conditions, such as planes of
+/// symmetry, are possible only at planes x = const, where r is constant along a pencil. Dimensionless.
 class radial_boundary final : public boundary {
  public:
-  /// `radial`: the direction of r; `spacing`: Δr.
+  /// `radial` is the direction of r, and `spacing` is Δr.
   radial_boundary(std::shared_ptr<const boundary> of, int radial, double spacing);
 
-  /// Throws input_error where the condition is not possible at r = const, and as the condition does.
+  /// Throws input_error if the condition is not possible at r = const, and as the condition does.
   std::shared_ptr<const boundary> prepared(const face& where, const velocity_set& velocities) const override;
   std::shared_ptr<const boundary> on_surface(const std::function<double()>& area) const override;
   std::shared_ptr<const oblique_wall> oblique(const velocity_set& velocities) const override;
@@ -40,7 +40,7 @@ class radial_boundary final : public boundary {
     return of_->wall_velocity(t, at);
   }
   bool periodic() const override { return of_->periodic(); }
-  /// Returns nothing: the sum of η(F) may increase, since F η′ is no function of f.
+  /// Returns nothing: the sum of η(F) may increase, because F η′ is no function of f.
   std::optional<std::vector<double>> entropy_bound() const override { return std::nullopt; }
   const boundary& undecorated() const override { return of_->undecorated(); }
 
@@ -50,7 +50,7 @@ class radial_boundary final : public boundary {
   std::shared_ptr<const boundary> of_;
   int radial_;
   double spacing_;
-  int components_ = 0;    ///< of a row, after prepared()
+  int components_ = 0;    ///< components of a row, set by prepared()
   bool crosses_ = false;  ///< whether pencils lie along r
 };
 

@@ -17,7 +17,7 @@ namespace {
       "lines");
 }
 
-/// Returns the different numbers of a direction, increasing.
+/// Returns the distinct numbers of a direction, in increasing order.
 std::vector<double> numbers_of(std::span<const double> speeds) {
   std::vector<double> numbers(speeds.begin(), speeds.end());
   std::sort(numbers.begin(), numbers.end());

@@ -8,27 +8,27 @@
 
 namespace apsis {
 
-/// The axes of velocities that are all combinations of numbers in each of d directions, the last fastest.
-/// Dimensionless.
+/// The axes of velocities that form a tensor product: all combinations of numbers in each of d directions.
+/// The last direction varies fastest in a row. Dimensionless.
 class tensor_axes {
  public:
-  /// An interval of an axis, and where a number lies in it.
+  /// A position on an axis: an interval and the relative position inside.
   struct place {
-    std::size_t below;  ///< index of its lower end
+    std::size_t below;  ///< index of the lower end of the interval
     double share;       ///< 0 at the lower end, 1 at the upper one
   };
 
-  /// Throws input_error if the velocities are not such combinations, with at least two numbers in each
-  /// direction.
+  /// Throws input_error unless the velocities form a tensor product with at least two numbers
+  /// in each direction.
   explicit tensor_axes(const velocity_set& velocities);
 
   /// Returns d.
   std::size_t dimensions() const { return points_.size(); }
-  /// Returns the numbers of a direction, which increase.
+  /// Returns the numbers of a direction, in increasing order.
   const std::vector<double>& points(std::size_t k) const { return points_[k]; }
   /// Returns the numbers of the last direction.
   const std::vector<double>& last() const { return points_.back(); }
-  /// Returns the distance of neighbours along a direction in a row.
+  /// Returns the distance in a row between neighbours along a direction.
   std::size_t stride(std::size_t k) const { return strides_[k]; }
   /// Returns the number of velocities.
   std::size_t size() const { return size_; }
@@ -36,9 +36,9 @@ class tensor_axes {
   std::size_t lines() const { return size_ / last().size(); }
   /// Returns the indices of a line in the last direction; the last index is 0.
   std::array<std::size_t, 3> indices_of_line(std::size_t line) const;
-  /// Whether the numbers of a direction are symmetric, with symmetric weights of the velocities.
+  /// Returns true if the numbers of a direction and the weights of the velocities are symmetric.
   bool is_symmetric(std::size_t k) const { return symmetric_[k]; }
-  /// Returns the place of a number of a direction; numbers beyond the ends are moved to these.
+  /// Returns the place of a number on an axis. Numbers beyond the ends are moved to the ends.
   place find(std::size_t k, double v) const {
     const double* all = points_[k].data();
     const bins& of = bins_[k];
@@ -54,10 +54,10 @@ class tensor_axes {
  private:
   void add_axis(const velocity_set& velocities, std::size_t k);
 
-  /// Equal bins along an axis.
+  /// Equal bins along an axis, for fast search.
   struct bins {
-    double per_unit = 0.0, last = 0.0;  ///< their number per unit of velocity, and the last one
-    std::vector<int> first = {};        ///< interval at the lower end of each
+    double per_unit = 0.0, last = 0.0;  ///< bins per unit of velocity, and index of the last one
+    std::vector<int> first = {};        ///< interval at the lower end of each bin
     std::vector<double> inverse_gaps = {};
   };
 

@@ -12,17 +12,17 @@ namespace apsis {
 struct arriving_gas {
   double mass = 0.0;                    ///< Σ_out w |v_n| f
   std::array<double, 3> momentum = {};  ///< the same sums over v f
-  double energy = 0.0;                  ///< the same sums over ½|v|² f, with internal energies
+  double energy = 0.0;                  ///< the same sums over ½|v|² f, including internal energies
 };
 
-/// A boundary condition that is a wall with a temperature, given or found.
+/// A wall with a temperature that is given or follows from the gas.
 class wall_temperature {
  public:
   virtual ~wall_temperature() = default;
-  /// Whether the temperature follows from the molecules that arrive; by default it is given.
+  /// Returns true if the temperature follows from the arriving molecules. The default is false: it is given.
   virtual bool follows_from_gas() const { return false; }
-  /// Returns T_w at a point of a face or of a wall with any normal, given what arrives; nothing where it has
-  /// no effect. Throws as the wall does when it emits.
+  /// Returns T_w at a point of a face or of a wall with any normal, given the arriving gas. Returns nothing
+  /// if T_w has no effect. Throws as the wall does when it emits.
   virtual std::optional<double> temperature(const wall_point& where, const velocity_set& velocities,
                                             const arriving_gas& arriving) const = 0;
 };

@@ -8,7 +8,7 @@
 namespace apsis {
 namespace {
 
-/// Throws an input error for a velocity along the normal of a wall at a point.
+/// Throws input_error for a velocity of a wall along its normal.
 [[noreturn]] void refuse_along_normal(const std::vector<face_quantity>& velocity, double normal, double t,
                                       const position& at, const char* why, const char* remedy) {
   const face_quantity& given = velocity.front();
@@ -50,7 +50,7 @@ std::array<double, 3> velocity_along(const std::vector<face_quantity>& velocity,
     normal += u[k] * where.normal[k];
     square += u[k] * u[k];
   }
-  // Pieces are chords of a curved wall, which deviate from it by less.
+  // Pieces are chords of a curved wall. The angles between them and the wall cause smaller components.
   constexpr double most_of_square = 0.25;
   if (normal * normal > most_of_square * square)
     refuse_along_normal(velocity, normal, where.t, where.at, "the body would have to move",

@@ -19,8 +19,8 @@ double accommodation_at(const face_quantity& accommodation, double t, const posi
 std::array<double, 3> velocity_along(const std::vector<face_quantity>& velocity, const face& where, double t,
                                      const position& at);
 
-/// Returns the part of the velocity along a wall with any normal. Throws input_error if more than half of it
-/// is along the normal.
+/// Returns the part of the velocity along a wall with any normal. Throws input_error if the component along
+/// the normal exceeds half of the speed.
 std::array<double, 3> velocity_along(const std::vector<face_quantity>& velocity, const wall_point& where);
 
 }  // namespace apsis

@@ -16,13 +16,13 @@ APSIS_FORMULA N squared(N x) {
   return x * x;
 }
 
-/// Returns the share of a continuation that is kept: 1 − x² with x = (s² − d²)²/(s⁴ + d⁴ + e⁴), for the two
-/// differences s, d beside a value a and e = a/2. It is 1 − O(Δx¹²) for smooth data, and near 0 if one
-/// difference vanishes beside another one that is larger than a. Like the weights of WENO it is a rational
-/// function, so that T(u) is smooth and methods keep their order in time. 1 for constant data.
+/// Returns the factor of a continuation: 1 − x² with x = (s² − d²)²/(s⁴ + d⁴ + e⁴), e = a/2, and the two
+/// differences s, d next to a value a. It is 1 for constant data and 1 − O(Δx¹²) for smooth data. It is near
+/// 0 if one difference vanishes and the other one is larger than a. Like the weights of WENO it is a rational
+/// function, so that T(u) is smooth and methods keep their order in time.
 template <class N>
 APSIS_FORMULA N share_kept(N s, N d, N a) {
-  const N e = N(0.5) * a;  // differences below half the value are continued in any case
+  const N e = N(0.5) * a;  // differences below half the value are always continued
   const N scale = inverse_power_of_two(larger(larger(absolute(s), absolute(d)), absolute(e)));
   const N s2 = squared(s * scale), d2 = squared(d * scale), e2 = squared(e * scale),
           all = fma(s2, s2, fma(d2, d2, e2 * e2));
@@ -30,14 +30,14 @@ APSIS_FORMULA N share_kept(N s, N d, N a) {
   return select(all > N(0.0), kept * (N(2.0) - kept), N(1.0));
 }
 
-/// The continuation of three cell averages beyond a face.
+/// The continuation of three cell averages a0, a1, a2 beyond a face, a0 being next to it.
 template <class N>
 struct continuation {
   N first, slope, curvature, factor;
 
   APSIS_FORMULA continuation(N a0, N a1, N a2)
       : first(a0), slope(a0 - a1), curvature(slope - (a1 - a2)), factor(share_kept(slope, a1 - a2, a0)) {}
-  /// The average of ghost cell number `ghost`, 1, 2, …
+  /// Returns the average of ghost cell `ghost` = 1, 2, …
   APSIS_FORMULA N average(N ghost) const {
     return fma(factor * ghost, fma(N(0.5) * (ghost + N(1.0)), curvature, slope), first);
   }

@@ -6,7 +6,7 @@
 namespace apsis {
 namespace {
 
-/// A wall that takes no heat and gives none.
+/// A wall that exchanges no heat with the gas.
 class adiabatic_wall final : public heat_balance_wall {
  public:
   using heat_balance_wall::heat_balance_wall;

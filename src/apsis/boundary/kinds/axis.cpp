@@ -9,10 +9,11 @@
 namespace apsis {
 namespace {
 
-/// The axis r = 0 of axisymmetric flow, whose unknowns are F = r f. Along a line through the axis f is smooth
-/// for a velocity fixed in space, while r changes its sign: ghost rows are −F of the cells inside with v_r
-/// and v_θ reversed. Nothing crosses the axis. The values that enter are those that leave with v_r reversed,
-/// so that mass, energy and the momentum along the axis do not change, to rounding. Both are close to 0.
+/// The axis r = 0 of axisymmetric flow with the unknowns F = r f. For a velocity fixed in space, f is smooth
+/// along a line through the axis, while r changes its sign. Ghost rows are therefore −F of the cells inside
+/// with reversed v_r and v_θ. Nothing crosses the axis: the values that enter are those that leave, with v_r
+/// reversed. Mass, energy and the momentum along the axis thus do not change, to rounding. The entering and
+/// the leaving values are close to 0.
 class axis_boundary final : public boundary {
  public:
   std::shared_ptr<const boundary> prepared(const face& where, const velocity_set& velocities) const override {
@@ -40,7 +41,7 @@ class axis_boundary final : public boundary {
     for (std::size_t k = 0; k < mirrored_.size(); ++k) values[k] = outgoing[mirrored_[k]];
   }
 
-  /// Finds the images of components. Throws input_error if some have no image, or there is no v_θ.
+  /// Finds the images of components. Throws input_error if a component has no image, or if there is no v_θ.
   void set_images(int radial, const velocity_set& velocities) {
     if (velocities.dimensions() < radial + 2)
       throw input_error(
@@ -53,8 +54,8 @@ class axis_boundary final : public boundary {
   }
 
  private:
-  std::vector<int> mirrored_;  ///< component whose v_r is opposite
-  std::vector<int> opposite_;  ///< component whose v_r and v_θ are opposite
+  std::vector<int> mirrored_;  ///< component with the opposite v_r
+  std::vector<int> opposite_;  ///< component with opposite v_r and v_θ
 };
 
 }  // namespace
@@ -63,7 +64,7 @@ extern const boundary_entry boundary_axis;
 const boundary_entry boundary_axis = {.name = "axis",
                                       .description = "axis r = 0 of axisymmetric flow, at the lower end of r",
                                       .make = [](const boundary_source& from) -> std::unique_ptr<boundary> {
-                                        // Errors have a place here.
+                                        // An error that is thrown here has a position in the case.
                                         if (from.equation != nullptr)
                                           axis_boundary().set_images(from.equation->space_dimensions() - 1,
                                                                      from.equation->velocities());

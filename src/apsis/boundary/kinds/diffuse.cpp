@@ -19,9 +19,10 @@
 namespace apsis {
 namespace {
 
-/// A wall with any normal (Maxwell 1879): f_in = α ρ_w M[1, u_w, T_w] + (1 − α) f_reflected with the part of
-/// u_w along the wall, and with the specular reflection of oblique_reflection. No mass crosses it. A wall
-/// that is cut into flat pieces moves along each of them. Reflection does not depend on u_w, as u_w·n = 0.
+/// A diffuse wall with any normal (Maxwell 1879): f_in = α ρ_w M[1, u_w, T_w] + (1 − α) f_reflected. u_w is
+/// the part of the velocity along the wall, and oblique_reflection gives f_reflected. No mass crosses the
+/// wall. A wall that is cut into flat pieces moves along each of them. Reflection does not depend on u_w,
+/// because u_w·n = 0.
 class oblique_diffuse_wall final : public oblique_wall {
  public:
   oblique_diffuse_wall(const velocity_set& velocities, prescribed_state emitted, face_quantity temperature,
@@ -46,7 +47,7 @@ class oblique_diffuse_wall final : public oblique_wall {
     const auto n = static_cast<std::size_t>(velocities_.components());
     if (alpha < 1.0) reflection_->reflect(where.normal, inward, arriving, values);
     if (alpha == 0.0) return;
-    thread_local std::vector<double> memory;  // a row of the wall beside the reflected one
+    thread_local std::vector<double> memory;  // the emitted row, in addition to the reflected one
     if (alpha < 1.0 && memory.size() < n) memory.resize(n);
     const auto [density, emitted] =
         emission(where, inward, arriving, {alpha < 1.0 ? memory.data() : values, n});
@@ -58,10 +59,10 @@ class oblique_diffuse_wall final : public oblique_wall {
  private:
   struct emitted_gas {
     double density;
-    const double* row;  ///< of density 1
+    const double* row;  ///< emitted row for density 1
   };
 
-  /// Returns what a wall with α = 1 emits. It may be in the buffer.
+  /// Returns the emission of a wall with α = 1. The row may be in the buffer.
   emitted_gas emission(const wall_point& where, const double* inward, const double* arriving,
                        std::span<double> buffer) const {
     const auto weights = velocities_.weights();
@@ -97,10 +98,10 @@ class oblique_diffuse_wall final : public oblique_wall {
   bool moves_ = false;
 };
 
-/// A wall of temperature T that moves along itself (Maxwell 1879): of the molecules that arrive, the fraction
-/// α leaves with the Maxwellian of the wall and 1 − α is reflected specularly,
-///   f_in = α ρ_w M[1, u_w, T_w] + (1 − α) f_out(mirrored v_n),  ρ_w = Σ_out w |v_n| f / Σ_in w |v_n| M,
-/// with the discrete sums of the fluxes in the step, so that no mass crosses the wall.
+/// A wall of temperature T_w that moves along itself (Maxwell 1879). Of the arriving molecules, the fraction
+/// α leaves with the Maxwellian of the wall, and 1 − α is reflected specularly:
+///   f_in = α ρ_w M[1, u_w, T_w] + (1 − α) f_out(mirrored v_n),  ρ_w = Σ_out w |v_n| f / Σ_in w |v_n| M.
+/// These are the discrete sums of the fluxes in the step, so that no mass crosses the wall.
 class diffuse_wall final : public incoming_boundary, public wall_temperature {
  public:
   diffuse_wall(prescribed_state emitted, face_quantity temperature, std::vector<face_quantity> velocity,
@@ -154,10 +155,10 @@ class diffuse_wall final : public incoming_boundary, public wall_temperature {
   }
 
  private:
-  /// Darrozes & Guiraud (C. R. Acad. Sci. A 262, 1966): by Jensen's inequality the entropy relative to the
-  /// Maxwellian M of the wall, Σ f log(f/M), does not increase, so that no more entropy enters than
-  /// −(F_energy − u_w·F_momentum)/T_w, as log M is quadratic in v. Nothing for values that change, and where
-  /// the discrete M is not the formula.
+  /// Returns the bound of Darrozes & Guiraud (C. R. Acad. Sci. A 262, 1966). By Jensen's inequality the
+  /// entropy relative to the Maxwellian M of the wall, Σ f log(f/M), does not increase. log M is quadratic in
+  /// v, so that at most the entropy −(F_energy − u_w·F_momentum)/T_w enters. Returns nothing for values that
+  /// change, and if the discrete M differs from the formula.
   std::optional<std::vector<double>> bound_of_entropy(const velocity_set& velocities) const {
     const double T = temperature_.is_constant() ? temperature_.at(0.0, {}) : 0.0;
     const auto is_constant = [](const face_quantity& value) { return value.is_constant(); };
@@ -170,9 +171,9 @@ class diffuse_wall final : public incoming_boundary, public wall_temperature {
     return is_gaussian(velocities, emitted, bound, T) ? std::optional(bound) : std::nullopt;
   }
 
-  /// Whether the row is exp(β·v − |v|²/(2T)) with the slopes β of the bound, and has the variance T, for
-  /// which h = (D − d) T g is exact too. Slopes with a relative error η give a flux δ out of equilibrium an
-  /// error ηδ beside a dissipation of the size δ²: at most η²/4.
+  /// Returns true if the row is exp(β·v − |v|²/(2T)) with the slopes β of the bound and has the variance T.
+  /// Then h = (D − d) T g is exact too. Slopes with a relative error η cause an error ηδ for a flux δ out of
+  /// equilibrium. The dissipation is of the size δ², so that the entropy grows by at most η²/4.
   static bool is_gaussian(const velocity_set& velocities, const double* row, const std::vector<double>& bound,
                           double T) {
     constexpr double accurate = 1e-8, negligible = 1e-200;
@@ -206,8 +207,8 @@ class diffuse_wall final : public incoming_boundary, public wall_temperature {
   face_quantity temperature_;
   std::vector<face_quantity> velocity_;
   face_quantity accommodation_;
-  std::vector<int> mirrored_;      ///< component whose normal velocity is opposite
-  std::vector<double> mass_flux_;  ///< of unit components of the first set; > 0 enters
+  std::vector<int> mirrored_;      ///< for each component, the one with the opposite normal velocity
+  std::vector<double> mass_flux_;  ///< fluxes of unit components of the first set; > 0 enters
   std::optional<std::vector<double>> entropy_bound_;
 };
 

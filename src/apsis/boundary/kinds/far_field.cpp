@@ -7,11 +7,11 @@
 namespace apsis {
 namespace {
 
-/// A gas that is at rest or in uniform motion far away. The Riemann invariants of the Euler equations that
-/// leave, u_n + 2a/(γ − 1), are those of the gas inside, the one that enters, u_n − 2a/(γ − 1), that of the
-/// state far away; entropy and tangential velocity come from where the gas comes from. Gas that is slower
-/// than sound upstream crosses the face at most at the speed of sound, which it has in the middle of a
-/// rarefaction. Waves leave with little reflection; in uniform gas it is the boundary condition inflow.
+/// A gas that is at rest or in uniform motion far away. The leaving Riemann invariants of the Euler
+/// equations, u_n + 2a/(γ − 1), are those of the gas inside. The entering one, u_n − 2a/(γ − 1), is that of
+/// the state far away. Entropy and tangential velocity are those of the gas upstream. Gas that is subsonic
+/// upstream crosses the face at most at the speed of sound, which it reaches in the middle of a rarefaction.
+/// Waves leave with little reflection. In uniform gas this is the boundary condition inflow.
 class far_field final : public gas_end {
  public:
   far_field(const model& equation, std::vector<face_quantity> values)
@@ -40,7 +40,7 @@ class far_field final : public gas_end {
     }
     fluid_state state = speed > 0.0 ? inside : far;
     const double T = a * a / gamma();
-    state.rho *= std::pow(T / state.T, 1.0 / (gamma() - 1.0));  // the entropy p/ρ^γ is kept
+    state.rho *= std::pow(T / state.T, 1.0 / (gamma() - 1.0));  // same entropy p/ρ^γ
     state.T = T;
     set_outward(state, where, speed);
     return state;

@@ -13,7 +13,7 @@
 namespace apsis {
 namespace {
 
-/// Incoming components by functions of t, x and v: of f, or of g and h of a reduced gas.
+/// Incoming components as functions of t, x and v: f, or g and h of a reduced gas.
 class given_distribution final : public incoming_boundary {
  public:
   explicit given_distribution(std::vector<face_quantity> values) : values_(std::move(values)) {}
@@ -50,7 +50,7 @@ class given_distribution final : public incoming_boundary {
   std::vector<double> enters_;
 };
 
-/// Incoming components of a model without a velocity grid, by its most detailed variables.
+/// Incoming components of a model without a velocity grid, from its most detailed variables.
 class given_components final : public incoming_boundary {
  public:
   explicit given_components(prescribed_state state) : state_(std::move(state)) {}

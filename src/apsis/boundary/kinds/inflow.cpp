@@ -7,7 +7,7 @@
 namespace apsis {
 namespace {
 
-/// The preferred form of data of a model.
+/// Returns the preferred form of data of a model.
 data_form form_of(const model& equation) {
   const auto forms = equation.data_forms();
   if (forms.empty())
@@ -18,7 +18,7 @@ data_form form_of(const model& equation) {
   return forms.front();
 }
 
-/// Incoming components of a given state; outgoing ones leave.
+/// The incoming components are those of a given state; outgoing ones leave.
 class inflow_boundary final : public incoming_boundary {
  public:
   explicit inflow_boundary(prescribed_state state) : state_(std::move(state)) {}

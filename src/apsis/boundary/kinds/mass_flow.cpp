@@ -16,16 +16,16 @@ namespace apsis {
 namespace {
 
 /// A given mass flux m through every face, into the gas if m > 0. The Maxwellian ρ M[1, u, T] enters with
-///   ρ = (m + Σ_out w |v_n| f)/Σ_in w |v_n| M,
-/// with the discrete sums of the fluxes in the step, so that the net flux is m to rounding, and f ≥ 0 where
-/// ρ ≥ 0. Gas that enters has the temperature of the boundary and the velocity m/ρ_i along the normal, gas
-/// that leaves temperature and velocity along the face from inside, and m/ρ_i too (index i inside), at most
-/// the speed of sound. In a continuum ρ is then that of the gas inside, without a kinetic layer. An outlet
-/// whose flux exceeds what arrives lets nothing enter. A total flow is the flux m = flow/area through every
-/// face of the surface.
+///   ρ = (m + Σ_out w |v_n| f)/Σ_in w |v_n| M.
+/// These are the discrete sums of the fluxes in the step, so that the net flux is m to rounding, and f ≥ 0 if
+/// ρ ≥ 0. The velocity along the normal is m/ρ_i, at most the speed of sound, with the density ρ_i inside.
+/// Gas that enters has the temperature of the boundary and no velocity along the face. Gas that leaves has
+/// temperature and velocity along the face from inside. In a continuum ρ is then that of the gas inside,
+/// without a kinetic layer. Nothing enters if the flux of an outlet exceeds the arriving one. A total flow is
+/// the flux m = flow/area through every face of the surface.
 class mass_flow_end final : public gas_end, public limited_flow {
  public:
-  /// `is_total`: whether `flow` is that through the whole surface, and not per area.
+  /// `is_total` is true if `flow` is the flow through the whole surface, not per area.
   mass_flow_end(const model& equation, face_quantity flow, bool is_total, face_quantity temperature)
       : gas_end(equation, "mass-flow"),
         flow_(std::move(flow)),
@@ -67,7 +67,7 @@ class mass_flow_end final : public gas_end, public limited_flow {
       state.rho = empty ? 1.0 : inside.rho;  // adjust() replaces it
       state.T = T;
     }
-    if (!(state.T > 0.0)) return state;  // refused as no state of a gas
+    if (!(state.T > 0.0)) return state;  // refused, because no gas has this state
     const double fastest = sound(state.T), speed = empty ? fastest : std::abs(m) / inside.rho;
     set_outward(state, where, std::copysign(std::min(speed, fastest), -m));
     return state;
@@ -90,10 +90,10 @@ class mass_flow_end final : public gas_end, public limited_flow {
 
   face_quantity flow_;
   bool is_total_;
-  double area_ = 1.0;  ///< of the surface, for a total flow
+  double area_ = 1.0;  ///< area of the surface, for a total flow
   face_quantity temperature_;
-  std::vector<double> mass_flux_;             ///< of unit components of the first set; > 0 enters
-  std::shared_ptr<std::atomic<bool>> short_;  ///< whether a flux was not reached
+  std::vector<double> mass_flux_;             ///< fluxes of unit components of the first set; > 0 enters
+  std::shared_ptr<std::atomic<bool>> short_;  ///< whether a flux fell short; take_shortfall() clears it
 };
 
 }  // namespace

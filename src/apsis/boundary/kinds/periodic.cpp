@@ -3,7 +3,7 @@
 namespace apsis {
 namespace {
 
-/// The domain continues at its opposite face, repeatedly if the stencil is wider than the mesh.
+/// The domain continues at its opposite face, several times if the stencil is wider than the mesh.
 class periodic_boundary final : public repeating_boundary {
  public:
   std::optional<int> cell_of_ghost(int ghost, int cells) const override { return cells - 1 - ghost % cells; }

@@ -7,11 +7,11 @@
 namespace apsis {
 namespace {
 
-/// A reservoir of given pressure p. The characteristic of the Euler equations that leaves gives the velocity
-/// u_n = u_n,i + (p_i − p)/(ρ_i a_i), with index i inside; gas that leaves has the density ρ_i + (p −
-/// p_i)/a_i², gas that enters the temperature T of the reservoir, no velocity along the face, and at most its
-/// speed of sound (Wang & Li, Int. J. Heat Fluid Flow 25, 2004, for channels). Faster than sound, gas leaves
-/// as it is.
+/// A reservoir of given pressure p (Wang & Li, Int. J. Heat Fluid Flow 25, 2004, for channels). The leaving
+/// characteristic of the Euler equations gives the velocity u_n = u_n,i + (p_i − p)/(ρ_i a_i), with index i
+/// inside. Gas that leaves has the density ρ_i + (p − p_i)/a_i². Gas that enters has the temperature T of the
+/// reservoir and no velocity along the face; its speed is at most its speed of sound. Gas that leaves faster
+/// than sound keeps its state.
 class pressure_end final : public gas_end {
  public:
   pressure_end(const model& equation, face_quantity pressure, face_quantity temperature)
@@ -22,8 +22,8 @@ class pressure_end final : public gas_end {
                       const position& at) const override {
     const double p = pressure_.at(t, at), T = temperature_.at(t, at);
     fluid_state state;
-    if (!(p > 0.0 && T > 0.0)) return state;  // refused as no state of a gas
-    const bool empty = !inside.admissible();  // a vacuum is filled at the speed of sound
+    if (!(p > 0.0 && T > 0.0)) return state;  // refused, because no gas has this state
+    const bool empty = !inside.admissible();  // gas fills a vacuum at the speed of sound
     const double a = empty ? 0.0 : sound(inside.T), un = outward(inside, where),
                  difference = p - inside.rho * inside.T;
     if (!empty && un >= a) return inside;

@@ -11,7 +11,7 @@
 namespace apsis {
 namespace {
 
-/// A wall that gives the heat ε σ (T_w⁴ − T_0⁴) to surroundings of temperature T_0.
+/// A wall that radiates the heat ε σ (T_w⁴ − T_0⁴) to surroundings of temperature T_0, with the emissivity ε.
 class radiating_wall final : public heat_balance_wall {
  public:
   radiating_wall(const model& equation, std::vector<face_quantity> velocity, face_quantity accommodation,

@@ -10,7 +10,7 @@
 namespace apsis {
 namespace {
 
-/// A wall with any normal that reflects specularly: neither shear nor heat, the velocity of the wall is 0.
+/// A wall at rest with any normal that reflects specularly, without shear and heat flux.
 class oblique_mirror final : public oblique_wall {
  public:
   explicit oblique_mirror(const velocity_set& velocities) : reflection_(velocities) {}
@@ -26,14 +26,15 @@ class oblique_mirror final : public oblique_wall {
   oblique_reflection reflection_;
 };
 
-/// A plane of symmetry, or a wall that reflects particles specularly: ghost cells are the mirror images of
-/// the cells inside, with the normal velocity reversed. Mass, energy and tangential momentum do not cross the
-/// face. In a pencil of fewer cells than ghost rows, as between the plane and a body, some images are
-/// missing. The values that enter are then images of those that leave, as they enter the fluxes.
+/// A plane of symmetry, or a wall that reflects particles specularly. Ghost cells are the mirror images
+/// of the cells inside, with reversed normal velocity. Mass, energy and tangential momentum do not
+/// cross the face. Some images are missing in a pencil with fewer cells than ghost rows, for example
+/// between the plane and a body. The values that enter are then the mirror images of those that leave,
+/// in the fluxes themselves.
 class symmetry_boundary final : public boundary {
  public:
-  /// A description that prepared() turns into a boundary of a face; without a model, all sets of components
-  /// keep their signs.
+  /// Makes a description that prepared() turns into the boundary of a face. Without a model, all sets of
+  /// components keep their signs.
   explicit symmetry_boundary(const model* equation) : equation_(equation) {}
 
   std::shared_ptr<const boundary> prepared(const face& where, const velocity_set& velocities) const override {
@@ -47,7 +48,7 @@ class symmetry_boundary final : public boundary {
     return own;
   }
 
-  /// Only the components of a gas are known to be densities of particles.
+  /// Returns a wall only for a gas: other components may not be densities of particles.
   std::shared_ptr<const oblique_wall> oblique(const velocity_set& velocities) const override {
     if (equation_ == nullptr || equation_->as_gas() == nullptr) return nullptr;
     return std::make_shared<oblique_mirror>(velocities);
@@ -67,7 +68,7 @@ class symmetry_boundary final : public boundary {
     for (std::size_t k = 0; k < mirrored_.size(); ++k) values[k] = signs_[k] * outgoing[mirrored_[k]];
   }
 
-  /// Mirrored components have the same entropy.
+  /// Returns {}, because mirrored components have the same entropy; nothing if signs change.
   std::optional<std::vector<double>> entropy_bound() const override {
     if (std::any_of(signs_.begin(), signs_.end(), [](double sign) { return sign != 1.0; }))
       return std::nullopt;
@@ -76,8 +77,8 @@ class symmetry_boundary final : public boundary {
 
  private:
   const model* equation_;
-  std::vector<int> mirrored_;  ///< component whose normal velocity is opposite
-  std::vector<double> signs_;  ///< of every component
+  std::vector<int> mirrored_;  ///< for each component, the one with the opposite normal velocity
+  std::vector<double> signs_;  ///< sign of every component
 };
 
 }  // namespace
@@ -88,7 +89,7 @@ const boundary_entry boundary_symmetry = {
     .description =
         "plane of symmetry, or wall that reflects specularly: mirror images with reversed normal velocity",
     .make = [](const boundary_source& from) -> std::unique_ptr<boundary> {
-      // On a line the only mirror is known here, where errors have a place.
+      // A line has only one mirror. Errors that are thrown here have a position in the case.
       if (from.equation != nullptr && from.equation->space_dimensions() == 1)
         from.equation->reflection_signs(0);
       return std::make_unique<symmetry_boundary>(from.equation);

@@ -9,7 +9,7 @@
 namespace apsis {
 namespace {
 
-/// A wall with any normal that absorbs all that arrives, and emits nothing.
+/// A wall with any normal that absorbs all arriving molecules and emits none.
 class absorbing_wall final : public oblique_wall {
  public:
   explicit absorbing_wall(int components) : components_(components) {}
@@ -24,7 +24,7 @@ class absorbing_wall final : public oblique_wall {
   int components_;
 };
 
-/// Vacuum behind the face: what arrives leaves for ever, and nothing enters, f = 0 for v_n into the domain.
+/// A vacuum behind the face: arriving molecules leave, and none enters, f = 0 for v_n into the domain.
 class vacuum_boundary final : public incoming_boundary {
  public:
   std::shared_ptr<const boundary> prepared(const face& where, const velocity_set& velocities) const override {

@@ -48,7 +48,7 @@ anderson::weights anderson::weigh(communicator& processes, std::vector<double> r
   weights found{{}, of_image};
   if (depth_ == 0) return found;
   if (known_) {
-    // The oldest difference gives its memory to the new one.
+    // The new difference takes the memory of the oldest one.
     difference newest;
     if (static_cast<int>(differences_.size()) == depth_) {
       newest = std::move(differences_.front());
@@ -72,8 +72,8 @@ anderson::weights anderson::weigh(communicator& processes, std::vector<double> r
   return found;
 }
 
-/// Returns the differences of the last mixture with their θ. The memory of the newest one may still hold the
-/// oldest of them.
+/// Returns the differences of the last mixture with their θ. The memory of the newest difference may still
+/// contain the oldest of them.
 mixture_rows::weighted_differences anderson::of_last_mixture() const {
   mixture_rows::weighted_differences found{last_theta_, {}};
   if (last_theta_.size() == differences_.size() && !last_theta_.empty())

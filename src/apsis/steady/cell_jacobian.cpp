@@ -42,8 +42,8 @@ struct scratch_of_cells {
         flux(at(equation.moment_count())) {}
 };
 
-/// Derivative by ω of the flux towards larger coordinates at an end, where what leaves is that of
-/// equilibrium.
+/// Computes the derivative with respect to ω of the flux towards larger coordinates at an end. Leaving
+/// components are in equilibrium.
 void differentiate_end(const relaxation_model& equation, const gas_end_of_segment& end,
                        scratch_of_cells& with, double* matrix) {
   const int count = equation.moment_count();
@@ -58,7 +58,8 @@ void differentiate_end(const relaxation_model& equation, const gas_end_of_segmen
   }
 }
 
-/// Adds the derivative by ω of the flux out of a cut cell at a wall or end, per volume of its gas.
+/// Adds the derivative with respect to ω of the flux out of a cut cell at a wall or end, divided by the
+/// volume of its gas.
 void differentiate_way(const relaxation_model& equation, const way_out_of_cut& way,
                        const jacobian_layout& layout, scratch_of_cells& with, double* blocks) {
   const int count = equation.moment_count(), directions = layout.directions;

@@ -15,40 +15,44 @@ namespace apsis {
 
 class tangent_rows;
 
-/// Force and source inside a domain, beside those of the model.
+/// Force and source inside a domain, in addition to those of the model.
 struct inside_domain {
   std::optional<acceleration> force = {};  ///< of a gas
   std::optional<source_rate> source = {};  ///< of any model
 };
 
-/// The places of the blocks of J in the numbers of a cell. A block has m² numbers, row by row, m =
-/// relaxation_model::moment_count().
+/// Offsets of the blocks of J among the numbers of a cell. A block has m² numbers, row by row,
+/// m = relaxation_model::moment_count().
 struct jacobian_layout {
-  int directions = 1,   ///< of the mesh
+  int directions = 1,   ///< directions of the mesh
       moments = 1;      ///< m
   bool source = false;  ///< whether there is a block of ∂S/∂ω
 
   /// Returns m².
   std::size_t square() const { return at(moments) * at(moments); }
-  /// Numbers of a cell.
+  /// Returns how many numbers a cell has.
   int numbers() const { return static_cast<int>(square()) * (5 * directions + (source ? 1 : 0)); }
-  /// ℛ v⁺ ∂E/∂ω, of what moves to larger coordinates, or of what moves to smaller ones.
+  /// Returns the offset of ℛ v⁺ ∂E/∂ω for molecules that move to larger coordinates, or of ℛ v⁻ ∂E/∂ω
+  /// for the others.
   std::size_t transport(int direction, bool up) const { return block(5 * direction + (up ? 0 : 1)); }
-  /// ℛ v G/σ of the deviation (tangent_rows::moments_of_deviation()).
+  /// Returns the offset of ℛ v G/σ of the deviation (tangent_rows::moments_of_deviation()).
   std::size_t deviation(int direction) const { return block(5 * direction + 2); }
-  /// The derivative of the flux to larger coordinates where the gas ends next to the cell; 0 elsewhere.
+  /// Returns the offset of the derivative of the flux to larger coordinates at an end of the gas next to the
+  /// cell. The block is 0 if the gas does not end there.
   std::size_t end(const face& where) const { return block(5 * where.direction + (where.upper ? 4 : 3)); }
-  /// Of a group of cut cells, the derivative of what leaves at its walls and ends, divided by its volume. 0:
-  /// the sum of them; 1 … directions: weighted with that component of the vectors from the centroid.
+  /// Returns the offset of a derivative at the walls and ends of a group of cut cells, divided by the volume
+  /// of the group. `weight` = 0 is the sum of the leaving fluxes. For 1 … directions this component of the
+  /// vectors from the centroid weights the sum.
   std::size_t walls(int weight) const { return end(face_of(at(weight))); }
-  /// ℛ ∂S/∂ω.
+  /// Returns the offset of ℛ ∂S/∂ω.
   std::size_t of_source() const { return block(5 * directions); }
 
  private:
   std::size_t block(int number) const { return at(number) * square(); }
 };
 
-/// Computes the derivatives by ω of fluxes, sources and boundary conditions in equilibrium, cell by cell.
+/// Computes the derivatives of fluxes, sources and boundary conditions with respect to ω in equilibrium,
+/// cell by cell.
 class cell_jacobian {
  public:
   /// All references must outlive the object.
@@ -57,8 +61,8 @@ class cell_jacobian {
 
   /// Returns the places of blocks in compute().
   const jacobian_layout& layout() const { return layout_; }
-  /// Returns the blocks of all cells of this process, [cells][layout().numbers()], for the moments ω and the
-  /// collision rates σ = C/ε. Throws numerical_error with the cell where ω has no equilibrium.
+  /// Returns the blocks of all cells of this process, [cells][layout().numbers()]. The arguments are the
+  /// moments ω and the collision rates σ = C/ε. Throws numerical_error with the cell if ω has no equilibrium.
   std::vector<double> compute(const std::vector<double>& omega, const std::vector<double>& rates) const;
 
  private:

@@ -58,11 +58,11 @@ void cell_links::link(const domain& space, int direction) {
   }
 }
 
-/// The cell next to the last one of a segment is cut.
+/// Stores the group of the cut cell next to the last cell of a segment.
 void cell_links::note_cut_cell(const domain& space, int direction, bool upper, int last) {
   const grid& mesh = space.mesh();
   const int along = last / mesh.stride(direction) % mesh.cells(direction) + (upper ? 1 : -1);
-  if (along < 0 || along >= mesh.cells(direction)) return;  // across a periodic face, or of others
+  if (along < 0 || along >= mesh.cells(direction)) return;  // across a periodic face, or of another process
   const int group = mesh.cut_group(last + (upper ? 1 : -1) * mesh.stride(direction));
   cut_at_[index(direction, upper)][at(last)] =
       space.number_in_block(mesh.cut()->groups()[at(group)].cells.front());

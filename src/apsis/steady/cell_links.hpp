@@ -10,29 +10,29 @@
 
 namespace apsis {
 
-/// Cells from which a thread takes the next ones in loops over rows.
+/// Number of consecutive cells that a thread takes in loops over rows.
 inline constexpr int cells_of_a_block = 16;
 
 /// An end of a segment at a surface, with the cell in front of it.
 struct gas_end_of_segment {
   face where;                  ///< upper if segments have their upper end here
-  const boundary* side;        ///< of the surface
-  position at;                 ///< where the segment meets the surface
-  std::array<int, 3> cells{};  ///< of the segment, counted inwards; the last one repeated where it is shorter
-  bool copies = false;         ///< whether what enters is the row of the first cell
+  const boundary* side;        ///< boundary of the surface
+  position at;                 ///< point at which the segment meets the surface
+  std::array<int, 3> cells{};  ///< first cells inwards; a shorter segment repeats its last one
+  bool copies = false;         ///< whether the row of the first cell enters
 };
 
-/// Neighbours of the cells of a domain, along every direction. Cells of other processes do not count. The
-/// first cell of a group of cut cells stands for the group (cut_links); no segment contains it. A group
-/// belongs to the process of this cell.
+/// Neighbours of the cells of a domain along every direction, without cells of other processes. The first
+/// cell of a group of cut cells stands for the group (cut_links), and no segment contains it. A group belongs
+/// to the process of this cell.
 class cell_links {
  public:
-  /// Looks at all segments of the domain once.
+  /// Computes the links from all segments of the domain.
   explicit cell_links(const domain& space);
 
-  /// Returns the next cell of the segment; −1 at its end, or where another process continues it.
+  /// Returns the next cell of the segment; −1 at its end, or if another process continues it.
   int next(int direction, bool upper, int cell) const { return next_[index(direction, upper)][at(cell)]; }
-  /// Returns the next cell, also across periodic faces; −1 where the gas ends, or the process does.
+  /// Returns the next cell, also across periodic faces; −1 if the gas ends or another process continues it.
   int next_or_image(int direction, bool upper, int cell) const {
     return image_[index(direction, upper)][at(cell)];
   }
@@ -40,17 +40,18 @@ class cell_links {
   int end_next_to(int direction, bool upper, int cell) const {
     return end_at_[index(direction, upper)][at(cell)];
   }
-  /// Returns the first cell of the group of cut cells behind the end of a segment at a cell; −1 at other
-  /// ends, across periodic faces, and for groups of other processes.
+  /// Returns the first cell of the group of cut cells behind the end of a segment at a cell. Returns −1 at
+  /// other ends, across periodic faces, and for groups of other processes.
   int cut_beyond(int direction, bool upper, int cell) const {
     return cut_at_.empty() ? -1 : cut_at_[index(direction, upper)][at(cell)];
   }
   /// Returns the volume of the gas of a cell or its group, relative to that of a whole cell.
   double volume(int cell) const { return volumes_.empty() ? 1.0 : volumes_[at(cell)]; }
-  const std::vector<gas_end_of_segment>& ends() const { return ends_; }  ///< those at walls and boundaries
-  /// Returns the cells of the gas of this process in order; of a group of cut cells the first one.
+  const std::vector<gas_end_of_segment>& ends() const { return ends_; }  ///< ends at walls and boundaries
+  /// Returns the cells of the gas of this process in order. The first cell of a group of cut cells
+  /// represents the group.
   const std::vector<int>& cells() const { return cells_; }
-  int directions() const { return directions_; }  ///< of the mesh
+  int directions() const { return directions_; }  ///< directions of the mesh
 
  private:
   static std::size_t index(int direction, bool upper) { return face{direction, upper}.index(); }

@@ -12,7 +12,7 @@
 namespace apsis {
 namespace {
 
-/// Of the solutions, which are starts.
+/// Tolerance of the solutions, which are only starts.
 constexpr double loose = 1e-2;
 constexpr int most_iterations = 100;
 

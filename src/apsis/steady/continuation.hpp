@@ -12,8 +12,9 @@
 
 namespace apsis {
 
-/// Continuation: loose steady states of easier problems, each from the solution of the last one. The last one
-/// is a start for the problem itself. The sums of conserved moments stay those of the first state.
+/// Continuation: computes steady states of easier problems to a loose tolerance, each one from the solution
+/// before. The last solution is a start for the problem itself. The sums of conserved moments stay those of
+/// the first state.
 ///
 /// On several processes every member is collective.
 class continuation {
@@ -22,18 +23,20 @@ class continuation {
   continuation(const continuation&) = delete;
   continuation& operator=(const continuation&) = delete;
 
-  /// Takes one iteration. Throws numerical_error where the present problem does not settle.
+  /// Performs one iteration. Throws numerical_error if the iteration for the present problem
+  /// does not converge.
   steady_iteration iterate(field& f);
-  /// Whether f belongs to the last problem.
+  /// Returns true if f is the solution of the last problem.
   bool finished() const { return next_ == size_; }
-  /// Returns steady_iteration::damping of the last iteration; every problem begins with that of the one
-  /// before it.
+  /// Returns steady_iteration::damping of the last iteration. Every problem begins with the damping of
+  /// the problem before.
   int damping() const { return damping_; }
-  /// Returns the steady states in words: "steady states with 16, 4 times the epsilon".
+  /// Returns a description: "steady states with 16, 4 times the epsilon".
   virtual std::string name() const = 0;
 
  protected:
-  /// `size`: number of problems; `images`: of the mixture. The model must outlive the object.
+  /// `size` is the number of problems, and `images` is the number of images in the mixture. The model must
+  /// outlive the object.
   continuation(const relaxation_model& equation, std::size_t size, int images);
 
  private:
@@ -41,7 +44,7 @@ class continuation {
 
   /// Returns the builder of a problem.
   virtual problem_builder problem(std::size_t number) const = 0;
-  /// Returns it in words: "4 times the epsilon".
+  /// Returns a description of a problem: "4 times the epsilon".
   virtual std::string name_of(std::size_t number) const = 0;
 
   const relaxation_model& equation_;
@@ -50,15 +53,15 @@ class continuation {
   std::unique_ptr<attempt> now_;  ///< the next problem, once begun
 };
 
-/// Returns the continuation of a number, from 0 on: rarer_gases, then milder_ends. Returns nullptr where the
-/// gas is rare, or no end has an effect. `optical_length`: steady_solver::optical_length(). All references
-/// but `start` must outlive the result. Collective.
+/// Returns the continuation with a number: 0 is rarer_gases, and 1 is milder_ends. Returns nullptr if the gas
+/// is rare (0) or no end has an effect (1). `optical_length` is steady_solver::optical_length(). All
+/// references except `start` must outlive the result. Collective.
 std::unique_ptr<continuation> make_continuation(std::size_t number, const relaxation_model& equation,
                                                 const problem_builder& space, const field& start,
                                                 double optical_length, int images);
-/// Their number.
+/// The number of continuations.
 inline constexpr std::size_t continuations = 2;
-/// The number of those that may help after a stall.
+/// Returns the number of continuations that may help after a stall.
 inline std::size_t continuations_after(const steady_stall& stall) {
   return stall.is_near() ? 1 : continuations;
 }

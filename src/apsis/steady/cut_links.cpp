@@ -10,13 +10,13 @@
 namespace apsis {
 namespace {
 
-/// Whether two cells are neighbours within the mesh, and not across a periodic face.
+/// Returns true if two cells are neighbours within the mesh, not across a periodic face.
 bool are_neighbours(const grid& mesh, int below, int above, int direction) {
   const int stride = mesh.stride(direction), cells = mesh.cells(direction);
   return above / stride % cells == below / stride % cells + 1;
 }
 
-/// Returns the cells of a group that this process holds, as numbers in its block.
+/// Returns the cells of a group in the block of this process, as numbers in this block.
 std::vector<int> cells_here(const domain& space, const cut_group& of) {
   std::vector<int> found;
   for (const int cell : of.cells)
@@ -83,7 +83,7 @@ void cut_links::add_group(const domain& space, int number) {
   }
 }
 
-/// Every process finds who has which groups, so that nobody asks.
+/// Every process computes which process has which groups, without communication.
 void cut_links::share_groups(const domain& space) {
   const distribution& shared = *space.shared_mesh();
   std::vector<shared_row> rows;

@@ -11,19 +11,19 @@ namespace apsis {
 namespace {
 
 struct term {
-  double of_residual,  ///< times the relative residual: vanishes in the steady state
-      constant;        ///< where that is not enough
+  double of_residual,  ///< factor of the relative residual: vanishes in the steady state
+      constant;        ///< for cases in which that is not enough
 };
-/// From weak to strong. A term costs iterations where a weaker one does.
+/// Terms from weak to strong. A stronger term costs additional iterations if a weaker one suffices.
 constexpr std::array<term, 5> terms = {{{0.0, 0.0}, {0.3, 0.0}, {30.0, 0.0}, {30.0, 3.0}, {100.0, 10.0}}};
 
-/// Iterations without progress after which the next term is taken,
+/// Iterations without progress until the next term is selected.
 constexpr int short_patience = 35;
-/// and iterations with too large a correction.
+/// Corrections that are too large until the next term is selected.
 constexpr int most_large_corrections = 12;
 /// Below this relative residual, terms that vanish with it are skipped.
 constexpr double share_for_constant_term = 0.01;
-/// Iterations without progress after which there will be none.
+/// Iterations without progress with the strongest term until the iteration stops.
 constexpr int patience = 100;
 
 }  // namespace

@@ -8,32 +8,32 @@
 
 namespace apsis {
 
-/// The iteration does not find a steady state although it finds a state in every iteration.
+/// A failure to converge although every iteration yields a state.
 class steady_stall : public numerical_error {
  public:
-  /// `residual`: relative to that of the start.
+  /// `residual` is relative to that of the start.
   steady_stall(const std::string& problem, double residual)
       : numerical_error(problem), near_(residual < 1e-3) {}
-  /// Whether the state is nearly steady, as where the weights of a reconstruction never settle: starts from
-  /// other ends lead to the same states.
+  /// Returns true if the state is nearly steady. This happens, for example, if the weights of a
+  /// reconstruction never settle. Starts from other ends then lead to the same states.
   bool is_near() const { return near_; }
 
  private:
   bool near_;
 };
 
-/// A stall that another start will not end: the ends of the gas have different fluxes.
+/// A stall for every start: the ends of the gas have different fluxes.
 class steady_imbalance : public steady_stall {
  public:
   using steady_stall::steady_stall;
 };
 
-/// The pseudo-time term of the iteration, on the diagonal of J and in the rates of the sweep. It is 0 at the
-/// start. A correction that is too large calls for a weak one, and iterations without progress call for
-/// stronger ones.
+/// The pseudo-time term of the iteration, on the diagonal of J and in the rates of the sweep. It is 0 at
+/// the start. A correction that is too large adds the weakest term, and iterations without progress
+/// select stronger ones.
 class damping {
  public:
-  /// `strength`: that of the first iteration, at most that of the strongest term.
+  /// `strength` is that of the first iteration. It is limited to that of the strongest term.
   explicit damping(int strength = 0);
   /// Returns the strength of the strongest term.
   static int strongest();
@@ -41,19 +41,19 @@ class damping {
   /// Largest relative change of density and energy in one iteration.
   static constexpr double largest_change = 0.3;
 
-  /// Returns the part of the term that vanishes with `residual`, which is relative to that of the start. In
-  /// units of the rate of flight through the domain.
+  /// Returns the part of the term that vanishes with `residual`. The residual is relative to that of the
+  /// start. The unit is the rate of flight through the domain.
   double vanishing_rate(double residual) const;
   /// Returns the constant part, in the same units.
   double constant_rate() const;
-  /// Returns 0 without a term, and a larger number for a stronger one.
+  /// Returns the strength: 0 without a term, larger numbers for stronger terms.
   int strength() const { return static_cast<int>(strength_); }
 
-  /// Notes the relative residual of the next iteration; one that falls by a tenth is progress. Returns
-  /// whether the term has become stronger. Throws steady_stall where the strongest one does not help.
+  /// Records the relative residual of the next iteration. A reduction by a tenth is progress. Returns true if
+  /// the term has become stronger. Throws steady_stall if the strongest term does not help.
   bool note_residual(double residual);
-  /// Notes the largest relative change in a correction. Returns whether there is a term now that replaces the
-  /// correction.
+  /// Records the largest relative change in a correction. Returns true if a new term must
+  /// replace the correction.
   bool note_change(double change);
 
  private:
@@ -62,9 +62,9 @@ class damping {
   void strengthen(double residual);
 
   std::size_t strength_;
-  double best_ = infinite;     ///< residual with this term
+  double best_ = infinite;     ///< smallest residual with this term
   int idle_ = 0;               ///< iterations without progress
-  int large_corrections_ = 0;  ///< with this term
+  int large_corrections_ = 0;  ///< corrections with this term that were too large
 };
 
 }  // namespace apsis

@@ -8,7 +8,7 @@
 namespace apsis {
 namespace {
 
-/// Boxes of at most so many cells are not divided.
+/// Boxes of at most this many cells are not divided.
 constexpr int smallest = 8;
 
 class dissection {
@@ -58,7 +58,8 @@ dissected_mesh dissect(const grid& mesh, const std::array<bool, 3>& periodic, in
   std::array<int, 3> end{};
   for (int d = 0; d < 3; ++d) end[at(d)] = mesh.cells(d);
   dissection parts(mesh, reach);
-  // A slab at the lower end cuts a ring open; slabs of other directions end at it.
+  // A slab at the lower end cuts each periodic direction. The slabs of later directions end at
+  // the earlier ones.
   std::array<int, 3> inside = begin;
   for (int d = 0; d < 3; ++d)
     if (periodic[at(d)] && mesh.cells(d) > 2 * reach) inside[at(d)] = reach;

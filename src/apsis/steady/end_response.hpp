@@ -9,15 +9,16 @@
 
 namespace apsis {
 
-/// The boundary condition at an end of a segment as a map of rows, of any kind of boundary: the components
-/// that enter for a constant state in front of it. Has scratch memory: one object per thread.
+/// The boundary condition at an end of a segment as a map of rows, for any kind of boundary. It returns the
+/// components that enter for a constant state in front of the end. An object has scratch memory and serves
+/// a single thread.
 class end_response {
  public:
   /// `space` must outlive the object.
   explicit end_response(const phase_space& space, int stride);
 
-  /// row[k] of the components that enter ← what the boundary emits if all components in front of it are those
-  /// of `inside`; other components are inside[k]. Throws what the boundary throws.
+  /// row[k] ← the value from the boundary for components that enter, if all rows in front of it equal
+  /// `inside`. Other components are inside[k]. Throws what the boundary throws.
   void values_at(const gas_end_of_segment& end, const double* inside, double* row);
 
  private:

@@ -30,13 +30,13 @@ class macroscopic_system::whole_system {
                const jacobian_layout& layout, bool first_order)
       : assembly_(equation, builder.whole_space(), acts, layout, first_order), solver_(assembly_.mesh()) {}
 
-  /// `blocks`: of all cells, [cell][layout.numbers()].
+  /// `blocks` are those of all cells, [cell][layout.numbers()].
   void build(std::span<const double> blocks, double pseudo_rate, bool holds_neutral) {
     moment_equations equations = assembly_.assemble(blocks, pseudo_rate);
     conserved_ = equations.conserved;
     solver_.take(std::move(equations), holds_neutral);
   }
-  /// The moments whose sums nothing changes.
+  /// Returns the moments with sums that only the initial data determine.
   const std::vector<int>& conserved() const { return conserved_; }
   bool has_neutral_mode() const { return solver_.has_neutral_mode(); }
   moments solve(const moments& r, const std::vector<double>& missing);
@@ -65,8 +65,8 @@ macroscopic_system::moments macroscopic_system::whole_system::solve(const moment
 
 double macroscopic_system::bytes_of_cell(int directions, int moments, double cells) {
   const double square = moments * moments, of_entry = sizeof(double) + sizeof(int),
-               around = 4.0 * directions + 1.0;  // cells whose moments an equation has
-  // Blocks of J by directions and of their sum; the matrix by rows, the one before it, and by columns.
+               around = 4.0 * directions + 1.0;  // cells whose moments occur in an equation
+  // Blocks of J by direction and their sum; the matrix by rows, the previous one, and the matrix by columns.
   const double blocks = (5.0 * directions + 1.0 + around) * square * sizeof(double),
                matrices = 3.0 * around * square * of_entry;
   return blocks + matrices + moment_solver::numbers_of_cell(directions, moments, cells) * sizeof(double);

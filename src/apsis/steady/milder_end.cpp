@@ -9,8 +9,8 @@ namespace {
 
 using shared_row = std::shared_ptr<const std::vector<double>>;
 
-/// values ← s values + (1 − s) c M, where c M has the mass flux of `values`. `flux`: the mass flux of
-/// component j into the gas per density; components that leave count for nothing.
+/// values ← s values + (1 − s) c M, where c M has the mass flux of `values`. flux(j) is the mass flux of
+/// component j into the gas per density. Components that leave do not count.
 template <class Flux>
 void mix(double share, const std::vector<double>& row, std::size_t velocities, const Flux& flux,
          double* values) {
@@ -26,7 +26,7 @@ void mix(double share, const std::vector<double>& row, std::size_t velocities, c
   for (std::size_t k = 0; k < row.size(); ++k) values[k] = share * values[k] + factor * row[k];
 }
 
-/// A wall with any normal.
+/// A mixed boundary condition at a wall with any normal.
 class mixed_wall final : public oblique_wall {
  public:
   mixed_wall(std::shared_ptr<const oblique_wall> of, double share, shared_row row,
@@ -109,7 +109,7 @@ class mixed_end final : public boundary {
   std::shared_ptr<const boundary> of_;
   double share_;
   shared_row row_;
-  std::vector<double> mass_flux_;  ///< of unit components of the first set; > 0 enters
+  std::vector<double> mass_flux_;  ///< fluxes of unit components of the first set; > 0 enters
 };
 
 }  // namespace

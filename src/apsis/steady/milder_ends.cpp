@@ -14,14 +14,15 @@
 namespace apsis {
 namespace {
 
-/// Temperatures and velocities that are far from those of the start double from one state to the next.
+/// From one state to the next, differences in temperature and velocity from the start double.
 constexpr std::size_t count = 6;
 
 double share_of(std::size_t number) {
   return std::ldexp(1.0, static_cast<int>(number) - static_cast<int>(count));
 }
 
-/// Whether a boundary gives what enters, also where a pencil has cells enough for mirror images.
+/// Returns true if a boundary prescribes incoming components even if a pencil has enough cells
+/// for mirror images.
 bool gives_what_enters(const boundary* side) {
   return side != nullptr && side->prescribes_incoming(std::numeric_limits<int>::max(), 1);
 }
@@ -67,7 +68,7 @@ problem_builder milder_ends::problem(std::size_t number) const {
     const surface& one = whole.surfaces()[k];
     const boundary* side = whole.side(static_cast<int>(k));
     if (one.solid >= 0 || !gives_what_enters(side)) continue;
-    // The builder keeps the domain, and that its boundaries.
+    // The builder owns the domain, and the domain owns its boundaries.
     milder.with_boundary(one.where, milder_end({space_, side}, share, row_));
   }
   for (int solid = 0; solid < whole.mesh().obstacles(); ++solid)

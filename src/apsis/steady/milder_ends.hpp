@@ -8,15 +8,16 @@
 
 namespace apsis {
 
-/// Continuation in what enters at walls and open ends, such as temperatures and velocities of walls:
-///   f_in = s g + (1 − s) c M,   s = 1/64, 1/32, …, 1/2,
-/// with g of the boundary condition and the equilibrium M of the mean moments of the start. The factor c
-/// gives M the mass flux of g, so that no mass crosses a wall. A wall of temperature T in a gas of T₀ then
-/// emits the energy of one with s T + (1 − s) T₀, and momentum with s u + (1 − s) u₀. The mixture is not
-/// negative where g is not.
+/// Continuation in the incoming components at walls and open ends, and thus in temperatures and
+/// velocities of walls:
+///   f_in = s g + (1 − s) c M,   s = 1/64, 1/32, …, 1/2.
+/// g is that of the boundary condition, and M is the equilibrium of the mean moments of the start. The factor
+/// c gives M the mass flux of g, so that no mass crosses a wall. A wall of temperature T in a gas of T₀ emits
+/// the same energy as one with s T + (1 − s) T₀. It emits the same momentum as one with s u + (1 − s) u₀. The
+/// mixture is nonnegative if g is.
 class milder_ends final : public continuation {
  public:
-  /// Whether the model is a gas, and some boundary gives what enters.
+  /// Returns true if the model is a gas and some boundary prescribes incoming components.
   static bool possible(const relaxation_model& equation, const problem_builder& space);
 
   /// All references but `start` must outlive the object. Collective.
@@ -32,8 +33,8 @@ class milder_ends final : public continuation {
   std::shared_ptr<const std::vector<double>> row_;  ///< M
 };
 
-/// Returns the boundary condition f_in = s g + (1 − s) c M of milder_ends, g being that of another one.
-/// `row`: M. The components of its first set give the mass.
+/// Returns the boundary condition f_in = s g + (1 − s) c M of milder_ends, with g of the condition `of`.
+/// `row` is M; the components of its first set determine the mass.
 std::shared_ptr<const boundary> milder_end(std::shared_ptr<const boundary> of, double share,
                                            std::shared_ptr<const std::vector<double>> row);
 

@@ -14,10 +14,10 @@ struct removed_values {
   double lowest = 0.0;     ///< the smallest of them
 };
 
-/// Makes all rows of `cells` nonnegative. Their moments ω = ℛf change by rounding alone. A row of a gas
-/// becomes max(f, 0)(1 + α + β·c + γ|c|²) with the ω of f, or where that is negative too, and for other
-/// models, f + θ(E(ω) − f) with the least θ ∈ [0, 1]. Throws numerical_error for a cell where ω has no
-/// equilibrium, with its number on this process. Dimensionless.
+/// Makes all rows of `cells` nonnegative. Their moments ω = ℛf change only by rounding. A row of a gas
+/// becomes max(f, 0)(1 + α + β·c + γ|c|²) with the ω of f. If this is negative too, and for other models, the
+/// row becomes f + θ(E(ω) − f) with the smallest θ ∈ [0, 1]. Throws numerical_error with the number of the
+/// cell on this process if ω has no equilibrium. Dimensionless.
 removed_values remove_negative_values(const relaxation_model& equation, const std::vector<int>& cells,
                                       field& f);
 

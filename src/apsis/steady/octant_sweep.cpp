@@ -72,7 +72,7 @@ octant_sweep::octant_sweep(const relaxation_model& equation, const domain& space
 
 octant_sweep::~octant_sweep() = default;
 
-/// Cells in the order of their numbers, every direction by itself forwards or backwards.
+/// Sorts the cells by their numbers, but downwards along every direction with negative velocities.
 void octant_sweep::set_order(octant& of) const {
   const grid& mesh = space_.mesh();
   const auto key = [&](int cell) {
@@ -104,7 +104,8 @@ void octant_sweep::solve(const field& f, const std::vector<double>& rates, field
   }
 }
 
-/// Adds the changes of the octants before one that arrive somewhere to a row. Returns whether there are any.
+/// Adds the changes that arrive at a place from the octants before `one` to a row. Returns true if
+/// there are any.
 template <class Arrives>
 bool octant_sweep::add_changes_before(const octant& one, const Arrives& arrives, const double* changes,
                                       double* row) const {
@@ -118,8 +119,8 @@ bool octant_sweep::add_changes_before(const octant& one, const Arrives& arrives,
   return any;
 }
 
-/// Sets the changes that enter at the ends where this octant begins, from those that arrived there in the
-/// octants before it.
+/// Computes the changes that enter at the ends where this octant begins, from those that arrived there
+/// in earlier octants.
 void octant_sweep::respond(const octant& of, const field& f, const field& delta) {
   constexpr int ends_at_once = 4;
   parallel_blocks(static_cast<int>(links_.ends().size()), ends_at_once, [&](int begin, int end) {
@@ -142,7 +143,8 @@ void octant_sweep::respond(const octant& of, const field& f, const field& delta)
   });
 }
 
-/// Sets what enters cut cells at walls and ends, from what arrived there in the octants before this one.
+/// Computes the changes that enter cut cells at walls and ends, from those that arrived there
+/// in earlier octants.
 void octant_sweep::respond_at_walls(const octant& of, const field& f, const field& delta) {
   const int components = equation_.components();
   constexpr int ends_at_once = 4;
@@ -155,7 +157,7 @@ void octant_sweep::respond_at_walls(const octant& of, const field& f, const fiel
       std::fill_n(row, components, 0.0);
       const double *state = f.row(group.cell), *changes = delta.row(group.cell);
       std::copy_n(state, components, own.state.begin());
-      // At a wall any octant may arrive.
+      // At a wall, changes of any octant may arrive.
       const auto arrives = [&](const octant& other) {
         return !way.end || way.end->where.upper == other.up[at(way.end->where.direction)];
       };
@@ -173,11 +175,11 @@ void octant_sweep::respond_at_walls(const octant& of, const field& f, const fiel
   });
 }
 
-/// Returns the strips with the components of one of so many equal parts.
+/// Returns the strips of the components in part `number` of `parts` equal parts.
 std::vector<sweep_rows::strip> octant_sweep::octant::part(int number, int parts) const {
   int all = 0;
   for (const auto& some : strips) all += some.end - some.begin;
-  // Relative to the next strip.
+  // Positions relative to the current strip.
   int begin = share_of(all, number, parts), end = share_of(all, number + 1, parts);
   std::vector<sweep_rows::strip> found;
   for (const auto& some : strips) {
@@ -207,18 +209,18 @@ void octant_sweep::pass(const octant& of, std::span<const sweep_rows::strip> str
   }
 }
 
-/// The terms of a cell along one direction, for velocities that are positive or negative.
+/// Returns the upwind terms of a cell along one direction, for the signs of the velocities of the octant.
 sweep_rows::upstream octant_sweep::terms_of(const octant& of, int cell, int direction, const field& r) const {
   sweep_rows::upstream from;
   const bool up = of.up[at(direction)];
   int one = links_.next(direction, !up, cell);
-  // Slopes are those of whole cells: behind a cut one the gas begins.
+  // Slopes use only whole cells: a cut cell upstream counts as the beginning of the gas.
   const int cut = one < 0 ? links_.cut_beyond(direction, !up, cell) : -1;
   if (cut >= 0 && of.place[at(cut)] < of.place[at(cell)]) one = cut;
   if (one < 0) {
     const int end = links_.end_next_to(direction, !up, cell);
-    // A copy of this row changes with it: no difference enters. A change of 0 would hold the row where few
-    // collisions change it.
+    // The entering row copies this row and changes with it, so that no difference enters. A change of 0 would
+    // fix the row if few collisions change it.
     const bool copies = end >= 0 && links_.ends()[at(end)].copies;
     from.one = from.two = end < 0 || copies ? r.row(cell) : entering_.row(end);
     from.here = copies ? 0.0 : 1.0;

@@ -13,35 +13,35 @@
 
 namespace apsis {
 
-/// An implicit step of upwind transport and relaxation, solved exactly by one pass in the direction of flight
-/// of every component: (L + σ) δ = r with L δ = Σ_k v_k ∂_k δ, whose value at the downstream edge of cell i
-/// is δ_i + s (δ_i − δ_{i−1}), δ_i itself next to where the gas begins. Components whose velocities have
-/// equal signs form an octant. Octants follow one another: components that leave at an end of the gas
-/// determine, by the boundary condition, those that enter in later octants. Across periodic faces nothing
-/// enters.
+/// An implicit step of upwind transport and relaxation, (L + σ) δ = r with L δ = Σ_k v_k ∂_k δ. One pass
+/// in the direction of flight of every component solves it exactly. The value at the downstream edge of
+/// cell i is δ_i + s (δ_i − δ_{i−1}), or δ_i next to the beginning of the gas. Components whose velocities
+/// have equal signs form an octant. Octants follow one another. At an end of the gas the boundary
+/// condition determines the components that enter in later octants from those that leave. Nothing enters
+/// across periodic faces.
 ///
-/// In cut cells L is of first order: (Σ_out w + σ) δ_i = r_i + Σ_in w δ_up, w = |v·n| area/volume of the open
-/// faces and walls of a group. Where groups and cells depend on each other in a circle, the values computed
-/// later are omitted.
+/// In cut cells L is of first order: (Σ_out w + σ) δ_i = r_i + Σ_in w δ_up. The weights w = |v·n| area/volume
+/// belong to the open faces and walls of a group. If groups and cells depend on each other in a circle,
+/// values that are computed later are omitted.
 class octant_sweep {
  public:
-  /// All references must outlive the object. `slope`: s, from 0 of first order to ½ of second order.
+  /// All references must outlive the object. `slope` is s, from 0 for first order to ½ for second order.
   octant_sweep(const relaxation_model& equation, const domain& space, const cell_links& links,
                const cut_links& cut, double slope);
   ~octant_sweep();
   octant_sweep(const octant_sweep&) = delete;
   octant_sweep& operator=(const octant_sweep&) = delete;
 
-  /// r ← δ; `f`: the state in front of the ends, about which boundary conditions are linear enough; `rates`:
-  /// σ of every cell.
+  /// r ← δ. `f` is the state in front of the ends: a boundary condition gives the difference of its values
+  /// for f with and without changes. `rates` are σ of every cell.
   void solve(const field& f, const std::vector<double>& rates, field& r);
 
  private:
   struct octant {
     std::array<bool, 3> up{};  ///< whether the velocity is positive along each direction
     std::vector<sweep_rows::strip> strips;
-    std::vector<int> order;  ///< of the cells
-    std::vector<int> place;  ///< of a cell in this order; empty without cut cells
+    std::vector<int> order;  ///< cells in the order of the sweep
+    std::vector<int> place;  ///< place of a cell in this order; empty without cut cells
 
     std::vector<sweep_rows::strip> part(int number, int parts) const;
   };
@@ -74,7 +74,7 @@ class octant_sweep {
     int group, way;
   };
   std::vector<cut_end> cut_ends_;             ///< ends of cut cells
-  std::vector<std::vector<int>> end_of_way_;  ///< [group][way], its number among them; −1 for others
+  std::vector<std::vector<int>> end_of_way_;  ///< [group][way], index in cut_ends_; −1 for others
   std::unique_ptr<scratch> scratch_;
 };
 

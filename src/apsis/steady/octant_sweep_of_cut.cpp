@@ -26,8 +26,8 @@ std::vector<int> octant_sweep::upstream_of(const octant& of, int cell) const {
   return found;
 }
 
-/// Puts every cell behind those upstream of it, as far as they do not wait for each other. Among cells that
-/// are ready the order stays.
+/// Puts every cell after the cells upstream of it, except where they wait for each other in a ring. Cells
+/// that are ready keep their order.
 void octant_sweep::wait_for_cut_cells(octant& of) const {
   const std::vector<int> before = of.order;
   of.place.assign(at(space_.mesh().size()), -1);
@@ -68,7 +68,7 @@ void octant_sweep::pass_cut(const octant& of, int group, std::span<const sweep_r
   std::array<const double*, 3> speeds{};
   for (int d = 0; d < directions; ++d) speeds[at(d)] = equation_.speeds(d).data();
   double* row = r.row(here.cell);
-  // Rows that enter, for each way; none from cells that come later, or of other processes.
+  // The rows that enter, for each way; null for cells that come later or belong to other processes.
   std::vector<const double*> from;
   for (std::size_t w = 0; w < here.ways.size(); ++w) {
     const way_out_of_cut& way = here.ways[w];

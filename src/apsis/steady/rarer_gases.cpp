@@ -9,7 +9,7 @@ namespace apsis {
 namespace {
 
 constexpr double ratio = 4.0;
-/// A gas whose domain is at most so many mean free paths long settles from any start.
+/// The iteration converges from any start if the domain is at most this many mean free paths long.
 constexpr double short_length = 10.0;
 
 }  // namespace

@@ -8,14 +8,14 @@
 namespace apsis {
 
 /// Continuation in the rarefaction: solves T(f) + Q(f)/(s ε) = 0 for decreasing factors s = 4^m, …, 16, 4.
-/// Sweeps alone settle the first of these gases, and the last one is a start for s = 1.
+/// Sweeps alone converge for the first of these gases, and the last solution is a start for s = 1.
 class rarer_gases final : public continuation {
  public:
-  /// Returns the factors for a domain that is so many mean free paths long (steady_solver::optical_length());
-  /// none where it is short.
+  /// Returns the factors for a domain with a length of this many mean free paths
+  /// (steady_solver::optical_length()). There are no factors for a short domain.
   static std::vector<double> factors(double optical_length);
 
-  /// `factors`: at least one, decreasing. All references must outlive the object.
+  /// `factors` are decreasing, and there is at least one. All references must outlive the object.
   rarer_gases(const relaxation_model& equation, const problem_builder& space, std::vector<double> factors,
               int images);
 

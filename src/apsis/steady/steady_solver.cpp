@@ -29,23 +29,22 @@
 namespace apsis {
 namespace {
 
-/// In a dense gas images mislead the mixture until the residual is this share of that of the start.
+/// In a dense gas images mislead the mixture until the residual is below this part of that of the start.
 constexpr double share_to_mix = 0.05;
-/// Rarefaction parameter √π/2 · L/λ below which a gas is rare, so that mixing pays from the first iteration
-/// on.
+/// Rarefaction parameter √π/2 · L/λ below which a gas is rare: mixing then helps from the first iteration.
 constexpr double rare = 5.0;
-/// Cells are thin where every one is at most so many mean free paths wide. J is of first order then: the
-/// viscosity of its fluxes is a part of that of the gas.
+/// Cells are thin if each is at most this many mean free paths wide. J is then of first order, because the
+/// viscosity of its fluxes is only a part of the viscosity of the gas.
 constexpr double widest_thin_cell = 1.5;
-/// Slopes of the sweep. In a rare gas f varies fast across rays. A sweep that diffuses less then needs fewer
+/// Slopes of the sweep. In a rare gas f varies fast across rays, so that a less diffusive sweep needs fewer
 /// iterations. In a dense gas strong flows need more iterations with second order.
 constexpr double slope_in_thin_cells = 0.5, usual_slope = 0.35;
-/// A residual of this multiple of the start does not come back.
+/// The iteration diverges if the residual exceeds this multiple of that of the start.
 constexpr double hopeless = 1e6;
-/// Of a residual, relative to ‖σf‖.
+/// Rounding of a residual, relative to ‖σf‖.
 constexpr double rounding = 4.0 * std::numeric_limits<double>::epsilon();
 
-/// Returns ε of the cells. Throws input_error where there is no steady state to solve for.
+/// Returns ε of the cells. Throws input_error if there is no steady state to solve for.
 std::vector<double> checked_epsilon(const problem_builder& space) {
   if (!space.has_space())
     throw input_error("the model has no space, so that its steady state is an equilibrium; run it in time");
@@ -98,8 +97,8 @@ struct steady_solver::impl {
     return {which, static_cast<double>(links.cells().size()) * numbers_of_cell, {}, threads()};
   }
 
-  /// Removes what the tolerance leaves below 0, if the steady state is not negative. Where the residual is
-  /// then above the tolerance, more iterations follow.
+  /// Removes negative values within the tolerance if steady states are nonnegative. If the residual then
+  /// exceeds the tolerance, more iterations follow.
   void remove_negatives(field& f, steady_iteration& now) {
     if (!is_nonnegative(equation, builder)) return;
     removed_values& removed = now.removed;
@@ -114,19 +113,19 @@ struct steady_solver::impl {
     now.converged = now.residual <= options.tolerance || now.rounding;
   }
 
-  /// Sets the units of time and length.
+  /// Sets the units of time and length from the first state.
   void note_first() {
     correction.set_flight_rate(cells.thermal_speed(state.omega) / cells.extent());
     optical_length = cells.mean(state.rates) / correction.flight_rate();
     mixes_at_first = optical_length / std::numbers::sqrt2 < rare;  // √π/2 · L/λ
   }
 
-  /// Measures a state: its residual, and the correction of its moments. Throws numerical_error where the
-  /// iteration diverges, and steady_stall where it stalls.
+  /// Computes the residual of a state and the correction of its moments. Throws numerical_error if the
+  /// iteration diverges, and steady_stall if it stalls.
   steady_iteration measure(const field& f) {
     state.compute(f);
     const double residual = cells.norm(state.r);
-    // ‖σf‖ changes too little to be needed far above rounding.
+    // ‖σf‖ changes little, and is needed only near rounding.
     if (number == 0 || residual <= 1e3 * rounding * collisions)
       collisions = cells.weighted_norm(f, state.rates);
     if (number == 0) note_first();
@@ -191,13 +190,13 @@ struct steady_solver::impl {
   cut_links cut;
   cell_measures cells;
   steady_residual state;
-  bool is_thin;  ///< every cell
+  bool is_thin;  ///< whether all cells are thin
   moment_correction correction;
   octant_sweep sweep;
   state_update update;
   double reference = std::numeric_limits<double>::quiet_NaN();
-  double collisions = 0.0;      ///< ‖σf‖₂, of the start until the residual is small
-  double optical_length = 0.0;  ///< collisions of a flight through the domain
+  double collisions = 0.0;      ///< ‖σf‖₂, that of the start until the residual is small
+  double optical_length = 0.0;  ///< collisions during a flight through the domain
   bool mixes_at_first = false;
   int number = 0;
 };
@@ -244,7 +243,7 @@ void steady_solver::set_reference(double residual) {
 steady_iteration steady_solver::solve(field& f, const std::function<void(const steady_iteration&)>& watch) {
   const field start = f;
   std::size_t tried = 0;
-  // Returns whether f is the solution of an easier problem now.
+  // Returns true if f has become the solution of an easier problem.
   const auto continues = [&](std::size_t allowed) {
     while (tried < allowed) {
       const auto easier = make_continuation(tried++, impl_->equation, impl_->builder, start, optical_length(),

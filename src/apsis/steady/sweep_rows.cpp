@@ -19,7 +19,7 @@ void solve_along(const upstream* terms, const std::array<const double*, 3>& lamb
                  std::span<const strip> strips, double* row) {
   using N = pack<wide>;
   const int length = static_cast<int>(hn::Lanes(wide()));
-  // Copies, which the compiler knows to stay as they are when the row is stored.
+  // Local copies show the compiler that storing the row does not change them.
   std::array<upstream, directions> from;
   std::array<const double*, directions> speed;
   for (std::size_t d = 0; d < directions; ++d) {

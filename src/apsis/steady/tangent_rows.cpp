@@ -9,9 +9,9 @@
 namespace apsis {
 namespace {
 
-/// Relative size of the differences: the root of the rounding of a row.
+/// Relative size of the differences: about the square root of the rounding of a row.
 constexpr double relative_step = 1e-6;
-/// Relative size of changes of the moments that relax, which are 0 in equilibrium.
+/// Relative size of changes of the relaxing moments, which are 0 in equilibrium.
 constexpr double relaxing_step = 1e-4;
 
 }  // namespace
@@ -89,7 +89,7 @@ void tangent_rows::moments_of_deviation(std::span<const double> speeds, double* 
   }
 }
 
-/// Sizes of s: those of changes of all moments by their scales. They need not be accurate.
+/// The sizes of s follow from changes of all moments by their scales. They need not be accurate.
 void tangent_rows::set_relaxation() {
   equation_.relaxing_moments(equilibrium_.data(), omega_.data(), s_.data());
   std::fill(sizes_.begin(), sizes_.end(), 0.0);
@@ -120,15 +120,15 @@ void tangent_rows::set_relaxation() {
   }
 }
 
-/// tail ← E_s s, as a difference over `size`. Returns false without a target.
+/// tail ← E_s s, as a difference over `size`. Returns false, with tail = 0, if there is no target.
 bool tangent_rows::set_tail(const std::vector<double>& s, double size) {
   const bool known = size > 0.0 && set_target(s, size, target_);
   for (std::size_t k = 0; k < tail_.size(); ++k) tail_[k] = known ? (target_[k] - unchanged_[k]) / size : 0.0;
   return known;
 }
 
-/// row ← E(ω, s(E) + size s). For size = 0 it differs from E(ω) where few velocities give E a heat flux.
-/// Returns false, with row = E(ω), without a target.
+/// row ← E(ω, s(E) + size s). The row differs from E(ω) even for size = 0 if few velocities give E a heat
+/// flux. Returns false, with row = E(ω), if there is no target.
 bool tangent_rows::set_target(const std::vector<double>& s, double size, aligned_vector<double>& row) {
   std::vector<double>& moved = s_of_row_;
   double cut = 0.0;
@@ -139,7 +139,7 @@ bool tangent_rows::set_target(const std::vector<double>& s, double size, aligned
   return known;
 }
 
-/// For row = G₀ adds E_s s with (1 − 𝒮E_s) s = 𝒮G₀: what collisions leave of the deviation G = G₀ + E_s 𝒮G.
+/// For row = G₀ adds E_s s with (1 − 𝒮E_s) s = 𝒮G₀. Collisions then leave the deviation G = G₀ + E_s 𝒮G.
 void tangent_rows::add_slow_part() {
   double size = 0.0;
   for (int j = 0; j < count_; ++j) size = std::max(size, std::abs(steps_[at(j)]));

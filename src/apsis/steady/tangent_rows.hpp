@@ -11,26 +11,27 @@
 namespace apsis {
 
 /// The equilibrium E(ω) of one cell and its derivatives ∂E/∂ω_j, as differences of rows, with the matrices of
-/// the moment equations. An error of a difference affects the speed of the iteration alone. Matrices have m²
+/// the moment equations. Errors of the differences affect only the speed of the iteration. Matrices have m²
 /// numbers, row by row, m = relaxation_model::moment_count().
 class tangent_rows {
  public:
   /// `equation` must outlive the object.
   explicit tangent_rows(const relaxation_model& equation);
 
-  /// Moves to other moments. Returns false if they have no equilibrium, or no neighbour has one.
+  /// Moves to other moments. Returns false if there is no equilibrium for ω, or for a moment changed by a
+  /// step in either direction.
   bool move_to(const double* omega);
 
   const double* equilibrium() const { return equilibrium_.data(); }  ///< E(ω)
   /// Returns E(ω + step(j) e_j).
   const double* changed(int j) const { return changed_[at(j)].data(); }
-  double step(int j) const { return steps_[at(j)]; }  ///< of ω_j
+  double step(int j) const { return steps_[at(j)]; }  ///< step of ω_j
 
   /// matrix ← ℛ(factor ∘ ∂E/∂ω) with one factor for each component.
   void moments_of_weighted(std::span<const double> factors, double* matrix);
-  /// matrix ← ℛ(v ∘ G) with the deviation G that the gradient v ∘ ∂E/∂ω causes, in units of the mean time
-  /// between collisions: (v ∘ ∂E/∂ω) itself, and the moments s of it that relax with another rate λ divided
-  /// by λ (Chapman & Enskog).
+  /// matrix ← ℛ(v ∘ G). G is the deviation that the gradient v ∘ ∂E/∂ω causes, in units of the mean time
+  /// between collisions. It is v ∘ ∂E/∂ω itself, with moments s divided by λ if they relax with another rate
+  /// λ (Chapman & Enskog).
   void moments_of_deviation(std::span<const double> speeds, double* matrix);
 
  private:
@@ -46,7 +47,7 @@ class tangent_rows {
   aligned_vector<double> equilibrium_, row_, tail_, target_, unchanged_;
   std::vector<aligned_vector<double>> changed_;
   std::vector<double> column_;
-  // Moments s that relax: those of the equilibrium, the sizes of their changes, and 𝒮E_s.
+  // Relaxing moments s: those of the equilibrium and of a row, the sizes of their changes, and 𝒮E_s.
   std::vector<double> s_, s_of_row_, sizes_, response_;
 };
 

@@ -11,8 +11,8 @@
 APSIS_BEFORE_FORMULAS();
 namespace apsis::APSIS_NUMBERS {
 
-/// The image g = x + δ, the last one x / factor + Σ_j θ_j Δg_j, and the mixture g − Σ_j θ_j Δg_j with other
-/// θ, term by term.
+/// Computes three sums term by term: the image g = x + δ, the last image x / factor + Σ_j θ_j Δg_j, and the
+/// mixture g − Σ_j θ_j Δg_j with other θ.
 template <class N>
 struct image_mixture {
   N image, last, mixed;

@@ -10,14 +10,14 @@
 namespace apsis {
 namespace {
 
-/// Ratio of the wave numbers of successive steps. Smaller ones save iterations, but not time.
+/// Ratio of successive wave numbers. A smaller ratio saves iterations, but not time.
 constexpr double ratio = 5.0;
-/// The largest wave number, times the spacing of the mesh.
+/// The largest wave number, multiplied by the spacing of the mesh.
 constexpr double shortest = 2.0;
-/// Unknowns that are factorized together, by one thread.
+/// Unknowns that one thread factorizes together.
 constexpr int unknowns_of_a_group = 1000;
 
-/// Wave numbers from 1/extent to those of the mesh.
+/// Returns the wave numbers from 1/extent to those of the mesh.
 std::vector<double> wave_numbers(const moment_mesh& mesh) {
   const double lowest = 1.0 / mesh.extent, highest = std::max(shortest / mesh.spacing, lowest);
   const int count = alternating_directions::steps(highest / lowest);
@@ -41,17 +41,17 @@ void subtract_product(const row_matrix& matrix, const Eigen::VectorXd& x, Eigen:
   });
 }
 
-/// Returns the solution for a right side of any size, which may be beyond that of single precision.
+/// Returns the solution for a right-hand side of any size, even outside the range of single precision.
 Eigen::VectorXd solved_with(const sparse_factors_of<float>& factors, const Eigen::VectorXd& r) {
   const double size = r.cwiseAbs().maxCoeff();
   if (!(size > 0.0)) return Eigen::VectorXd::Zero(r.size());
   const Eigen::VectorXf scaled = (r / size).cast<float>();
-  const Eigen::VectorXf solved = factors.solve(scaled);  // contiguous, as it must be
+  const Eigen::VectorXf solved = factors.solve(scaled);  // contiguous, as solve() requires
   return solved.cast<double>() * size;
 }
 
-/// Returns rows of Θ x for a block-diagonal Θ. `unknowns`: of whole cells. Blocks are too small for calls of
-/// a library.
+/// Returns rows of Θ x for a block-diagonal Θ. `unknowns` are those of whole cells. A loop is used because
+/// the blocks are too small for calls of a library.
 Eigen::VectorXd scaled_rows(const std::vector<double>& scale, int moments, const Eigen::VectorXd& x,
                             const std::vector<int>& unknowns) {
   Eigen::VectorXd y(static_cast<Eigen::Index>(unknowns.size()));
@@ -122,7 +122,7 @@ std::vector<alternating_directions::lines> alternating_directions::factorized_li
   }
   std::vector<std::vector<Eigen::Triplet<double>>> terms(groups.size());
   const auto add = [&](int row, int column, double value) {
-    if (place[at(row)].first != place[at(column)].first) return;  // beside the line, as cut cells have
+    if (place[at(row)].first != place[at(column)].first) return;  // outside the line, as for cut cells
     terms[at(place[at(row)].first)].emplace_back(place[at(row)].second, place[at(column)].second, value);
   };
   const auto add_blocks = [&](const block_matrix& some, double factor) {

@@ -12,26 +12,26 @@
 
 namespace apsis {
 
-/// An approximate inverse of J, as a preconditioner where factors of J are too large: steps in pseudo-time
-/// that are implicit along one direction after the other (Peaceman & Rachford, J. SIAM 3, 1955),
+/// An approximate inverse of J, a preconditioner if factors of J are too large. It performs steps in
+/// pseudo-time that are implicit along one direction after the other (Peaceman & Rachford, J. SIAM 3, 1955),
 ///     Π_d (Θ_k + J_d) Θ_k⁻¹,  Θ_k = k flights + k² spreads,
-/// for wave numbers k from that of the domain to that of the mesh. Their number grows with the logarithm of
-/// the number of cells along a direction.
+/// for wave numbers k from that of the domain to that of the mesh. The number of steps grows with the
+/// logarithm of the number of cells along a direction.
 class alternating_directions {
  public:
-  /// Factorizes the lines for each k. `mesh` must outlive the object. Throws numerical_error if one is
-  /// singular.
+  /// Factorizes the lines for each k. `mesh` must outlive the object. Throws numerical_error if a
+  /// matrix is singular.
   alternating_directions(const moment_mesh& mesh, const moment_equations& equations);
 
-  /// Returns the number of wave numbers where the largest one is `range` times the smallest one.
+  /// Returns the number of wave numbers for a ratio `range` of the largest to the smallest one.
   static int steps(double range);
 
   /// Returns an approximation of J⁻¹ r, with the rows and columns of bordered_matrix().
   Eigen::VectorXd solve(const Eigen::VectorXd& r) const;
 
  private:
-  /// Some lines along a direction. Reading the factors takes most of the time of solve(), and their digits
-  /// are more than an approximation needs.
+  /// Some lines along a direction. The factors are in single precision: reading them takes most of the time
+  /// of solve(), and an approximation does not need more digits.
   struct lines {
     std::vector<int> unknowns;  ///< in the order of the rows of `factors`
     std::unique_ptr<sparse_factors_of<float>> factors = {};
@@ -45,14 +45,14 @@ class alternating_directions {
   std::vector<lines> factorized_lines(const moment_equations& equations, int direction,
                                       const std::vector<double>& scale) const;
   Eigen::VectorXd without_sums(const Eigen::VectorXd& r) const;
-  /// Sums of a moment over the volumes of cells, divided by their number, of each column.
+  /// Returns for each column the sum of a moment times the volumes of cells, divided by the number of cells.
   Eigen::RowVectorXd sums_of(const Eigen::MatrixXd& x, int moment) const;
 
   const moment_mesh& mesh_;
   std::vector<int> conserved_;
   row_matrix matrix_;  ///< J without the equations of sums
   std::vector<stage> stages_;
-  Eigen::MatrixXd of_sources_;  ///< what this object makes of sources that are the same in all cells
+  Eigen::MatrixXd of_sources_;  ///< approximate responses to sources that are equal in all cells
   Eigen::PartialPivLU<Eigen::MatrixXd> sums_;
 };
 

@@ -7,11 +7,11 @@
 
 namespace apsis {
 
-/// A sparse matrix of square blocks, which appear when they are first asked for. A row has few of them.
+/// A sparse matrix of square blocks. The first access to a block creates it. A row has only a few blocks.
 class block_matrix {
  public:
   block_matrix() = default;
-  /// `rows`: of blocks; `size`: of a block.
+  /// `rows` is the number of rows of blocks, and `size` that of rows of a block.
   block_matrix(int rows, int size) : size_(size), newest_(at(rows), -1) {}
 
   int rows() const { return static_cast<int>(newest_.size()); }  ///< number of rows of blocks
@@ -19,7 +19,7 @@ class block_matrix {
   /// Returns the number of blocks.
   std::size_t blocks() const { return columns_.size(); }
 
-  /// Returns a block, [row in it][column in it], 0 at first. The pointer holds until the next call.
+  /// Returns a block, [row in it][column in it], initially 0. The pointer is valid until the next call.
   double* block(int row, int column);
   /// Returns the entry at a row and a column of numbers.
   double& entry(int row, int column) {
@@ -30,7 +30,7 @@ class block_matrix {
   void visit_row(int row, const Visit& visit) const {
     for (int k = newest_[at(row)]; k >= 0; k = earlier_[at(k)]) visit(columns_[at(k)], values(k));
   }
-  /// Takes memory for so many blocks.
+  /// Reserves memory for this number of blocks.
   void reserve(std::size_t blocks);
 
  private:
@@ -38,8 +38,8 @@ class block_matrix {
   const double* values(int k) const { return values_.data() + at(k) * square(); }
 
   int size_ = 1;
-  std::vector<int> newest_ = {};             ///< block of a row, -1 where it has none
-  std::vector<int> columns_ = {}, earlier_;  ///< of a block: its column, and the one before it in its row
+  std::vector<int> newest_ = {};             ///< newest block of a row, -1 if there is none
+  std::vector<int> columns_ = {}, earlier_;  ///< column of a block, and the previous block of its row
   std::vector<double> values_ = {};
 };
 

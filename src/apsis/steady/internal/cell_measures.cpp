@@ -18,7 +18,7 @@ namespace {
 constexpr double infinite = std::numeric_limits<double>::infinity();
 constexpr double tiny = std::numeric_limits<double>::min();
 
-/// Returns Σ x², in eight chains, which vectors add side by side.
+/// Returns Σ x², as eight partial sums that vector instructions add in parallel.
 double sum_of_squares(const double* x, int n) {
   constexpr int chains = 8;
   std::array<double, chains> sums{};
@@ -77,7 +77,7 @@ std::vector<double> cell_measures::largest_scales(const std::vector<double>& ome
   return largest;
 }
 
-/// Returns the root of the sum of square_of_cell(cell).
+/// Returns the square root of the sum of square_of_cell(cell).
 template <class Square>
 double cell_measures::root_of_sum(const Square& square_of_cell) const {
   std::vector<double> squares(links_.cells().size());

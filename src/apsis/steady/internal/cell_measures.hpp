@@ -12,7 +12,7 @@
 namespace apsis {
 
 /// Sums, norms and extremes of rows and of moments ω, [cells][moment_count()], over the cells of all
-/// processes. All members but moments_of() and scales_of() are collective. Dimensionless.
+/// processes. All members except moments_of() and scales_of() are collective. Dimensionless.
 class cell_measures {
  public:
   /// All references must outlive the object.
@@ -20,11 +20,10 @@ class cell_measures {
 
   /// to ← ℛu of the cells of this process.
   void moments_of(const field& u, std::vector<double>& to) const;
-  /// Returns the scales of the moments of a cell, or their absolute values where the model has other
-  /// invariants.
+  /// Returns the scales of the moments of a cell, or their absolute values if the model has other invariants.
   std::vector<double> scales_of(const double* moments) const;
 
-  /// Returns the sum of each moment, times the volumes of cells relative to that of a whole one.
+  /// Returns the sum of each moment times the volumes of cells, relative to that of a whole cell.
   std::vector<double> sums(const std::vector<double>& omega) const;
   /// Returns the largest scale of each moment.
   std::vector<double> largest_scales(const std::vector<double>& omega) const;
@@ -39,16 +38,18 @@ class cell_measures {
   double largest_share(const std::vector<double>& omega, const std::vector<double>& changes,
                        double most) const;
 
-  /// Returns whether all cells of a gas have at least `share` of the temperature that they had before; true
+  /// Returns true if all cells of a gas keep at least the fraction `share` of their earlier temperature; true
   /// for other models.
   bool keeps_temperature(const std::vector<double>& before, const std::vector<double>& after,
                          double share) const;
 
   /// Returns the shortest extent of the domain.
   double extent() const;
-  /// Returns the lowest √T of the first cells of processes, of a gas; the largest speed of other models.
+  /// Returns the lowest √T of the first cells of all processes for a gas, and the largest speed
+  /// for other models.
   double thermal_speed(const std::vector<double>& omega) const;
-  /// Returns the largest width of a cell relative to its mean free path c/σ, c = thermal_speed(omega).
+  /// Returns the largest width of a cell relative to the smallest mean free path c/σ,
+  /// c = thermal_speed(omega).
   double largest_optical_width(const std::vector<double>& omega, std::span<const double> rates) const;
   /// Returns the mean of one number for each cell.
   double mean(std::span<const double> of_cells) const;
@@ -61,8 +62,8 @@ class cell_measures {
   const problem_builder& space_;
   const cell_links& links_;
   communicator& processes_;
-  std::size_t count_;   ///< of moments
-  std::int64_t cells_;  ///< of the gas, on all processes
+  std::size_t count_;   ///< number of moments
+  std::int64_t cells_;  ///< cells of the gas on all processes
 };
 
 }  // namespace apsis

@@ -9,7 +9,7 @@
 namespace apsis::dense_factors {
 namespace {
 
-/// Blocks of at most so many columns are not halved.
+/// Blocks of at most this many columns are not halved.
 constexpr int smallest = 8;
 
 bool factorize_columns(const block& a, std::span<int> pivots) {

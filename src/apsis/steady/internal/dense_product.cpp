@@ -15,12 +15,13 @@ using dense_product::block;
 
 using numbers = pack<wide>;
 
-/// A tile of c has so many vectors of rows and so many columns; their sums stay in registers.
+/// Size of a tile of c, in vectors of rows and in columns. The sums of a tile stay in registers.
 constexpr int vectors_of_tile = 3, columns_of_tile = HWY_MAX_BYTES == 64 ? 8 : 4;
-/// Products that are summed before c is changed: that many rows of a tile fit the first-level cache.
+/// Number of products that are summed before c changes. This many columns of a tile of `a` fit into
+/// the first-level cache.
 constexpr int longest_sum = 128;
 
-/// c ← c − a b for the rows of a tile. `rows`: a, with all rows of a tile for each term of the sums.
+/// c ← c − a b for the rows of a tile. `rows` has a, with all rows of a tile for each term of the sums.
 template <int columns>
 HWY_INLINE void subtract_tile(const double* rows, const block& b, const block& c) {
   const int length = static_cast<int>(hn::Lanes(wide()));
@@ -45,7 +46,7 @@ HWY_INLINE void subtract_tile(const double* rows, const block& b, const block& c
     }
 }
 
-/// Copies rows of a, with zeros behind them.
+/// Copies rows of a and appends zeros up to the height of a tile.
 HWY_INLINE void copy_rows(const block& a, double* to) {
   const int length = static_cast<int>(hn::Lanes(wide()));
   for (int k = 0; k < a.columns; ++k)

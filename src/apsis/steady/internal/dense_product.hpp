@@ -11,7 +11,7 @@ namespace dense_product {
 struct block {
   double* first;          ///< its first entry
   int rows, columns;      ///< its size
-  std::ptrdiff_t stride;  ///< between columns
+  std::ptrdiff_t stride;  ///< distance between columns
 
   /// Returns the block at a row and a column of this one.
   block at(int row, int column, int some_rows, int some_columns) const {

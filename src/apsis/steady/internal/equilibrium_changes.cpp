@@ -10,7 +10,7 @@
 namespace apsis {
 namespace {
 
-/// Of a correction: less of it changes nothing.
+/// A smaller part of a correction is omitted.
 constexpr double smallest_part = 1e-3;
 
 }  // namespace

@@ -8,8 +8,8 @@
 
 namespace apsis {
 
-/// r ← r + σ (E(ω + share δω) − E(ω)) in cells of this process, `rates` being σ; less of δω where that has no
-/// equilibrium. Throws numerical_error with the cell where ω has none.
+/// r ← r + σ (E(ω + share δω) − E(ω)) in cells of this process; `rates` are σ. The share is halved in cells
+/// without an equilibrium of ω + share δω. Throws numerical_error with the cell if ω has no equilibrium.
 void add_equilibrium_changes(const relaxation_model& equation, const problem_builder& space,
                              const std::vector<int>& cells, const std::vector<double>& omega,
                              const std::vector<double>& changes, double share,

@@ -3,8 +3,8 @@
 namespace apsis {
 namespace {
 
-/// Adds the cell next to `cell`, or beyond the gas its value on the parabola through three cells inside, or
-/// the line or the constant where there are fewer.
+/// Adds the cell next to `cell`. Beyond the gas it adds the value on the parabola through three cells inside,
+/// or on a line or constant if there are fewer cells.
 void add_neighbour(const cell_links& links, int direction, bool upper, int cell, double weight,
                    weighted_cells& to) {
   if (const int other = links.next_or_image(direction, upper, cell); other >= 0) return to.add(other, weight);

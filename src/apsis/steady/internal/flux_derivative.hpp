@@ -11,7 +11,7 @@
 
 namespace apsis {
 
-/// Cells and their weights in the value at an edge.
+/// Cells with their weights in the value at an edge.
 struct weighted_cells {
   std::array<std::pair<int, double>, 5> terms{};
   int count = 0;
@@ -28,10 +28,11 @@ struct weighted_cells {
   const auto* end() const { return terms.data() + count; }
 };
 
-/// Returns the weights of the value at the upper or lower edge of a whole cell, of what moves towards it.
+/// Returns the weights of the value at the upper or lower edge of a whole cell, for molecules that move
+/// towards this edge.
 weighted_cells edge_of(const cell_links& links, int direction, bool upper, int cell, bool first_order);
 
-/// The derivatives of a flux by the moments of the cells around its face.
+/// The derivatives of a flux with respect to the moments of the cells around its face.
 class flux_derivative {
  public:
   explicit flux_derivative(std::size_t square) : square_(square) {}
@@ -53,7 +54,7 @@ class flux_derivative {
  private:
   std::size_t square_;
   std::vector<std::pair<int, const double*>> cells_;
-  std::vector<std::vector<double>> blocks_;  ///< kept for the next face
+  std::vector<std::vector<double>> blocks_;  ///< memory, reused for the next face
 };
 
 }  // namespace apsis

@@ -13,10 +13,10 @@
 namespace apsis {
 namespace {
 
-/// One thread eliminates a subtree of at most this share of the unknowns, 1/groups.
+/// One thread eliminates a subtree with at most 1/groups of the unknowns.
 constexpr int groups = 16;
 
-/// Returns the place of an unknown in an increasing list that holds it.
+/// Returns the place of an unknown in an increasing list.
 int place_in(const std::vector<int>& list, int unknown) {
   return static_cast<int>(std::lower_bound(list.begin(), list.end(), unknown) - list.begin());
 }
@@ -92,7 +92,7 @@ void frontal_factors::find_levels() {
   for (std::size_t p = count; p-- > 0;)
     if (unknowns[p] <= most) group[p] = parent[p] != none && group[parent[p]] != none ? group[parent[p]] : p;
   levels_.assign(1, {});
-  std::vector<std::size_t> place(count, none);  // of a group in the first level
+  std::vector<std::size_t> place(count, none);  // place of a group in the first level
   for (std::size_t p = 0; p < count; ++p) {
     if (group[p] != none) {
       std::size_t& here = place[group[p]];
@@ -120,7 +120,7 @@ void frontal_factors::place_fronts() {
   if (numbers_.size() != next) numbers_ = stored_numbers(next, host_memory());
 }
 
-// The rows of a part stand above those of its border.
+// In the block of a part, its own rows precede those of its border.
 frontal_factors::block frontal_factors::inside(const front& part) {
   return {numbers_.data() + part.first, part.size(), part.size(), part.size() + part.border_size()};
 }
@@ -167,7 +167,7 @@ void frontal_factors::add_entries(const column_matrix& columns, const row_matrix
 
 void frontal_factors::add_schur_complement(front& from, front& to) {
   const int count = from.border_size(), of_border = to.border_size(),
-            within = place_in(from.border, to.end);  // so many are unknowns of the part
+            within = place_in(from.border, to.end);  // number of unknowns that belong to the part
   std::vector<int> places;
   for (const int unknown : from.border)
     places.push_back(unknown < to.end ? unknown - to.begin : place_in(to.border, unknown));
@@ -179,7 +179,7 @@ void frontal_factors::add_schur_complement(front& from, front& to) {
     for (int k = 0; k < within; ++k) above(places[at(k)], j) += left[k];
     for (int k = within; k < count; ++k) under(places[at(k)], j) += left[k];
   }
-  from.schur_complement = aligned_vector<double>();  // {} would keep its memory
+  from.schur_complement = aligned_vector<double>();  // {} would not release its memory
 }
 
 frontal_factors::matrix_view frontal_factors::inside(const front& part) const {

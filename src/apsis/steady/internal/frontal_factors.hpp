@@ -14,16 +14,16 @@
 namespace apsis {
 
 /// LU factors of a sparse matrix by the multifrontal method (Duff & Reid, ACM Trans. Math. Softw. 9, 1983).
-/// The unknowns are eliminated part by part, each part with dense matrices. Pivots are sought within a part
-/// alone, so that the order of the parts bounds the fill. The result does not depend on the number of
-/// threads.
+/// The unknowns are eliminated part by part with dense matrices. Pivots are sought only within a part, so
+/// that the order of the parts bounds the fill. The result does not depend on the number of threads.
 class frontal_factors {
  public:
-  /// `ends`: one past the last unknown of each part, increasing; the last one is the number of rows.
+  /// `ends` has one past the last unknown of each part, in increasing order. The last entry is the
+  /// number of rows.
   explicit frontal_factors(const std::vector<int>& ends);
 
-  /// Factorizes a compressed matrix. One with the pattern of the last matrix takes the same memory. Throws
-  /// numerical_error if the matrix is singular, or its block of a part and of all parts before it.
+  /// Factorizes a compressed matrix. A matrix with the pattern of the previous one uses the same memory.
+  /// Throws numerical_error if the matrix is singular, or if the block of a part and all earlier parts is.
   void factorize(const row_matrix& matrix);
   /// Returns A⁻¹ r.
   Eigen::VectorXd solve(const Eigen::VectorXd& r) const;
@@ -38,14 +38,14 @@ class frontal_factors {
   using block = dense_product::block;
   using matrix_view = Eigen::Map<const Eigen::MatrixXd, 0, Eigen::OuterStride<>>;
 
-  /// A part, with the later unknowns that it is connected with.
+  /// A part and the later unknowns that are connected with it.
   struct front {
     int begin = 0, end = 0;                        ///< unknowns of the part
     std::vector<int> border = {};                  ///< later unknowns, increasing
-    std::vector<std::size_t> children = {};        ///< in the elimination tree
-    std::vector<int> pivots = {};                  ///< rows that its rows were exchanged with
-    std::size_t first = 0;                         ///< of its factors in numbers_
-    aligned_vector<double> schur_complement = {};  ///< of its border, which the parent adds
+    std::vector<std::size_t> children = {};        ///< parts below it in the elimination tree
+    std::vector<int> pivots = {};                  ///< row that was exchanged with each row
+    std::size_t first = 0;                         ///< start of its factors in numbers_
+    aligned_vector<double> schur_complement = {};  ///< Schur complement of its border, for the parent
 
     int size() const { return end - begin; }
     int border_size() const { return static_cast<int>(border.size()); }
@@ -59,21 +59,21 @@ class frontal_factors {
   void add_entries(const column_matrix& columns, const row_matrix& rows, const front& part);
   void add_schur_complement(front& from, front& to);
 
-  /// The factors of the block of a part.
+  /// Returns the factors of the block of a part.
   block inside(const front& part);
-  /// The rows of its border, times U⁻¹.
+  /// Returns the rows of its border, times U⁻¹.
   block below(const front& part);
-  /// L⁻¹ of the columns of its border.
+  /// Returns L⁻¹ times the columns of its border.
   block right(const front& part);
   matrix_view inside(const front& part) const;
   matrix_view below(const front& part) const;
   matrix_view right(const front& part) const;
 
   std::vector<front> parts_;
-  /// Lists of parts, level by level. The lists of a level do not depend on each other.
+  /// Lists of parts, level by level. The lists of a level are independent.
   std::vector<std::vector<std::vector<std::size_t>>> levels_;
-  std::vector<int> starts_, column_numbers_;  ///< of the rows of the last matrix
-  stored_numbers numbers_;                    ///< of the factors
+  std::vector<int> starts_, column_numbers_;  ///< pattern of the rows of the last matrix
+  stored_numbers numbers_;                    ///< memory of the factors
 };
 
 }  // namespace apsis

@@ -14,7 +14,7 @@
 namespace apsis {
 namespace {
 
-/// Fluxes along a direction reach two cells on both sides.
+/// Fluxes along a direction depend on two cells on each side of a cell.
 constexpr std::size_t blocks_of_row = 5;
 
 dissected_mesh dissected(const domain& space, bool first_order) {
@@ -82,7 +82,7 @@ void moment_assembly::add_block(int row, int column, double factor, const double
   for (int k = 0; k < count_ * count_; ++k) sum[k] += factor * block[k];
 }
 
-/// Half-range sums of |v| and of v², averaged over the directions.
+/// Adds half-range sums of |v| and of v², averaged over the directions.
 void moment_assembly::add_scales(std::span<const double> blocks, moment_equations& all) const {
   const std::size_t square = layout_.square();
   all.flights.assign(at(mesh_.cells) * square, 0.0);
@@ -107,7 +107,8 @@ void moment_assembly::add_faces(std::span<const double> blocks, int direction, b
   const std::size_t up = layout_.transport(direction, true), down = layout_.transport(direction, false),
                     deviation = layout_.deviation(direction);
   flux_derivative flux(layout_.square());
-  // The flux towards larger coordinates through the face between two cells. One of them may be missing.
+  // Adds the flux towards larger coordinates through the face between two cells, one of
+  // them possibly missing.
   const auto add_flux = [&](int below, int above) {
     for (const auto& [of, block] : flux) {
       if (below >= 0) add_block(number_[at(below)], number_[at(of)], per_length, block, to);
@@ -138,7 +139,7 @@ void moment_assembly::add_faces(std::span<const double> blocks, int direction, b
   }
 }
 
-/// A force a gives the momentum ρa and the energy ρu·a per unit of time.
+/// Adds the force: an acceleration a yields the momentum ρa and the energy ρu·a per unit of time.
 void moment_assembly::add_forces(block_matrix& to) const {
   const gas_model* gas = equation_.as_gas();
   if (!acts_.force || gas == nullptr) return;
@@ -170,8 +171,8 @@ void moment_assembly::find_conserved(moment_equations& all) const {
   };
   for (const block_matrix& some : all.along) add(some);
   add(all.inside);
-  // Fluxes between cells cancel to rounding, those at ends to half the digits, which differences of rows
-  // have.
+  // Fluxes between cells cancel to rounding. Fluxes at ends cancel only to half of the digits, because they
+  // are differences of rows.
   constexpr double rounding = 1e-7;
   for (int moment = 0; moment < count_; ++moment) {
     const auto first = sums.begin() + static_cast<std::ptrdiff_t>(moment) * unknowns;

@@ -15,18 +15,20 @@
 
 namespace apsis {
 
-/// Makes the moment equations of a whole mesh from the derivatives of its cells.
+/// Assembles the moment equations of a whole mesh from the derivatives of its cells.
 class moment_assembly {
  public:
-  /// All references must outlive the object. `first_order`: whether the fluxes of J are.
+  /// All references must outlive the object. `first_order` is true if the fluxes of J are of first order.
   moment_assembly(const relaxation_model& equation, const domain& space, const inside_domain& acts,
                   const jacobian_layout& layout, bool first_order);
 
   const moment_mesh& mesh() const { return mesh_; }
-  const std::vector<int>& cells() const { return links_.cells(); }  ///< of the gas
-  /// Returns the number of a cell among those of the gas, in an order of elimination with little fill.
+  const std::vector<int>& cells() const { return links_.cells(); }  ///< cells of the gas
+  /// Returns the number of a cell among those of the gas. The numbers are an order of elimination
+  /// with little fill.
   int number(int cell) const { return number_[at(cell)]; }
-  /// Returns J from the blocks of all cells, [cell][layout.numbers()]. `pseudo_rate`: added to its diagonal.
+  /// Returns J from the blocks of all cells, [cell][layout.numbers()], with `pseudo_rate` added
+  /// to its diagonal.
   moment_equations assemble(std::span<const double> blocks, double pseudo_rate) const;
 
  private:

@@ -17,7 +17,8 @@ void moment_assembly::add_cut_cells(std::span<const double> blocks, block_matrix
   }
 }
 
-/// Returns the weights of cells in the value of the line of a group at a vector from its centroid.
+/// Returns the weights of cells in the value at a vector from the centroid of a group. The gas of a group
+/// varies linearly, except in first order.
 std::vector<std::pair<int, double>> moment_assembly::line_of_cut(int group,
                                                                  const std::array<double, 3>& to) const {
   const int here = cut_.groups()[at(group)].cell;
@@ -32,7 +33,8 @@ std::vector<std::pair<int, double>> moment_assembly::line_of_cut(int group,
   return found;
 }
 
-/// The upwind flux of lines through an open face, and that of the deviation from equilibrium.
+/// Adds the upwind flux of linear functions through an open face, and the flux of the
+/// deviation from equilibrium.
 void moment_assembly::add_face_of_cut(std::span<const double> blocks, int number, block_matrix& to) const {
   const open_face& one = space_.mesh().cut()->faces()[at(number)];
   const int d = one.direction;
@@ -41,7 +43,7 @@ void moment_assembly::add_face_of_cut(std::span<const double> blocks, int number
     double per_length;
   };
   flux_derivative flux(layout_.square());
-  // Adds the values of a side that leave it.
+  // Adds the values that leave a side.
   const auto add_side = [&](int cell, bool is_below, const std::array<double, 3>& from_centre) -> side {
     const std::size_t place = layout_.transport(d, is_below);
     const int group = cut_.group_of(cell);
@@ -68,7 +70,7 @@ void moment_assembly::add_face_of_cut(std::span<const double> blocks, int number
   }
 }
 
-/// Values at walls and ends are those of the line of the group there.
+/// Adds the fluxes at walls and ends, with values of the linear function of the group there.
 void moment_assembly::add_walls(std::span<const double> blocks, const group_of_cut& of,
                                 block_matrix& to) const {
   const int row = number_[at(of.cell)];

@@ -8,13 +8,13 @@
 namespace apsis {
 namespace {
 
-/// J is built anew where a moment has changed by more than this share of its scale,
+/// A new J is built if a moment has changed by more than this part of its scale.
 constexpr double change_for_new_system = 0.1;
-/// until the residual is this share of that of the start. It is kept then.
+/// Such a change no longer matters if the residual is below this part of that of the start.
 constexpr double share_to_keep_system = 0.01;
-/// A residual that has grown by this factor since J was built calls for a new one.
+/// A new J is built if the residual has grown by this factor since the last build.
 constexpr double growth_for_new_system = 10.0;
-/// So does a pseudo-time term that is this many times the present one.
+/// A new J is built if the pseudo-time term of J is this many times the current one.
 constexpr double change_of_pseudo_rate = 10.0;
 
 }  // namespace
@@ -84,11 +84,11 @@ void moment_correction::build_system_if_due(const steady_residual& of, double re
     return;
   }
   omega_of_system_ = of.omega;
-  // A neutral mode takes any change. If it is the cause, nothing else needs to be damped.
+  // A neutral mode responds strongly to any change. If it is the cause, nothing else needs damping.
   const double constant = flight_rate_ * damped_.constant_rate();
   pseudo_rate_ = 0.0;
   holds_neutral_mode_ = constant > 0.0 && seeks_neutral_mode_ && system_.build(of.omega, of.rates, 0.0, true);
-  if (constant > 0.0) seeks_neutral_mode_ = holds_neutral_mode_;  // once for each term
+  if (constant > 0.0) seeks_neutral_mode_ = holds_neutral_mode_;  // sought once for each term
   if (!holds_neutral_mode_) {
     pseudo_rate_ = std::max(flight_rate_ * damped_.vanishing_rate(residual), constant);
     system_.build(of.omega, of.rates, pseudo_rate_);

@@ -19,7 +19,7 @@ std::vector<line_of_cells> lines_along(const cell_links& links, int direction,
   };
   for (const int cell : links.cells())
     if (links.next_or_image(direction, false, cell) < 0) follow(cell);
-  for (const int cell : links.cells())  // of rings, which have no end
+  for (const int cell : links.cells())  // periodic lines have no end
     if (!visited[at(cell)]) follow(cell);
   return found;
 }
@@ -30,7 +30,7 @@ moment_equations::moment_equations(const moment_mesh& mesh) : inside(mesh.cells,
 
 namespace {
 
-/// Returns J with so many rows and columns of sums.
+/// Returns J with rows and columns for the sums of the given moments.
 row_matrix with_sums(const moment_mesh& mesh, const moment_equations& equations,
                      const std::vector<int>& conserved) {
   const int moments = mesh.moments, unknowns = mesh.unknowns(), sums = static_cast<int>(conserved.size());

@@ -11,31 +11,31 @@
 
 namespace apsis {
 
-/// Cells that follow each other along a direction, by their numbers among the cells of the gas. The first one
-/// follows the last one on a line that is periodic.
+/// Consecutive cells along a direction, as numbers among the cells of the gas. On a periodic line the first
+/// cell follows the last one.
 using line_of_cells = std::vector<int>;
 
-/// Returns the lines along a direction. Each cell of the gas is on one of them. `number`: of a cell among
-/// those of the gas.
+/// Returns the lines along a direction. Each cell of the gas is on one of them. number[cell] is the number of
+/// a cell among those of the gas.
 std::vector<line_of_cells> lines_along(const cell_links& links, int direction,
                                        const std::vector<int>& number);
 
-/// The mesh, as a solver of moment equations sees it.
+/// The data of a mesh that a solver of moment equations needs.
 struct moment_mesh {
-  int directions = 1,  ///< of the mesh
-      moments = 1,     ///< of a cell
-      cells = 0;       ///< of the gas
-  /// Numbers of cells that are eliminated together, one after the other; all of them where it is empty.
+  int directions = 1,  ///< directions of the mesh
+      moments = 1,     ///< moments of a cell
+      cells = 0;       ///< cells of the gas
+  /// Numbers of cells that are eliminated together, in order; empty if all cells are eliminated together.
   std::vector<int> parts = {};
   std::array<std::vector<line_of_cells>, 3> lines = {};
-  std::vector<double> volumes = {};  ///< of cells relative to whole ones; all are whole where it is empty
+  std::vector<double> volumes = {};  ///< volumes of cells relative to whole ones; empty if all are whole
   double extent = 1.0,               ///< the longest side of the domain
       spacing = 1.0;                 ///< the shortest side of a cell
-  bool first_order = false;          ///< whether fluxes between cells are
+  bool first_order = false;          ///< whether fluxes between cells are of first order
 
   /// Returns the volume of a cell relative to a whole one.
   double volume(int number) const { return volumes.empty() ? 1.0 : volumes[at(number)]; }
-  /// Returns the number of rows that cells have.
+  /// Returns the number of rows for all cells.
   int unknowns() const { return moments * cells; }
 };
 
@@ -45,12 +45,12 @@ using row_matrix = Eigen::SparseMatrix<double, Eigen::RowMajor>;
 /// The linearised moment equations J δω = r of a whole mesh, as sums of matrices with a block of
 /// moments × moments for each pair of cells.
 struct moment_equations {
-  /// Without any term.
+  /// Starts without any term.
   explicit moment_equations(const moment_mesh& mesh);
 
-  std::array<block_matrix, 3> along = {};  ///< ∂ω-derivatives of the fluxes along every direction
-  block_matrix inside = {};                ///< those of forces and sources, and the pseudo-time term
-  std::vector<int> conserved = {};         ///< moments whose sum is prescribed by an equation of its own
+  std::array<block_matrix, 3> along = {};  ///< ∂/∂ω of the fluxes along every direction
+  block_matrix inside = {};                ///< ∂/∂ω of forces and sources, and the pseudo-time term
+  std::vector<int> conserved = {};         ///< moments with an equation for their sum
   /// Scales of J for wave numbers k of a cell, [number][moments²]: |k| flights + k² spreads.
   std::vector<double> flights = {}, spreads = {};
 };
@@ -58,8 +58,8 @@ struct moment_equations {
 /// Returns J without the equations of sums.
 row_matrix bare_matrix(const moment_mesh& mesh, const moment_equations& equations);
 
-/// Returns J with a row and a column for each moment that is conserved: its sum over the volumes, divided by
-/// the number of cells, and a source of it that is the same in all cells.
+/// Returns J with an additional row and column for each conserved moment. The row is the sum over the
+/// volumes, divided by the number of cells. The column is a source of the moment that is equal in all cells.
 row_matrix bordered_matrix(const moment_mesh& mesh, const moment_equations& equations);
 
 }  // namespace apsis

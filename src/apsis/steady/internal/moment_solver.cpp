@@ -8,21 +8,22 @@
 namespace apsis {
 namespace {
 
-/// Relative size of the residual after preconditioning. With directions and 1e-3, some flows take an eighth
-/// more iterations to the steady state. Equations of first order belong to cells that are thin, where the
-/// sweep decides on the number of iterations.
+/// Relative size of the residual after preconditioning. With directions and 1e-3, some flows need 1/8 more
+/// iterations to the steady state. Equations of first order are used for thin cells, for which the sweep
+/// determines the number of iterations.
 constexpr double tolerance_with_directions = 1e-4, tolerance_of_first_order = 1e-2,
                  tolerance_with_earlier_factors = 1e-5;
-/// More iterations than this with earlier factors, for all right sides of a J, cost as much as new factors.
+/// New factors cost about as much as this many iterations with earlier factors, for all right-hand sides
+/// of a J.
 constexpr int iterations_with_earlier_factors = 6;
 constexpr int iterations_with_directions = 240;
-/// Directions of an earlier J are renewed where they need this many times the iterations of new ones.
+/// Directions of an earlier J are renewed if they need this many times the iterations of new ones.
 constexpr double growth_with_earlier_directions = 1.25;
 constexpr int iterations_until_restart = 60;
-/// Most unknowns of a J that is factorized. Such factors take about 2 GB.
+/// Largest number of unknowns for which J is factorized. The factors then take about 2 GB.
 constexpr int largest_plane = 250000, largest_space = 25000;
 
-/// Calls a function, as a preconditioner of Eigen.
+/// Calls a function as a preconditioner of Eigen.
 class called_preconditioner {
  public:
   using function = std::function<Eigen::VectorXd(const Eigen::VectorXd&)>;
@@ -56,10 +57,10 @@ bool moment_solver::factorizes(int directions, double unknowns) {
 
 double moment_solver::numbers_of_cell(int directions, int moments, double cells) {
   const double square = moments * moments;
-  // Measured; factors of J with the largest sum of blocks that later parts take.
+  // Measured sizes. Factors of J include the largest sum of blocks for later parts.
   if (!factorizes(directions, moments * cells)) {
     const double steps = alternating_directions::steps(2.0 * std::pow(cells, 1.0 / directions));
-    return 20.0 * steps * directions * square;  // of lines
+    return 20.0 * steps * directions * square;  // factors of lines
   }
   const double depth = std::log2(cells) + 2.0;
   switch (directions) {
@@ -88,7 +89,7 @@ void moment_solver::take(moment_equations equations, bool holds_neutral) {
     if (!directions_) renew_directions();
     return;
   }
-  // On a line factors cost less than iterations.
+  // On a line, factors cost less than iterations.
   if (factors_ == nullptr || holds_neutral || mesh_.directions == 1) factorize_again();
   if (holds_neutral) neutral_ = find_neutral_mode(*factors_);
 }
@@ -96,11 +97,11 @@ void moment_solver::take(moment_equations equations, bool holds_neutral) {
 void moment_solver::factorize_again() {
   auto fresh = factors_ ? std::move(factors_) : std::make_unique<frontal_factors>(ends_of_parts());
   fresh->factorize(matrix_);
-  factors_ = std::move(fresh);  // none if it has thrown
+  factors_ = std::move(fresh);  // null if factorize() has thrown
   are_those_of_matrix_ = true;
 }
 
-/// The equations of sums belong to the last part: without them J may be singular.
+/// Appends the equations of sums to the last part, because J may be singular without them.
 std::vector<int> moment_solver::ends_of_parts() const {
   std::vector<int> ends;
   int cells = 0;

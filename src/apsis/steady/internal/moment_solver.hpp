@@ -14,25 +14,25 @@
 
 namespace apsis {
 
-/// Solves moment equations. Small systems are factorized. Factors of an earlier J precondition GMRES for a
-/// later one, as long as few iterations do. Where factors are too large, alternating_directions precondition
-/// it, those of an earlier J too.
+/// Solves moment equations. Small systems are factorized. The factors of an earlier J precondition GMRES for
+/// a later one if few iterations suffice. If factors would be too large, alternating_directions precondition
+/// GMRES instead. Those of an earlier J may serve a later one too.
 class moment_solver {
  public:
   /// `mesh` must outlive the object.
   explicit moment_solver(const moment_mesh& mesh);
 
-  /// Takes another J. `holds_neutral`: whether solve() leaves a neutral mode as it is; it is only sought
-  /// where J is factorized. Throws numerical_error if J is singular.
+  /// Replaces J. If `holds_neutral`, solve() does not change a neutral mode; such a mode is sought only if J
+  /// is factorized. Throws numerical_error if J is singular.
   void take(moment_equations equations, bool holds_neutral);
-  /// Whether solve() leaves a neutral mode as it is.
+  /// Returns true if solve() does not change a neutral mode.
   bool has_neutral_mode() const { return neutral_.has_value(); }
-  /// Returns x with J x = r, and prescribed sums. Throws numerical_error if J is singular.
+  /// Returns x with J x = r and prescribed sums. Throws numerical_error if J is singular.
   Eigen::VectorXd solve(Eigen::VectorXd r);
 
-  /// Returns whether J is factorized for a mesh of so many directions.
+  /// Returns true if J is factorized for a mesh of this many directions and unknowns.
   static bool factorizes(int directions, double unknowns);
-  /// Estimates the numbers per cell in factors of J or of its lines.
+  /// Returns an estimate of the numbers per cell in factors of J or of its lines.
   static double numbers_of_cell(int directions, int moments, double cells);
 
  private:
@@ -48,11 +48,11 @@ class moment_solver {
   bool factorizes_;
   row_matrix matrix_;
   std::unique_ptr<frontal_factors> factors_;
-  bool are_those_of_matrix_ = false;           ///< the factors
-  int iterations_ = 0;                         ///< with this matrix
-  std::optional<moment_equations> equations_;  ///< J, where directions precondition it
+  bool are_those_of_matrix_ = false;           ///< whether the factors are those of matrix_
+  int iterations_ = 0;                         ///< iterations with this matrix
+  std::optional<moment_equations> equations_;  ///< J, if directions precondition it
   std::unique_ptr<alternating_directions> directions_;
-  int iterations_of_new_ = 0;  ///< with directions of the same J, those of the first right side; 0: unknown
+  int iterations_of_new_ = 0;  ///< iterations of the first solution with new directions; 0: unknown
   std::optional<neutral_mode> neutral_;
 };
 

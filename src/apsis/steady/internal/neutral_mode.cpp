@@ -10,7 +10,8 @@ namespace {
 
 using columns = Eigen::Matrix<double, Eigen::Dynamic, 2>;
 
-/// Convergence is that of (σ₁/σ₂)², and of (σ₂/σ₃)² for a second value that is only compared.
+/// The error decreases by (σ₁/σ₂)² per iteration, and by (σ₂/σ₃)² for the second value, which
+/// is only compared.
 constexpr int iterations = 4;
 constexpr double isolated = 1e-3;
 
@@ -19,7 +20,7 @@ columns orthonormal(const Eigen::HouseholderQR<columns>& decomposed) {
   return decomposed.householderQ() * columns::Identity(rows, 2);
 }
 
-/// Numbers between −1 and 1, always the same.
+/// Returns numbers between −1 and 1, the same in every run.
 columns start(Eigen::Index rows) {
   std::mt19937 numbers;  // NOLINT(cert-msc32-c,cert-msc51-cpp): the same in every run
   columns found(rows, 2);

@@ -6,7 +6,8 @@ namespace apsis {
 
 template <class Number>
 void factorize(const Eigen::SparseMatrix<Number>& matrix, sparse_factors_of<Number>& to) {
-  // Pivots off the diagonal would undo the order; they are taken where that is a hundred times smaller.
+  // Pivots off the diagonal would undo the order. They are used only if the diagonal entry is
+  // 100 times smaller.
   to.isSymmetric(true);
   to.setPivotThreshold(Number{0.01F});
   to.compute(matrix);

@@ -8,9 +8,9 @@
 namespace apsis {
 namespace {
 
-/// One iteration leaves at least this share of the temperature of every cell,
+/// One iteration leaves at least this part of the temperature of every cell.
 constexpr double lowest_cooling = 0.1;
-/// if a correction of this share of its size can.
+/// Smallest part to which a correction is reduced for that purpose.
 constexpr double smallest_share = 1e-3;
 
 std::vector<double> sum_of(const std::vector<double>& a, double share, const std::vector<double>& b) {

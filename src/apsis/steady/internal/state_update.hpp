@@ -10,23 +10,23 @@
 
 namespace apsis {
 
-/// Moves a state by δf, mixed with earlier images. Members are collective.
+/// Changes a state by δf, mixed with earlier images. Members are collective.
 class state_update {
  public:
-  /// `start`: moments of the first state, whose scales compare moments with each other; `depth`: images that
-  /// the mixture remembers. All references but `start` must outlive the object.
+  /// `start` are the moments of the first state; their scales weight the moments in the mixture. `depth` is
+  /// the number of images in the mixture. All references except `start` must outlive the object.
   state_update(const problem_builder& space, const cell_measures& cells, const std::vector<double>& start,
                int depth);
 
-  /// How apply() moves the state.
+  /// Options of apply().
   struct plan {
-    bool mixes;                        ///< whether earlier images count
-    std::optional<double> total_mass;  ///< that f gets; nothing where mass may enter
+    bool mixes;                        ///< whether to mix with earlier images
+    std::optional<double> total_mass;  ///< mass that f gets; nothing if mass may enter
   };
-  /// f ← f + δ. Less of δ where it leaves too little temperature, and the image itself where the mixture
-  /// does. `omega`: the moments of f.
+  /// f ← f + δ, or the mixture. If the temperature of a cell falls too much, δ is reduced, or the image
+  /// replaces the mixture. `omega` are the moments of f.
   void apply(const plan& how, const std::vector<double>& omega, const field& delta, field& f);
-  /// Forgets earlier images.
+  /// Discards earlier images.
   void clear() { mixture_.clear(); }
 
  private:

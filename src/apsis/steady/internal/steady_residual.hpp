@@ -10,11 +10,11 @@
 
 namespace apsis {
 
-/// The residual of a state, and the moments that an iteration needs beside it. compute() is collective.
+/// The residual of a state, with moments and rates for an iteration. compute() is collective.
 class steady_residual {
  public:
-  /// Takes the moments and the rates of `start`; the residual is 0. `epsilon`: of the cells. All references
-  /// but `start` must outlive the object.
+  /// Takes the moments and the rates of `start`; the residual is 0. `epsilon` are those of the cells. All
+  /// references except `start` must outlive the object.
   steady_residual(const relaxation_model& equation, semidiscrete_problem& problem, const cell_links& links,
                   const cell_measures& cells, const std::vector<double>& epsilon, const field& start);
 
@@ -23,7 +23,7 @@ class steady_residual {
 
   field r;                    ///< the iteration turns it into δf
   std::vector<double> omega,  ///< moments of f
-      of_transport,           ///< of T(f)
+      of_transport,           ///< moments of T(f)
       rates;                  ///< C/ε of the cells
 
  private:

@@ -12,7 +12,7 @@
 namespace apsis::axisymmetric {
 namespace {
 
-/// f of a row of F, in memory of this thread.
+/// Returns f of a row of F, in memory of this thread.
 std::span<const double> row_of_f(std::span<const double> u, double r) {
   thread_local std::vector<double> f;
   f.resize(u.size());

@@ -8,7 +8,7 @@
 namespace apsis {
 namespace {
 
-/// Returns the number of cells that are joined into one row, so that rows of few components fill vectors.
+/// Returns the number of cells to join into one row, so that rows with few components fill vectors.
 int cells_of_a_row(int stride) {
   constexpr int enough = 64;
   return std::max(1, enough / std::max(stride, 1));
@@ -65,7 +65,7 @@ void block_sweep::reserve(const context& of, int cells, int cells_of_box, int wi
   const int beyond = 2 * (halo_ + reach_);
   rows_.reserve(static_cast<std::size_t>(cells + beyond));
   targets_.reserve(targets);
-  // Stretches have one cell at least.
+  // A stretch has at least one cell.
   const auto most =
       static_cast<std::size_t>(of.space.mesh().dimensions()) * static_cast<std::size_t>(cells_of_box);
   visited_.reserve(most);
@@ -73,7 +73,7 @@ void block_sweep::reserve(const context& of, int cells, int cells_of_box, int wi
   if (cells_of_a_row(field::padded(of.equation.components())) > 1)
     visited_joined_.reserve(visited_rows_.capacity());
   make_room(cells, width);
-  // Also for threads that come to the end of a segment in a later step.
+  // Also for threads that reach the end of a segment only in a later step.
   const auto longest = static_cast<std::size_t>(width) * static_cast<std::size_t>(cells_of_a_row(width));
   for (auto* row : {&vacuum_, &in_, &out_}) row->resize(std::max(row->size(), longest));
 }
@@ -95,7 +95,7 @@ void block_sweep::visit(const stretch& cells) {
   visited_.push_back(one);
   const auto count = static_cast<std::size_t>(rows_of(cells));
   visited_rows_.resize(one.first_row + count, nullptr);
-  // Nothing reads more rows behind a surface than edges before it need.
+  // Nothing reads more rows beyond a surface than the edges before it need.
   const int first = cells.begin - one.seen[0] - reach_, last = cells.end + one.seen[1] + reach_;
   of_->space.segment_rows(*u_, cells.direction, cells.segment, first, last,
                           visited_rows_.data() + one.first_row + (halo_ - one.seen[0]));
@@ -119,7 +119,7 @@ void block_sweep::sweep(const visited& one, int first_component, int last_compon
   const double numbers = static_cast<double>(cells) * width_;
   const auto [below, above] = seen_;
   {
-    // Edges of the halo are those of another block too.
+    // Another block computes the edges of the halo too.
     const double repeated = 1.0 + static_cast<double>(below + above) / cells;
     const profile::section timed(kernel::edges, numbers,
                                  {repeated * of_->edges.scheme->operations(both_edges()), sizeof(double)});
@@ -144,16 +144,16 @@ void block_sweep::sweep(const visited& one, int first_component, int last_compon
   }
 }
 
-/// The surface at which a block ends; null where it does not end at one.
+/// Returns the surface at which a block ends; null if it does not end at a surface.
 const segment_end* block_sweep::surface_at(bool upper, const place& at) const {
   const segment_end& end = segment_->ends[upper ? 1 : 0];
   const bool there = upper ? at.end == segment_->cells : at.begin == 0;
   return there && segment_->ends_here(upper) && end.surface >= 0 ? &end : nullptr;
 }
 
-/// Returns the number of cells of the halo that are before a surface which prescribes the incoming
-/// components. The surface may lie cells away from the block, also across periodic faces and behind cells of
-/// other processes: all sweeps that compute the same flux see the same.
+/// Returns the number of cells of the halo in front of a surface that prescribes the incoming components. The
+/// surface may be several cells away from the block, also across periodic faces and behind cells of other
+/// processes. All sweeps that compute the same flux thus get the same number.
 int block_sweep::seen_beyond(bool upper, const stretch& at) const {
   const std::size_t side = upper ? 1 : 0;
   int distance = (upper ? segment_->cells - at.end : at.begin) + segment_->beyond[side];
@@ -166,14 +166,15 @@ int block_sweep::seen_beyond(bool upper, const stretch& at) const {
   return halo_;
 }
 
-/// Replaces a cell, as the fluxes see it, by vacuum.
+/// Replaces a cell by vacuum in the fluxes.
 void block_sweep::empty(int cell) {
   rows_[static_cast<std::size_t>(cell - first_row_)] = vacuum_.data();
   std::fill_n(left_.data() + offset(cell), width_, 0.0);
   std::fill_n(right_.data() + offset(cell), width_, 0.0);
 }
 
-/// Stores the upwind values at a surface, which those of a run of cells are: of a cell among joined ones.
+/// Stores the upwind values at a surface, from those of a run of cells. `joined` is the number of the cell
+/// in the run.
 void block_sweep::record(const segment_end& end, bool upper, int joined) {
   const double* forward = line_->forward.data() + first_component_;
   const std::ptrdiff_t first = static_cast<std::ptrdiff_t>(joined) * width_;
@@ -211,7 +212,7 @@ void block_sweep::prepare(const visited& one, const place& at) {
   make_room(at.end - at.begin, width_);
 }
 
-/// Where neighbours are joined, a row of edges ends beyond its last cell.
+/// If neighbours are joined, a row of edges ends beyond its last cell.
 void block_sweep::make_room(int cells, int width) {
   const auto numbers = (static_cast<std::size_t>(cells) + 2 * static_cast<std::size_t>(halo_)) *
                        static_cast<std::size_t>(width);

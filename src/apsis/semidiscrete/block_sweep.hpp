@@ -14,25 +14,25 @@
 
 namespace apsis {
 
-/// Speeds of the components along a direction, for as many cells as are joined into one row.
+/// Speeds of the components along a direction, repeated for the cells that may be joined into one row.
 struct line_speeds {
   aligned_vector<double> per_cell;     ///< |v|/Δx per component
   aligned_vector<double> forward;      ///< 1 if v > 0, else 0
-  aligned_vector<double> inverse_cfl;  ///< 1/C of limited fluxes
+  aligned_vector<double> inverse_cfl;  ///< 1/C of limited fluxes, C being a CFL number
 
   /// Returns the speeds along each direction of a mesh, without C.
   static std::vector<line_speeds> of(const model& equation, const grid& mesh);
   /// Returns Σ_k |v_k|/Δx_k of all components; empty without space.
   static aligned_vector<double> rates(const std::vector<line_speeds>& speeds);
-  /// Sets C for forward Euler steps of `share` times the longest, Δt = share κ/(max Σ_k |v_k|/Δx_k + κ a):
-  /// C = Δt (Σ_k |v_k|/Δx_k + a) of each component, limiter::least_cfl_number at least, with the rate a of a
-  /// force.
+  /// Sets C for forward Euler steps of `share` times the longest one, Δt = share κ/(max Σ_k
+  /// |v_k|/Δx_k + κ a). Here a is the rate of a force. Each component gets C = Δt (Σ_k |v_k|/Δx_k +
+  /// a), at least limiter::least_cfl_number.
   static void limit_for_steps(std::vector<line_speeds>& speeds, double share, double rate_of_force,
                               double kappa);
 };
 
-/// T along one direction after the other, for some cells and some of their components. The rows of the cells
-/// are looked up once for all components. A workspace of one thread.
+/// Computes T along one direction after the other, for some cells and some of their components. The rows of
+/// the cells are looked up only once for all components. An object is the workspace of a single thread.
 class block_sweep {
  public:
   /// The objects that all sweeps of a transport share.
@@ -40,43 +40,43 @@ class block_sweep {
     const model& equation;                   ///< equation
     const domain& space;                     ///< cells and ghost rows
     const limited_reconstruction& edges;     ///< edge values and limiter
-    const std::vector<line_speeds>& speeds;  ///< of each direction
-    face_fluxes& faces;                      ///< takes the fluxes at surfaces
+    const std::vector<line_speeds>& speeds;  ///< speeds along each direction
+    face_fluxes& faces;                      ///< receives the fluxes at surfaces
   };
-  /// Cells of a segment, along which a sweep goes.
+  /// Consecutive cells of a segment.
   struct stretch {
-    int direction;  ///< of the sweep
+    int direction;  ///< direction of the sweep
     int segment;    ///< number of the segment
-    int begin;      ///< first cell of the segment
-    int end;        ///< one past its last cell
+    int begin;      ///< first cell, counted along the segment
+    int end;        ///< one past the last cell
   };
-  /// Targets of a sweep: acc ← (fresh ? 0 : acc) + α u + β T, α u with the first direction alone.
+  /// Targets of a sweep: acc ← (fresh ? 0 : acc) + α u + β T. Only the first direction adds α u.
   using targets_view = std::span<const target<field, double>>;
 
-  /// Allocates buffers for stretches of `cells` cells and at most `width` components, in boxes of so many
-  /// cells.
+  /// Allocates buffers for stretches of `cells` cells and at most `width` components, in boxes
+  /// of `cells_of_box` cells.
   void reserve(const context& of, int cells, int cells_of_box, int width, std::size_t targets);
-  /// Forgets all stretches. `of` and `u` must outlive the sweeps that follow.
+  /// Discards all stretches. `of` and `u` must outlive the subsequent sweeps.
   void start(const context& of, const field& u);
   /// Looks up the rows of a stretch.
   void visit(const stretch& cells);
   /// Adds T of the components first … last − 1 to the targets, along each stretch in the order of the visits.
-  /// Surfaces at the ends get their upwind values.
+  /// Stores the upwind values at surfaces.
   void run(int first, int last, targets_view targets);
 
  private:
-  /// A stretch, and the first of its rows.
+  /// A stretch with its first row.
   struct visited {
     stretch cells;
-    std::array<int, 2> seen;  ///< cells of the halo before a surface that prescribes what enters
+    std::array<int, 2> seen;  ///< cells of the halo before a surface that prescribes incoming values
     std::size_t first_row;
   };
   /// The part of the phase space that a sweep changes.
   struct place : stretch {
     int first, last;  ///< components
   };
-  /// Either separate cells, or cells that are contiguous in memory, as are their neighbours, and form a
-  /// single "cell" for the kernels.
+  /// Separate cells, or cells that form a single "cell" for the kernels. The latter and their neighbours are
+  /// contiguous in memory.
   struct run_of_cells {
     int cells, joined;
   };
@@ -103,12 +103,12 @@ class block_sweep {
   const context* of_ = nullptr;
   const field* u_ = nullptr;
   std::vector<visited> visited_;
-  std::vector<const double*> visited_rows_;  ///< of all stretches; null where nothing is read
-  std::vector<int> visited_joined_;          ///< rows from each on that are contiguous in memory
+  std::vector<const double*> visited_rows_;  ///< rows of all stretches; null for rows that nothing reads
+  std::vector<int> visited_joined_;          ///< number of contiguous rows from each one
   const segment* segment_ = nullptr;
   const line_speeds* line_ = nullptr;
-  std::vector<const double*> rows_;  ///< of some components
-  const int* joined_ = nullptr;      ///< of each row; null where rows are not joined
+  std::vector<const double*> rows_;  ///< rows of some components
+  const int* joined_ = nullptr;      ///< contiguous rows from each one; null if rows are not joined
   std::vector<upwind::row_target> targets_;
   aligned_vector<double> left_, right_, source_, vacuum_, in_, out_;
   int width_ = 0, first_component_ = 0, halo_ = 0, reach_ = 0, first_row_ = 0, first_edge_ = 0;

@@ -10,23 +10,23 @@
 
 namespace apsis {
 
-/// The unknowns of a semi-discrete problem with what they have received so far.
+/// The unknowns of a semi-discrete problem and the amounts that they have received.
 struct budgeted_state {
   field unknowns;          ///< f[cell][component]
-  boundary_budget budget;  ///< of the invariants, since its last clear()
+  boundary_budget budget;  ///< budget of the invariants since its last clear()
 };
 
 /// A semi-discrete problem with a boundary budget, for integrators of any kind. The budget obeys
 ///   G' = F(t, u)
-/// with the rates F of semidiscrete_problem::budget_rates(), and collisions do not change it. Every linear
-/// combination of states is also applied to their budgets, so that a stage Σ_j (α_ij u_j + β_ij T(u_j)) has
-/// the budget Σ_j (α_ij G_j + β_ij F_j).
+/// with the rates F of semidiscrete_problem::budget_rates(); collisions do not change it. Every linear
+/// combination of states is also applied to their budgets. A stage Σ_j (α_ij u_j + β_ij T(u_j)) thus has the
+/// budget Σ_j (α_ij G_j + β_ij F_j).
 ///
-/// The budget is a part of the state rather than of the integrator or of the problem: only the linear
-/// combinations know the weights of the stages, and every integrator forms them through the verbs of a
-/// problem (integrate/problem.hpp), also where it stores sums of earlier states (IMEX-BDF, two-step methods)
-/// or exchanges states. So no integrator contains a word about budgets, and computations that need none use
-/// the semi-discrete problem with plain fields.
+/// The budget is part of the state, not of the integrator or the problem, because only the linear
+/// combinations have the weights of the stages. Every integrator forms these combinations by the operations
+/// of a problem (integrate/problem.hpp). This includes integrators that store sums of earlier states
+/// (IMEX-BDF, two-step methods) or exchange states. Integrators therefore need no code for budgets.
+/// Computations without a budget use the semi-discrete problem with plain fields.
 class budgeted_problem {
  public:
   using state = budgeted_state;  ///< unknowns and budget
@@ -40,7 +40,7 @@ class budgeted_problem {
     equations_.add_transport(t, u.unknowns, targets_of_unknowns(targets));
     add_rates(u, targets);
   }
-  /// Solves a stage of the unknowns: see semidiscrete_problem.
+  /// Solves a stage of the unknowns, as semidiscrete_problem does.
   void solve_collision(double t, double a, double b, state& u) {
     equations_.solve_collision(t, a, b, u.unknowns);
   }
@@ -52,7 +52,7 @@ class budgeted_problem {
     for (std::size_t k = 0; k < terms.size(); ++k)
       sum.budget.combine(terms[k].alpha, terms[k].u->budget, 0.0, {}, k == 0);
   }
-  /// Projects the unknowns: see semidiscrete_problem.
+  /// Projects the unknowns, as semidiscrete_problem does.
   void project_to_equilibrium(double t, state& u) { equations_.project_to_equilibrium(t, u.unknowns); }
   /// Equivalent to add_transport() followed by solve_collision(due).
   void add_transport_and_solve(double t, const state& u, std::span<const target<state, double>> targets,
@@ -61,22 +61,23 @@ class budgeted_problem {
                                        {due.t, due.a, due.b, &due.u->unknowns});
     add_rates(u, targets);
   }
-  /// acc ← (fresh ? 0 : acc) + α u + β Q(u)/ε for the unknowns, without the last term for the budgets.
+  /// acc ← (fresh ? 0 : acc) + α u + β Q(u)/ε for the unknowns, and the same without the last term
+  /// for the budgets.
   void add_collision(double t, const state& u, std::span<const target<state, double>> targets) {
     equations_.add_collision(t, u.unknowns, targets_of_unknowns(targets));
     combine_budgets(u, targets, {});
   }
   /// Throws the late errors of the problem.
   void throw_late_errors() { equations_.throw_late_errors(); }
-  /// Δt_FE of the problem.
+  /// Returns Δt_FE of the problem.
   double forward_euler_step(double t, const state& u) const {
     return equations_.forward_euler_step(t, u.unknowns);
   }
   /// Required by `problem_with_exact_collision`.
   bool collides_exactly() const { return equations_.collides_exactly(); }
-  /// Whether the model has space or a source.
+  /// Returns true if the model has space or a source.
   bool has_transport(double t, const state& u) const { return equations_.has_transport(t, u.unknowns); }
-  /// Smallest ε/C > 0: see semidiscrete_problem.
+  /// Returns the smallest ε/C > 0, as semidiscrete_problem does.
   double relaxation_time(double t, const state& u) const { return equations_.relaxation_time(t, u.unknowns); }
 
  private:

@@ -16,8 +16,8 @@ struct interval {
   double centre, half;
 };
 
-/// The cell cut at the jumps that lie in it; the cell itself where there are none. A jump on an edge, up to
-/// rounding, cuts nothing.
+/// Returns the parts between the jumps in a cell, or the cell itself if there are no jumps. A jump at an
+/// edge, up to rounding, does not count.
 std::vector<interval> smooth_parts(const std::vector<double>& jumps, double centre, double half) {
   std::vector<double> ends = {centre - half};
   for (auto jump = std::lower_bound(jumps.begin(), jumps.end(), centre - half);
@@ -50,7 +50,7 @@ class averages_of_cells final : public cell_unknown {
       u({x, centre[1], centre[2]}, values);
       for (std::size_t k = 0; k < values.size(); ++k) row[k] += weight * values[k];
     };
-    // Ten points on every smooth part: exact to round-off for data that the mesh resolves at all.
+    // Ten points on every smooth part are exact to rounding for data that the mesh resolves.
     using rule = boost::math::quadrature::gauss<double, 10>;
     for (const auto& part : smooth_parts(jumps, centre[0], half)) {
       for (std::size_t q = 0; q < rule::abscissa().size(); ++q) {
@@ -103,13 +103,14 @@ class interpolation {
  private:
   static constexpr long longest = 8;
 
-  /// Part of a stencil around a position; stencils stay inside a mesh without periodic continuation.
+  /// Returns the first point of the stencil around a position. Stencils stay inside a mesh that is
+  /// not continued periodically.
   long first_point(long position) const {
     const long first = position - (longest / 2 - 1);
     return periodic_ && fine_ >= longest ? first : std::clamp(first, 0L, std::max(0L, fine_ - longest));
   }
 
-  /// The Lagrange polynomial that is 1 at point k of 0 … count−1 and 0 at the others.
+  /// Returns the Lagrange polynomial that is 1 at point k of 0 … count−1 and 0 at the others.
   static double lagrange(double s, long k, long count) {
     double product = 1.0;
     for (long m = 0; m < count; ++m)

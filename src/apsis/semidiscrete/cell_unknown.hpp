@@ -9,27 +9,28 @@
 
 namespace apsis {
 
-/// A state u(x): u ← the components at a point of space; at a jump, those of its right side.
+/// A state u(x): u ← the components at a point of space. At a jump it takes the values of the right side.
 using state_function = std::function<void(const position& x, std::span<double> u)>;
 
 /// A point of a cell along the first direction, with its weight in a sum over the cell.
 struct weighted_point {
-  double offset,  ///< from the centre, in cell widths: |offset| ≤ ½
-      weight;     ///< of a sum of weights 1
+  double offset,  ///< distance from the centre in cell widths, |offset| ≤ ½
+      weight;     ///< weight in a sum of weights 1
 };
 
-/// The meaning of the number of a cell and component: a linear functional of u(x) in the cell.
+/// The meaning of the numbers of a cell: a linear functional of u(x) in the cell.
 class cell_unknown {
  public:
   virtual ~cell_unknown() = default;
 
-  /// Returns the plural noun of messages: "cell averages".
+  /// Returns the plural noun for messages: "cell averages".
   virtual std::string plural() const = 0;
-  /// Returns its value for ξ², ξ = (x − centre)/Δx: 1/12 for averages, 0 for values at centres.
+  /// Returns the value of the functional for ξ², ξ = (x − centre)/Δx: 1/12 for averages, 0 for
+  /// values at centres.
   virtual double second_moment() const = 0;
-  /// Returns the points of a quadrature of it, exact for quartics.
+  /// Returns the points of a quadrature of the functional, exact for quartics.
   virtual std::span<const weighted_point> points() const = 0;
-  /// Whether it is the value at one point.
+  /// Returns true if the functional is the value at one point.
   bool pointwise() const { return points().size() == 1; }
 
   /// row ← row + the unknowns of u(x) in a cell of width `width` along the first direction; exact to rounding
@@ -37,7 +38,8 @@ class cell_unknown {
   virtual void sample(const state_function& u, const std::vector<double>& jumps, const position& centre,
                       double width, std::span<double> values, double* row) const = 0;
 
-  /// Returns why unknowns of `finer` cells of a line have no counterpart on `cells` cells; "" if they have.
+  /// Returns why unknowns of `finer` cells of a line have no counterpart on `cells` cells; "" if
+  /// they have one.
   virtual std::string why_not_restricted(int finer, int cells) const;
   /// Returns unknowns of a finer mesh, [cells][components], on a coarser mesh of the same line. Requires
   /// why_not_restricted() to be "".
@@ -45,12 +47,12 @@ class cell_unknown {
                                          bool periodic) const = 0;
 };
 
-/// Averages over cells of a line. Restricted exactly, as averages of averages; the number of cells must be a
-/// multiple.
+/// Cell averages on a line. They are restricted exactly, as averages of averages. The finer number of cells
+/// must be a multiple of the coarser one.
 const cell_unknown& cell_averages();
 
-/// Values at the centres of cells. Restricted by the polynomial through the eight nearest centres (eighth
-/// order, to preserve the fifth order of the schemes; fewer points on smaller meshes).
+/// Values at the centres of cells. They are restricted by the polynomial through the eight nearest centres,
+/// or fewer on smaller meshes. Its eighth order preserves the fifth order of the schemes.
 const cell_unknown& point_values();
 
 }  // namespace apsis

@@ -13,7 +13,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace apsis::HWY_NAMESPACE {
 
-/// Values of sizeof...(Row) − 12 cells, so that neighbours share the loads of their rows.
+/// Computes the values of sizeof...(Row) − 12 cells together, so that neighbours share loaded rows.
 template <class N, std::size_t... Row>
 HWY_INLINE void values_of_some(const double* const* u, bool limited, int k, int width, double* points,
                                std::index_sequence<Row...>) {

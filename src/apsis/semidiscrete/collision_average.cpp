@@ -56,7 +56,7 @@ class cell_average_collision final : public collision {
     });
   }
 
-  /// With the rate of the averages; the rates at the Gauss points differ by the accuracy of the scheme.
+  /// Uses the rate of the averages. The rates at the Gauss points differ only by the accuracy of the scheme.
   double forward_euler_step(const field& u) const override {
     return smallest_time(equation_, u, epsilon_, gauss3::points, limited(),
                          &point_collision::forward_euler_step);

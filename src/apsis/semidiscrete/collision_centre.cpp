@@ -28,7 +28,8 @@ class cell_centre_collision final : public collision {
     space_->reserve(equation.components(), centre_rows::reach);
   }
 
-  /// The averages change by M d with d = v − p. Rows of d have no moments, so collisions conserve for any p.
+  /// The averages change by M d with d = v − p. Rows of d have no moments, so that collisions conserve
+  /// for any p.
   void solve(double, double a, double b, field& u) override {
     find_changes(u, limited_, [&](const point_batch& at, scratch& own) {
       double *points = own.points.data(), *d = changes_.row(at.first_cell);
@@ -66,7 +67,7 @@ class cell_centre_collision final : public collision {
     });
   }
 
-  /// With the rate of the averages, as for collisions at Gauss points.
+  /// Uses the rate of the averages, as for collisions at Gauss points.
   double forward_euler_step(const field& u) const override {
     return smallest_time(equation_, u, epsilon_, 1, limited_, &point_collision::forward_euler_step);
   }
@@ -90,8 +91,8 @@ class cell_centre_collision final : public collision {
         .count = end - begin, .pitch = u.stride(), .epsilon = epsilon_.data() + begin, .first_cell = begin};
   }
 
-  /// Where ū + d, d = v − p, has negative components, p is replaced by min(p, ū) in these, then in all: v ≥ 0
-  /// and p ≤ ū leave none.
+  /// If ū + d, d = v − p, has negative components, replaces p by min(p, ū) in these components, and finally
+  /// in all. Then v ≥ 0 and p ≤ ū leave no negative component.
   static void keep_sign(double a, double b, const double* average, const point_batch& at, double* p,
                         point_collision& local, double* d) {
     constexpr int rounds = 3;
@@ -117,9 +118,9 @@ class cell_centre_collision final : public collision {
     });
   }
 
-  /// Calls body(batch, scratch) for batches of cells, with the values at their centres in scratch.points; it
-  /// writes rows of changes_. Then the changes go to other processes, which wait for them even if this one
-  /// has failed.
+  /// Calls body(batch, scratch) for batches of cells, with the values at their centres in scratch.points. The
+  /// body writes rows of changes_. The changes are then sent to other processes, even after a failure,
+  /// because these processes wait for them.
   template <class Body>
   void find_changes(const field& u, bool limited, const Body& body) {
     prepare(u);
@@ -157,14 +158,14 @@ class cell_centre_collision final : public collision {
       scratch& own = scratch_.here();
       rows_of(u, begin - 1, end + 1, own.averages);
       rows_of(changes_, begin - 1, end + 1, own.changes);
-      // Rows of other processes are those of the changes by now.
+      // The memory for rows of other processes now has their changes.
       if (begin == 0) own.averages.front() = across_[0].data();
       if (end == u.cells()) own.averages.back() = across_[1].data();
       body(begin, end - begin, own.averages.data() + 1, own.changes.data() + 1, own);
     });
   }
 
-  /// rows ← those of cells begin … end−1, mirrored where the gas ends: no flux of M passes a wall.
+  /// rows ← the rows of cells begin … end−1, mirrored where the gas ends: no flux of M passes a wall.
   void rows_of(const field& of, int begin, int end, std::vector<const double*>& rows) const {
     space_->segment_rows(of, 0, 0, begin, end, rows);
     const segment& line = space_->segment_at(0, 0);
@@ -181,10 +182,10 @@ class cell_centre_collision final : public collision {
   bool limited_;
   std::vector<double> epsilon_;
   stage_solution stages_;
-  field changes_,  ///< of the point values in a stage, or their rates
-      result_;     ///< neighbours need the old averages
+  field changes_,  ///< changes of the point values in a stage, or their rates
+      result_;     ///< new averages, while neighbours need the old ones
   std::array<aligned_vector<double>, 2>
-      across_;  ///< averages of the cells before the first and after the last
+      across_;  ///< averages of the cells before the first and after the last one
   per_thread<scratch> scratch_;
 };
 

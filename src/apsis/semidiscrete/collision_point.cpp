@@ -81,7 +81,7 @@ class pointwise_collision final : public cellwise_collision {
         .count = end - begin, .pitch = u.stride(), .epsilon = epsilon_.data() + begin, .first_cell = begin};
   }
 
-  /// body(begin, end) for blocks of cells that make a batch, on all threads.
+  /// Calls body(begin, end) for blocks of cells that form a batch, on all threads.
   template <class Body>
   void for_blocks(const field& u, const Body& body) const {
     parallel_blocks(u.cells(), points_per_batch(u.stride()),

@@ -28,12 +28,13 @@ struct quartic_rows {
       *right;            ///< value at the edge between i and i+1
 };
 
-/// points[q·width + k] ← values of the quartics (scheme/quartic.hpp) at the Gauss–Legendre points; `limited`:
-/// moved towards the average until these and those at the Gauss–Lobatto points are not negative.
+/// points[q·width + k] ← values of the quartics (scheme/quartic.hpp) at the Gauss–Legendre points. If
+/// `limited`, the quartics are moved towards the average until their values there and at the Gauss–Lobatto
+/// points are nonnegative.
 void gauss_values(const quartic_rows& cell, bool limited, int width, double* points);
 
-/// Operations of gauss_values() for one number of a row, all three points; a multiply–add is one
-/// (exec/counted.hpp).
+/// Returns the operations of gauss_values() for one number of a row at all three points (exec/counted.hpp). A
+/// multiply–add counts as one.
 double operations_of_points(bool limited);
 
 }  // namespace collision_rows

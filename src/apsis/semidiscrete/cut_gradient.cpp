@@ -9,10 +9,11 @@
 namespace apsis {
 namespace {
 
-/// Directions in which neighbours lie less than this share apart, of the most, have no slope.
+/// Directions have no slope if the eigenvalue of the spread of the neighbours is below this fraction of
+/// the largest one.
 constexpr double least_spread = 1e-3;
 
-/// Returns the pseudoinverse of a symmetric matrix of least squares.
+/// Returns the pseudoinverse of the symmetric matrix of a least-squares problem.
 Eigen::Matrix3d pseudo_inverse(const Eigen::Matrix3d& m) {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> of(m);
   Eigen::Matrix3d inverse = Eigen::Matrix3d::Zero();
@@ -25,7 +26,7 @@ Eigen::Matrix3d pseudo_inverse(const Eigen::Matrix3d& m) {
 }  // namespace
 
 std::vector<gradient_weight> gradient_weights(const cut_cells& cut, int group) {
-  std::map<int, Eigen::Vector3d> around;  // vectors to their centroids, by their first cells
+  std::map<int, Eigen::Vector3d> around;  // vectors to neighbours, by their first cells
   for (const int f : cut.groups()[at(group)].faces) {
     const open_face& one = cut.faces()[at(f)];
     const bool is_below = one.below >= 0 && cut.group_of(one.below) == group;

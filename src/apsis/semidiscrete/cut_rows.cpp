@@ -24,7 +24,7 @@ using cut_rows::extent;
 using cut_rows::line;
 using cut_rows::way_out;
 
-/// The share of some components that leaves. The sign does not depend on the rate.
+/// Returns the leaving part of some components. Its sign does not depend on the rate.
 template <class N>
 HWY_INLINE N leaving_share(const way_out& way, int directions, int k) {
   N sum = N::load(way.speeds[0] + k) * N(way.normal[0]);
@@ -33,7 +33,7 @@ HWY_INLINE N leaving_share(const way_out& way, int directions, int k) {
   return N(way.rate) * sum;
 }
 
-/// The line at its point, of some components that leave.
+/// Returns the linear function at its point, for some components that leave.
 template <class N>
 HWY_INLINE N value_at(const line& of, int directions, int k) {
   N correction = N::load(of.slopes[0] + k) * N(of.vector[0]);
@@ -50,7 +50,7 @@ void project(const way_out& way, const extent& of, double* outward) {
   });
 }
 
-/// The gradient of some components.
+/// Returns the gradient of some components.
 template <std::size_t Directions, class N>
 HWY_INLINE std::array<N, Directions> gradient_at(N here, std::span<const neighbour> around, int k) {
   std::array<N, Directions> sum;
@@ -62,7 +62,7 @@ HWY_INLINE std::array<N, Directions> gradient_at(N here, std::span<const neighbo
   return sum;
 }
 
-/// Calls loop(direction count) with a constant.
+/// Calls loop() with the number of directions as a compile-time constant.
 template <class Loop>
 HWY_INLINE void with_directions(int directions, const Loop& loop) {
   if (directions == 1) return loop(std::integral_constant<std::size_t, 1>());
@@ -81,7 +81,7 @@ void fit(const double* u, std::span<const neighbour> around, const extent& of, c
   });
 }
 
-/// The factor of the limiter of some components.
+/// Returns the factor of the limiter for some components.
 template <std::size_t Directions, class N>
 HWY_INLINE N factor_at(N here, const std::array<N, Directions>& slopes, const line_bounds& within, int k) {
   cut_demand<N> sums{N(0.0), N(0.0), N(0.0)};
@@ -127,7 +127,7 @@ void leave_alone(const way_out& way, const line& here, const extent& of, double*
   });
 }
 
-/// The values that pass through a face.
+/// Returns the values that pass through a face.
 template <std::size_t Directions, class N>
 HWY_INLINE N passing(const crossing& face, const line& here, N outward, int k) {
   constexpr auto directions = static_cast<int>(Directions);

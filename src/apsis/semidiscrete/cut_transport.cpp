@@ -11,7 +11,7 @@
 namespace apsis {
 namespace {
 
-/// Rows of scratch memory, by their use.
+/// Rows of scratch memory, named by their use.
 enum scratch_row : int { outward_row, values_row, rate_row, inward_row, made_row, ghost_rows };
 
 constexpr int groups_of_task = 4;
@@ -29,7 +29,7 @@ cut_rows::gradient cut_transport::slopes_of(int number) {
   return slopes;
 }
 
-/// Returns the line of a group, to a point at a vector from its centroid.
+/// Returns the line of a group at a vector from its centroid.
 cut_rows::line cut_transport::line_of(const field& u, int number, const std::array<double, 3>& vector) {
   return {here_.row(u, groups_[at(number)].place), slopes_of(number), vector, limited_};
 }
@@ -82,7 +82,7 @@ void cut_transport::complete(int surface, int place, const field& u,
 /// Returns the upwind values at the end of a segment at an open face.
 const double* cut_transport::recorded_at(int f) {
   const open_face& one = cut().faces()[at(f)];
-  const bool is_above = cut().group_of(one.below) < 0;  // the group
+  const bool is_above = cut().group_of(one.below) < 0;  // the group lies above
   const int surface = border_at(one.direction, !is_above);
   const int cell = here_.number_here(is_above ? one.below : one.above);
   return faces_.recorded(surface, places_.at({surface, cell}));
@@ -134,7 +134,7 @@ void cut_transport::add_group(double t, const field& u, int number, double* rate
   pass_crossings();
 }
 
-/// Returns the line of the other group, or the value at the face of a whole cell.
+/// Returns the line of the other group, or the value of a whole cell at the face.
 cut_rows::line cut_transport::beyond(const field& u, const way& one) {
   if (one.to == way::kind::group) return line_of(u, one.number, one.from_other);
   return {one.surface >= 0 ? faces_.recorded(one.surface, one.number) : here_.values_at_face(one.number),
@@ -143,14 +143,14 @@ cut_rows::line cut_transport::beyond(const field& u, const way& one) {
           limited_};
 }
 
-/// Adds the flux through a face of the domain or a wall, also to the boundary budget.
+/// Adds the flux through a face of the domain or a wall, and its contribution to the boundary budget.
 void cut_transport::pass_end(double t, const way& one, const cut_rows::line& here, double* rate,
                              scratch& own) {
   const int n = equation_.components();
   double *outward = own.rows.row(outward_row), *values = own.rows.row(values_row),
          *inward = own.rows.row(inward_row);
   cut_rows::project(out_by(one), size(), outward);
-  std::copy_n(here.value, n, values);  // of components along the wall
+  std::copy_n(here.value, n, values);  // kept for components along the wall
   cut_rows::leave(outward, here, size(), values);
   if (one.to == way::kind::domain) {
     domain_values(t, one, values, own);
@@ -166,8 +166,8 @@ void cut_transport::pass_end(double t, const way& one, const cut_rows::line& her
   cut_rows::take(outward, values, n, rate);
 }
 
-/// Replaces the values that enter through a face of the domain. A boundary sees a cell with the values at the
-/// face.
+/// Replaces the values that enter through a face of the domain. The boundary gets a single cell with the
+/// values at the face.
 void cut_transport::domain_values(double t, const way& one, double* values, scratch& own) {
   const face where = face_of(at(one.surface));
   const boundary& side = *space_->side(one.surface);
@@ -177,7 +177,7 @@ void cut_transport::domain_values(double t, const way& one, double* values, scra
   side.fill(where, t, {{&inside, 1}, own.ghosts, space_->space().velocities, n, x});
   const double* entering = own.ghosts.front();
   double* outgoing = own.rows.row(inward_row);
-  // The cell itself is all that the boundary sees.
+  // The boundary gets only this cell.
   if (side.prescribes_incoming(1, static_cast<int>(own.ghosts.size()))) {
     std::copy_n(values, n, outgoing);
     face_rows::keep_leaving(inward_[where.index()].data(), n, outgoing);

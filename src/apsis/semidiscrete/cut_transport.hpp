@@ -23,58 +23,60 @@
 
 namespace apsis {
 
-/// Transport in cut cells, by fluxes between straight lines. A cut cell i with the volume V_i of gas and the
-/// centroid x_i has the line
-///     f_i + ϑ g·(x − x_i),   g by least squares from the neighbours behind open faces (weights 1/distance²),
-/// with ϑ ≤ 1 of each velocity such that a step lets out no more than f_i. With a limiter, values that leave
-/// are cut at 0. Then
-///     T_i = (1/V_i) (Σ_faces |v·e| a (f_up) in − out + Σ_walls A v·n f_w),
-/// where f_up is the line of the donor at the middle of the open face, or the limited edge value of a whole
-/// cell. At a wall with the normal n into the gas, f_w is the line for v·n < 0 and what the wall emits for
-/// v·n > 0. Both sides of a face use the same value, so that the invariants are conserved.
+/// Transport in cut cells, by fluxes between linear functions ("lines"). A cut cell i with the volume V_i of
+/// gas and the centroid x_i has the line
+///     f_i + ϑ g·(x − x_i).
+/// A least-squares fit to the neighbours behind open faces gives g (weights 1/distance²). The limiter ϑ ≤
+/// 1 of each velocity ensures that at most f_i leaves in a step. With a limiter, leaving values are cut
+/// at 0. Then
+///     T_i = (1/V_i) (Σ_faces |v·e| a (f_up) in − out + Σ_walls A v·n f_w).
+/// Here f_up is the line of the upwind group at the middle of the open face, or the limited edge value
+/// of a whole cell. The normal n of a wall points into the gas. There f_w is the line for v·n < 0, and
+/// the emission of the wall for v·n > 0. Both sides of a face use the same value, so that the
+/// invariants are conserved.
 ///
-/// Values remain nonnegative within Δt_FE: what leaves is at most f_i, and what enters is nonnegative.
+/// Values remain nonnegative within Δt_FE: at most f_i leaves, and nonnegative values enter.
 class cut_transport {
  public:
-  /// `equation` and `faces` must outlive the object. Throws input_error if a boundary of a body cannot have
-  /// any normal.
+  /// `equation` and `faces` must outlive the object. Throws input_error if a boundary of a body does not
+  /// support all normals.
   cut_transport(const model& equation, std::shared_ptr<domain> space, const limited_reconstruction& edges,
                 face_fluxes& faces);
 
-  /// Evaluates lines at walls in the plane half-way between the corners of their pieces, in place of a point
-  /// of the body: the flux of a linear function through the surface of a cell is then exact to rounding. In
-  /// axisymmetric flow uniform gas is such a function.
+  /// Evaluates lines at walls in the plane half-way between the corners of their pieces, instead of at a
+  /// point of the body. The flux of a linear function through the surface of a cell is then exact to
+  /// rounding. In axisymmetric flow a uniform gas is such a function.
   void use_chords();
-  /// For steps of at most this length, in which transport may take the share `kept` of a value of each
-  /// component.
+  /// Prepares for steps of at most this length. In such a step transport may take the fraction `kept` of a
+  /// value of each component.
   void limit_for_steps(double step, aligned_vector<double> kept);
-  /// Computes the lines of u. Collective.
+  /// Computes the lines from u. Collective.
   void prepare(const field& u);
-  /// Adds what enters a whole cell from a cut one, at an end of a segment. Concurrent calls must differ in
-  /// the cell at the end.
+  /// Adds the flux that enters a whole cell from a cut cell, at an end of a segment. Concurrent calls must
+  /// differ in the cell at the end.
   void complete(int surface, int place, const field& u, std::span<const target<field, double>> targets);
-  /// Adds T(t, u) to the cut cells, after the whole cells are complete, and then calls `then` for each.
-  /// Collective.
+  /// Adds T(t, u) to the cut cells after the whole cells are complete, and calls `then` for each
+  /// cut cell. Collective.
   void add(double t, const field& u, std::span<const target<field, double>> targets, const cells_job& then);
 
  private:
   /// An open face of a group, or a piece of wall.
   struct way {
     enum class kind { group, whole, domain, wall } to;
-    int number;                    ///< of the group, end of the border, open face or wall; < 0: not here
+    int number;                    ///< number of the group, border end, open face or wall; < 0: not here
     std::array<double, 3> normal,  ///< unit vector out of the gas at a face, into it at a wall
-        from_centre,               ///< vector to its middle
+        from_centre,               ///< vector to its middle from the centroid
         from_other = {};           ///< vector to it from the centroid of the other group
     double rate = 0.0;             ///< area / volume; negative at a wall, so that both have the sign of v·n
-    int surface = -1;              ///< of the border, or the face of the domain; −1: of another process
+    int surface = -1;              ///< surface of the border, or face of the domain; −1: another process
   };
   struct neighbour {
-    int place;  ///< of its row, as in local_groups
+    int place;  ///< place of its row, as in local_groups
     std::array<double, 3> weight;
   };
   struct group {
-    int place;               ///< of its row, as in local_groups
-    std::vector<int> cells;  ///< of this process; none if its lines alone are needed
+    int place;               ///< place of its row, as in local_groups
+    std::vector<int> cells;  ///< cells of this process; none if only its lines are needed
     std::vector<way> ways;
     std::vector<neighbour> around;
   };
@@ -120,17 +122,17 @@ class cut_transport {
   aligned_vector<double> kept_;
   std::array<const double*, 3> speeds_ = {};
   std::array<std::vector<double>, 6> inward_;               ///< speed away from each face of a cell
-  std::vector<std::shared_ptr<const oblique_wall>> walls_;  ///< of boxes and bodies
-  std::vector<group> groups_;                               ///< those of local_groups::fitted()
-  std::vector<int> number_of_;  ///< of groups of the mesh among these; −1 for others
-  /// Ends of segments at cut cells, by surface and cell.
+  std::vector<std::shared_ptr<const oblique_wall>> walls_;  ///< walls of boxes and bodies
+  std::vector<group> groups_;                               ///< groups of local_groups::fitted()
+  std::vector<int> number_of_;  ///< index in groups_ of each group of the mesh; −1 for others
+  /// Place of the end of a segment at a cut cell, by surface and cell.
   std::map<std::pair<int, int>, int> places_;
-  /// The group and the way beyond each end at the border: [surface][place].
+  /// Group and way beyond each end at the border, [surface][place].
   struct border_end {
     int group = -1, way = -1;
   };
   std::vector<std::vector<border_end>> ends_;
-  field slopes_;  ///< limited, [group][direction]
+  field slopes_;  ///< limited slopes, [group][direction]
   per_thread<scratch> scratch_;
 };
 

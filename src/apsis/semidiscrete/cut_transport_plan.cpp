@@ -60,7 +60,7 @@ void cut_transport::find_places_at_border() {
   }
 }
 
-/// Finds where the gas of a group may go.
+/// Finds the faces and walls through which the gas of a group may leave.
 void cut_transport::add_ways(int number) {
   const cut_group& from = cut().groups()[at(number)];
   const int index = number_of_[at(number)];
@@ -91,7 +91,7 @@ void cut_transport::use_chords() {
     }
 }
 
-/// Returns the surface at which segments end beside cut cells.
+/// Returns the surface at which segments end next to cut cells.
 int cut_transport::border_at(int direction, bool cut_is_below) const {
   return 2 * directions() * (space_->mesh().obstacles() + 1) +
          static_cast<int>(face{direction, cut_is_below}.index());
@@ -129,7 +129,7 @@ cut_transport::way cut_transport::way_through(int number, int f) const {
   return made;
 }
 
-/// Finds the weights of the neighbours in the slopes of a group.
+/// Computes the weights of the neighbours in the slopes of a group.
 void cut_transport::add_neighbours(int number) {
   for (const auto& [cell, weight] : gradient_weights(cut(), number))
     groups_[at(number_of_[at(number)])].around.push_back({here_.place_of(cell), weight});

@@ -10,7 +10,7 @@
 namespace apsis {
 namespace {
 
-/// The end of an open face or wall whose cell another process holds.
+/// The end of an open face or wall with a cell of another process.
 constexpr std::size_t of_others = static_cast<std::size_t>(-1);
 
 std::size_t index(int k) {
@@ -42,7 +42,7 @@ face_fluxes::face_fluxes(const model& equation, std::shared_ptr<domain> space)
     for (const int number : one.cut_faces) open_faces_[index(number)] = ends_++;
     for (const int number : one.walls) walls_[index(number)] = ends_++;
   }
-  // Fluxes from whole cells to cut ones stay in the gas.
+  // Fluxes from whole cells to cut cells stay in the gas.
   for (std::size_t k = 0; k < sides_.size(); ++k)
     if (space_->is_border_of_cut_cells(static_cast<int>(k)))
       sides_[k].values = field(space_->surfaces()[k].own, equation.components());
@@ -74,7 +74,7 @@ void face_fluxes::account(int surface, int place) {
     continue_along(surface, place);
     observe_end(here.first + index(place), here.inward, values);
   }
-  // The row becomes that of the fluxes; invariants are linear functions of a row.
+  // The row becomes that of the fluxes, since invariants are linear functions of a row.
   face_rows::multiply(here.inward.data(), equation_.components(), values);
   double* received = rates_.data() + (here.first + index(place)) * invariants_;
   equation_.invariant_densities(values, received);
@@ -93,8 +93,8 @@ void face_fluxes::complete(int surface, int place, double t, std::span<const tar
   account(surface, place);
 }
 
-/// Components along a face have no flux through it: beyond a face that prescribes the others they are
-/// continued, and the mean of both sides is the value at the face.
+/// Sets the values of components along a face, which have no flux through it. If a boundary prescribes the
+/// others, its ghost rows continue these components. The value at the face is the mean of both sides.
 void face_fluxes::continue_along(int surface, int place) {
   side& here = at(surface);
   double* values = here.values.row(place);

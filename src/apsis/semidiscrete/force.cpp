@@ -19,8 +19,8 @@
 namespace apsis {
 namespace {
 
-constexpr int least_points = 5;       // on which an edge depends
-constexpr double kappa = 1.0 / 12.0;  // of limited fluxes along velocities
+constexpr int least_points = 5;       // points on which an edge depends
+constexpr double kappa = 1.0 / 12.0;  // CFL number of limited fluxes along velocities
 constexpr int cells_of_task = 16;
 
 std::size_t size(int n) {
@@ -33,7 +33,7 @@ std::size_t size(int n) {
 struct force::workspace {
   aligned_vector<double> sum,  ///< change of the row of a cell
       into_last,               ///< fluxes into the last points of all lines
-      scratch;                 ///< of lattice_rows::add_changes()
+      scratch;                 ///< scratch memory of lattice_rows::add_changes()
 };
 
 force::~force() = default;
@@ -74,7 +74,7 @@ double force::rate() const {
   return limited_ ? sum / kappa : sum;
 }
 
-/// The layout of the rows along a direction.
+/// Returns the layout of the rows along a direction.
 lattice_rows::layout force::layout_along(std::size_t direction) const {
   const int points = lattice_.points[direction];
   int apart = 1;
@@ -108,7 +108,7 @@ void force::add(double t, const field& u, std::span<const target<field, double>>
   failure.rethrow();
 }
 
-/// Sets what was given and lost from the sums of all cells.
+/// Computes the amounts that were given and lost from the sums of all cells.
 void force::integrate() const {
   const std::vector<double> all = global_integrals(*space_, of_cells_, sums_of_cell());
   const auto first_loss = all.begin() + static_cast<std::ptrdiff_t>(invariants_);
@@ -179,7 +179,8 @@ lattice_rows::flux_rule force::rule_for(double a) const {
   return {fifth_order_, limited_, a > 0.0, 1.0 / std::max(limiter::least_cfl_number, kappa * share_)};
 }
 
-/// Adds −a ∂f/∂v along one direction to the sum, or sets it; returns the mass that enters the last points.
+/// Adds −a ∂f/∂v along one direction to the sum, or sets the sum. Returns the mass that enters
+/// the last points.
 double force::add_direction(const double* row, std::size_t direction, double a, bool fresh,
                             workspace& here) const {
   const lattice_rows::layout at = layout_along(direction);
@@ -190,7 +191,7 @@ double force::add_direction(const double* row, std::size_t direction, double a, 
   return rate * mass_into_ends(at, rule.forward, here.into_last.data());
 }
 
-/// Of the functions on the velocities, the first is the density of the mass.
+/// Only the first set of functions on the velocities counts: it is the density of the mass.
 double force::mass_into_ends(const lattice_rows::layout& at, bool forward, const double* into_last) const {
   const auto weights = equation_.velocities().weights();
   const int last = forward ? at.block() - at.apart : 0;

@@ -18,50 +18,51 @@
 
 namespace apsis {
 
-/// The part −a(t, x)·∇_v f of T on a velocity lattice: conservative differences of the linear fifth-order
-/// upwind reconstruction along v, no flux through the ends of the lattice, and limited fluxes where
-/// positivity is kept (limited_reconstruction). The sums of the reconstruction make the discrete force give
-/// the momentum ρa and the energy ρu·a per unit of time, to rounding, but for limited fluxes and molecules at
-/// the ends of the lattice. losses() measures the difference. Dimensionless.
+/// The part −a(t, x)·∇_v f of T on a velocity lattice. It uses conservative differences of the linear
+/// fifth-order upwind reconstruction along v. There is no flux through the ends of the lattice, and fluxes
+/// are limited if positivity is required (limited_reconstruction). To rounding, the sums of the
+/// reconstruction give the momentum ρa and the energy ρu·a per unit of time. Exceptions are limited fluxes
+/// and molecules at the ends of the lattice; losses() measures the difference. Dimensionless.
 class force {
  public:
   /// `equation` must outlive the object. Throws input_error if its velocities are no lattice of at least five
-  /// points, or `of` has no finite bound.
+  /// points, or if `of` has no finite bound.
   force(const model& equation, std::shared_ptr<domain> space, acceleration of,
         const limited_reconstruction& edges);
   ~force();
-  force(force&&) noexcept;  ///< leaves the source empty
+  force(force&&) noexcept;  ///< leaves the moved-from object empty
 
-  /// acc ← acc + β (−a·∇_v u) for every target. Throws numerical_error where a is not finite or larger than
-  /// its bound.
+  /// acc ← acc + β (−a·∇_v u) for every target. Throws numerical_error if a is not finite or
+  /// exceeds its bound.
   void add(double t, const field& u, std::span<const target<field, double>> targets) const;
-  /// Returns the invariants that the last add() gave per unit of time and β.
+  /// Returns the amounts of the invariants that the last add() gave per unit of time and β.
   const std::vector<double>& given() const { return given_; }
-  /// Returns what the ends of the lattice changed in the last add(), per unit of time and β, in the layout of
-  /// force_losses.
+  /// Returns the losses at the ends of the lattice and by limited fluxes in the last add(), per unit of time
+  /// and β, in the layout of force_losses.
   const std::vector<double>& losses() const { return losses_; }
-  /// Returns the rate 1/Δt_FE of the force alone: Σ_k |a_k|/Δv with the bounds, and 12 times that where
-  /// fluxes are limited. Between neighbouring velocities f may differ by powers of ten, so that limiting
-  /// fluxes for steps up to Δv/|a| would cost accuracy. A force is weak beside the motion through cells, so
-  /// that short steps cost little.
+  /// Returns the rate 1/Δt_FE of the force alone: Σ_k |a_k|/Δv with the bounds, and 12 times this rate for
+  /// limited fluxes. Between neighbouring velocities f may differ by powers of ten, so that limited fluxes
+  /// for steps up to Δv/|a| would cost accuracy. The short steps cost little, because a force is weak
+  /// compared with the motion through cells.
   double rate() const;
-  /// Tells the limiter that β rate() ≤ share α in all calls to come, 0 < share ≤ 1 (initially 1).
+  /// Sets the bound of the limiter: β rate() ≤ share α in all later calls, 0 < share ≤ 1 (initially 1).
   void limit_for_steps(double share) { share_ = share; }
 
-  /// Returns a in a cell. Throws numerical_error where it is not finite or larger than its bound.
+  /// Returns a in a cell. Throws numerical_error if a is not finite or exceeds its bound.
   std::array<double, 3> acceleration_in(double t, int cell) const;
   /// Returns the layout of rows along a direction of the lattice.
   lattice_rows::layout layout_along(std::size_t direction) const;
-  /// Returns how fluxes along a direction with the acceleration a are found.
+  /// Returns the rule for fluxes along a direction with the acceleration a.
   lattice_rows::flux_rule rule_for(double a) const;
-  /// Returns |a|/Δv of a direction.
+  /// Returns |a|/Δv along a direction.
   double rate_along(std::size_t direction, double a) const {
     return std::abs(a) / lattice_.spacing[direction];
   }
-  /// Returns how many sums a cell has: the invariants that the force gave, the invariants of its row, and the
-  /// mass that entered the last points (force_losses).
+  /// Returns the number of sums of a cell: the invariants that the force gave, the invariants of its row, and
+  /// the mass that entered the last points (force_losses).
   std::size_t sums_of_cell() const { return invariants_ + losses_.size(); }
-  /// Sets given() and losses() from the sums of every cell, whose accelerations are at(cell). Collective.
+  /// Computes given() and losses() from the sums of every cell; at(cell) returns
+  /// its acceleration. Collective.
   void balance(std::span<const double> sums, const std::function<std::array<double, 3>(int)>& at) const;
 
  private:
@@ -78,7 +79,7 @@ class force {
   velocity_lattice lattice_;
   acceleration acceleration_;
   bool limited_;
-  double share_ = 1.0;  ///< that the limiter is for
+  double share_ = 1.0;  ///< bound for the limiter
   bool fifth_order_;
   std::size_t invariants_;
   mutable std::vector<double> of_cells_;  ///< invariants given to a cell, and its losses

@@ -5,8 +5,8 @@
 namespace apsis {
 
 /// Losses of a force at the ends of the velocities and by limited fluxes, among the amounts of a
-/// boundary_budget. Layout, with N invariants of a gas:
-///     held       mass that entered the last velocities in the direction of the force, which it cannot leave
+/// boundary_budget. The layout is, with N invariants of a gas:
+///     held       mass that entered the last velocities in the direction of the force and cannot leave them
 ///     lost       ∫(ρa − given) of the N − 2 components of the momentum, ∫(ρu·a − given) of the energy
 ///     drive      ∫ρ|a|
 struct force_losses {

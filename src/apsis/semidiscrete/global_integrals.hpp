@@ -8,8 +8,8 @@
 
 namespace apsis {
 
-/// Returns the integrals over the whole mesh of `count` densities that are given in every cell of this
-/// process, [cell][count]. Collective; independent of the numbers of processes and threads.
+/// Returns the integrals of `count` densities over the whole mesh, from their values in every cell of this
+/// process, [cell][count]. Collective. The result does not depend on the numbers of processes and threads.
 std::vector<double> global_integrals(const domain& space, std::span<const double> densities,
                                      std::size_t count);
 

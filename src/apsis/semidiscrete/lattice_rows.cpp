@@ -14,16 +14,16 @@ namespace apsis::HWY_NAMESPACE {
 using N = pack<wide>;
 constexpr int lanes = static_cast<int>(hn::MaxLanes(wide()));
 
-/// Lines whose numbers at a point are beside each other: those of point j are `pitch` numbers from those of
-/// point j − 1.
+/// Lines with adjacent numbers at each point. The numbers of point j are `pitch` numbers after those of point
+/// j − 1.
 struct bundle {
   const double* values;
   double *sum, *into_last;
   std::ptrdiff_t pitch;
-  int points, count;  ///< count: lines, at most a vector
+  int points, count;  ///< `count`: number of lines, at most a vector
 };
 
-/// The values of a bundle in the direction of motion, vacuum beyond its ends.
+/// The values of a bundle in the direction of motion, with a vacuum beyond its ends.
 template <bool Whole>
 class values_along {
  public:
@@ -79,9 +79,9 @@ void change_bundle_by(const bundle& of, const lattice_rows::flux_rule& rule, dou
   change_lines<false, false>(of, rule, rate, fresh);
 }
 
-/// Exchanges rows and columns of a square of lanes².
+/// Transposes a square of lanes² numbers.
 HWY_INLINE void transpose([[maybe_unused]] N (&row)[lanes]) {
-#if HWY_TARGET != HWY_SCALAR  // which has no such operations
+#if HWY_TARGET != HWY_SCALAR  // a target without such operations
   const wide d;
   if constexpr (lanes >= 2)
     for (int k = 0; k < lanes; k += 2) {
@@ -111,13 +111,14 @@ HWY_INLINE void transpose([[maybe_unused]] N (&row)[lanes]) {
 #endif
 }
 
-/// Calls body(point) for squares of lanes points that cover a line; the last one may begin in another.
+/// Calls body(point) for squares of `lanes` points that cover a line. The last square may overlap
+/// the one before.
 template <class Body>
 HWY_INLINE void for_squares(int points, const Body& body) {
   for (int point = 0; point < points; point += lanes) body(std::max(0, std::min(point, points - lanes)));
 }
 
-/// Lines of contiguous points to the columns of a bundle, and back.
+/// Copies lines of contiguous points to the columns of a bundle; to_lines() is the inverse.
 HWY_INLINE void to_columns(const double* lines, int count, int points, double* columns) {
   for_squares(points, [&](int point) APSIS_PACKED {
     N square[lanes];

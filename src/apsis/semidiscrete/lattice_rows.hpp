@@ -8,11 +8,11 @@ namespace apsis {
 /// processor.
 namespace lattice_rows {
 
-/// A row seen along one direction: blocks of points · apart numbers, in which neighbours along the direction
-/// lie `apart` numbers from each other.
+/// The layout of a row along one direction: blocks of points · apart numbers. Neighbours along the direction
+/// are `apart` numbers apart.
 struct layout {
   int blocks,  ///< lines, or groups of `apart` lines
-      points,  ///< of a line
+      points,  ///< points of a line
       apart;   ///< distance of neighbouring points
 
   int block() const { return points * apart; }  ///< numbers of a block
@@ -24,24 +24,25 @@ struct layout {
   }  ///< lines of a row
 };
 
-/// How the fluxes along a line are found.
+/// The rule for the fluxes along a line.
 struct flux_rule {
-  bool fifth_order,    ///< by the linear reconstruction of fifth order, else of first order
-      limited,         ///< as upwind::add_limited() does
-      forward;         ///< direction of motion
+  bool fifth_order,    ///< linear reconstruction of fifth order; else first order
+      limited,         ///< limited like upwind::add_limited()
+      forward;         ///< true for motion to larger indices
   double inverse_cfl;  ///< 1/κ of the limiter
 };
 
-/// Numbers of scratch memory that add_changes() needs for lines of this number of points.
+/// Returns the size of the scratch memory of add_changes(), in numbers, for lines of this many points.
 std::size_t scratch_size(int points);
 
 /// sum ← (fresh ? 0 : sum) + rate (flux from the point upstream − flux out) at all points of a row. An edge
-/// depends on the values at two points to either side, beyond the ends of lines on vacuum; nothing leaves the
-/// last point. into_last[k] ← the flux into the last point of line k, lines of a block together.
+/// depends on the values at two points on each side, with a vacuum beyond the ends of lines. Nothing leaves
+/// the last point. into_last[k] ← the flux into the last point of line k; lines of a block are consecutive.
 void add_changes(const layout& at, const flux_rule& rule, double rate, const double* row, bool fresh,
                  double* sum, double* into_last, double* scratch);
 
-/// acc ← acc + β change for n numbers, and 0 where two roundings of subnormal numbers exceed the value.
+/// acc ← acc + β change for n numbers. Results become 0 if two roundings of subnormal numbers
+/// exceed the value.
 void add(const double* change, double beta, int n, double* acc);
 
 }  // namespace lattice_rows

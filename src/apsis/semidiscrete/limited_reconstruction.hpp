@@ -20,21 +20,22 @@ struct limited_reconstruction {
   std::shared_ptr<const reconstruction> scheme;  ///< reconstruction of edge values; null without space
   limits limited = limits::nothing;              ///< what the limiter changes
 
-  /// Whether there is a limiter.
+  /// Returns true if there is a limiter.
   bool keeps_sign() const { return limited != limits::nothing; }
-  /// Whether edge values are limited; then both edges of a cell are needed.
+  /// Returns true if edge values are limited; both edges of a cell are then needed.
   bool limits_edges() const { return limited == limits::edges; }
-  /// Whether fluxes are limited.
+  /// Returns true if fluxes are limited.
   bool limits_fluxes() const { return limited == limits::fluxes; }
-  /// Returns the number of cells beyond a block whose edges are needed: one for the flux, one more for its
-  /// limiter.
+  /// Returns the number of cells beyond a block whose edges are needed: one for the flux, and another one for
+  /// the limiter of fluxes.
   int halo() const { return limits_fluxes() ? 2 : 1; }
-  /// Returns the number of cells on either side on which edges and limiter of a cell depend.
+  /// Returns the number of cells on each side that the edges and the limiter of a cell depend on.
   int reach() const { return std::max(scheme->ghost_width(), halo()); }
   /// Returns the number of ghost rows that a sweep reads beyond the end of a segment.
   int ghosts() const { return halo() + reach(); }
-  /// Returns κ of Δt_FE = κ / max Σ_k |v_k|/Δx_k: 1/12 with limited edges (Zhang & Shu 2010), else 1, up to
-  /// which limited fluxes keep positivity, and first-order upwind also total variation and entropy.
+  /// Returns κ of Δt_FE = κ / max Σ_k |v_k|/Δx_k: 1/12 with limited edges (Zhang & Shu 2010), else 1.
+  /// Up to this step limited fluxes preserve positivity. First-order upwind also preserves total
+  /// variation and entropy.
   double kappa() const { return limits_edges() ? limiter::end_weight : 1.0; }
 };
 

@@ -21,7 +21,7 @@ int local_groups::number_here(int cell) const {
   return space_.number_in_block(cell);
 }
 
-/// Returns the processes that hold the row of a cell: all with a cell of its group.
+/// Returns the processes that have the row of a cell: all processes with a cell of its group.
 std::vector<int> local_groups::holders(int cell) const {
   const int group = cut_.group_of(cell);
   if (group < 0) return {holder(cell)};
@@ -30,13 +30,13 @@ std::vector<int> local_groups::holders(int cell) const {
   return {found.begin(), found.end()};
 }
 
-/// Returns the cell whose number stands for a row.
+/// Returns the cell with the number that identifies a row.
 int local_groups::key_of(int cell) const {
   const int group = cut_.group_of(cell);
   return group < 0 ? cell : cut_.groups()[at(group)].cells.front();
 }
 
-/// Every process finds who needs which rows, so that nobody asks.
+/// Every process computes which process needs which rows, without communication.
 void local_groups::plan() {
   const int here = space_.processes().rank();
   std::vector<shared_row> rows, values;

@@ -177,7 +177,7 @@ void problem_builder::check_solids() const {
                                     k < mesh_.solids().size() ? k : k - mesh_.solids().size()));
 }
 
-/// For collisions; with_reconstruction() checks the stencil of the reconstruction.
+/// Checks the number of cells for collisions; with_reconstruction() checks it for the reconstruction.
 void problem_builder::check_cells() const {
   const int reach = scheme_ ? collisions().reach : 0;
   if (reach > 0 && whole_mesh().cells(0) <= reach)
@@ -206,7 +206,7 @@ void problem_builder::check_discretization() const {
     throw input_error(fmt::format("solid boxes with {} ({}); {}", chosen.unknown().plural(), why, otherwise));
 }
 
-/// In every cell at its points along the first direction.
+/// Returns ε at the points of every cell along the first direction.
 std::vector<double> problem_builder::epsilon_at(std::span<const weighted_point> points,
                                                 const scale& epsilon) const {
   std::vector<double> values;
@@ -237,7 +237,7 @@ std::unique_ptr<semidiscrete_problem> problem_builder::build() const {
         "a force in axisymmetric flow (rings of velocities have no lattice along which it acts); leave it "
         "out");
   this->space();
-  // Ghost rows belong to one problem.
+  // Each problem needs its own ghost rows.
   const auto space = space_.use_count() > 1 ? make_space() : space_;
   const scale epsilon = radial_ ? axisymmetric::epsilon_of(epsilon_, *equation_, *radial_) : epsilon_;
   const problem_parts parts{.equation = *equation_,

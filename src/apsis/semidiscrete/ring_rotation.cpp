@@ -19,11 +19,11 @@
 namespace apsis {
 namespace {
 
-constexpr int cells_of_rotation = 16;  // of a task
-constexpr int least_angles = 12;       // for fifth order: waves between walls grow with 8
+constexpr int cells_of_rotation = 16;  // cells of a task
+constexpr int least_angles = 12;       // for fifth order: with 8 angles, waves between walls grow
 
-/// sin of the angle of an edge 0 … M/2, which gives all sines and cosines by symmetry: symmetric rows then
-/// stay symmetric to the last bit.
+/// Returns the sine of the angle of an edge 0 … M/2. Symmetry gives all other sines and cosines, so that
+/// symmetric rows stay symmetric to the last bit.
 double sine(int edge, int angles) {
   return std::sin(std::min(edge, angles / 2 - edge) * (2.0 * std::numbers::pi / angles));
 }
@@ -32,9 +32,9 @@ double sine(int edge, int angles) {
 
 /// Buffers of one thread.
 struct ring_rotation::workspace {
-  std::array<aligned_vector<double>, 4> places;  ///< of rotation_rows::places
+  std::array<aligned_vector<double>, 4> places;  ///< memory of rotation_rows::places
   aligned_vector<double> values;                 ///< a ring with its halo
-  aligned_vector<double> change;                 ///< of the row of a cell
+  aligned_vector<double> change;                 ///< change of the row of a cell
 };
 
 ring_rotation::~ring_rotation() = default;
@@ -71,7 +71,7 @@ ring_rotation::ring_rotation(const model& equation, std::shared_ptr<domain> spac
   find_speeds();
 }
 
-/// Of all processes, since all take the same steps.
+/// Returns the smallest radius of all processes, since all take the same steps.
 double ring_rotation::smallest_radius() const {
   const grid& whole = space_->shared_mesh() != nullptr ? space_->shared_mesh()->whole : space_->mesh();
   double smallest = std::numeric_limits<double>::infinity();

@@ -11,8 +11,8 @@
 HWY_BEFORE_NAMESPACE();
 namespace apsis::HWY_NAMESPACE {
 
-/// Half of a ring. Place k = 0 … count − 1 of its arrays has the number k of the half; the angle upstream of
-/// the first one belongs to the other half.
+/// Half of a ring. Place k = 0 … count − 1 of its arrays has number k of the half. The angle upstream of the
+/// first one belongs to the other half.
 struct half_ring {
   int apart, count, first, step;
 
@@ -20,11 +20,11 @@ struct half_ring {
       : apart(of.apart), count(of.half()), first(lower ? of.half() : 0), step(lower ? of.apart : -of.apart) {}
 
   bool lower() const { return step > 0; }
-  /// The arrays of the half.
+  /// Returns the arrays of the half.
   double* at(double* places) const { return places + apart + (lower() ? count + 2 * apart : 0); }
-  /// The numbers of edges downstream.
+  /// Returns the numbers of the edges downstream.
   const double* edges(const double* of) const { return of + first + (lower() ? apart : 0); }
-  /// Calls body(lanes, k) for all places, and those of the angle upstream.
+  /// Calls body(lanes, k) for all places of the half and of the angle upstream.
   template <class Body>
   void with_upstream(const Body& body) const {
     const int begin = lower() ? -apart : 0;
@@ -50,7 +50,7 @@ void find_rotation_fluxes(const half_ring& of, const rotation_rows::flux_rule& r
   });
 }
 
-/// Returns whether some fraction is below 1.
+/// Returns true if a fraction is below 1.
 bool find_fractions(const half_ring& of, const rotation_rows::flux_rule& rule, const double* values,
                     const rotation_rows::places& to) {
   const double *from = values + rotation_rows::halo * of.apart + of.first, *inverse = rule.inverse + of.first,
@@ -84,7 +84,7 @@ void limit_rotation(const half_ring& of, const rotation_rows::places& to) {
   });
 }
 
-/// Copies the fractions at both ends of a half to the neighbouring places of the other one.
+/// Copies the fractions at both ends of a half to the neighbouring places of the other half.
 void join_fractions(const half_ring& of, const half_ring& to, double* fractions) {
   const double* from = of.at(fractions);
   std::copy_n(from, of.apart, to.at(fractions) + to.count);

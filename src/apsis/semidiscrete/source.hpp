@@ -13,24 +13,23 @@
 
 namespace apsis {
 
-/// A source S(t, x, u) as a part of T, by the quadrature of the unknowns of a cell: point values at centres,
-/// or averages by three Gauss points, where u is the average, so that a source that depends on u is of second
-/// order there. Where the
-/// unknowns are nonnegative, so is S, and it does not limit Δt_FE: a forward Euler step that keeps u ≥ 0
-/// keeps u + Δt S ≥ 0. Dimensionless.
+/// A source S(t, x, u) as a part of T. A quadrature over the cell evaluates it: at the centre for point
+/// values, or at three Gauss points for averages. At Gauss points u is the average, so that a source that
+/// depends on u is of second order. If the unknowns are nonnegative, so is S, and it does not limit Δt_FE: a
+/// forward Euler step that preserves u ≥ 0 preserves u + Δt S ≥ 0. Dimensionless.
 class source {
  public:
   /// `equation` must outlive the object.
   source(const model& equation, std::shared_ptr<domain> space, source_rate rate, const cell_unknown& unknown);
 
-  /// acc ← acc + β S(t, u) for every target. Throws numerical_error where S is not finite, or negative in a
-  /// model whose unknowns are not.
+  /// acc ← acc + β S(t, u) for every target. Throws numerical_error if S is not finite, or negative although
+  /// the unknowns of the model are not.
   void add(double t, const field& u, std::span<const target<field, double>> targets);
-  /// Whether S depends on u.
+  /// Returns true if S depends on u.
   bool depends_on_state() const { return static_cast<bool>(rate_.growth); }
   /// Returns the largest source_rate::growth of the cells of this process.
   double growth(double t, const field& u) const;
-  /// Returns the invariants that the last add() gave per unit of time and β.
+  /// Returns the amounts of the invariants that the last add() gave per unit of time and β.
   const std::vector<double>& given() const { return given_; }
 
  private:

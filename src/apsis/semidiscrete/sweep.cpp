@@ -31,7 +31,7 @@ int block_length(int width) {
 }
 
 int collision_block_length(int width) {
-  constexpr int doubles = 4096;  // two edges of each: 64 KiB
+  constexpr int doubles = 4096;  // two edges for each: 64 KiB
   return std::clamp(doubles / std::max(width, 1), 8, 256);
 }
 

@@ -9,8 +9,8 @@
 
 namespace apsis {
 
-/// Edge values of consecutive cells of a pencil, few enough to stay in cache. The buffers are reused from
-/// block to block, so that they are allocated once.
+/// Edge values of consecutive cells of a pencil, few enough to stay in cache. Blocks reuse the buffers, which
+/// are allocated only once.
 struct pencil_block {
   /// Allocates buffers for load() with the given number of cells.
   void reserve(const limited_reconstruction& edges, int cells, int halo, int stride);
@@ -23,7 +23,7 @@ struct pencil_block {
   const double* row(int cell) const { return rows[static_cast<std::size_t>(cell - first_row)]; }
   /// Returns the row of values at the lower edge of a cell begin−halo … end−1+halo.
   double* left_edge(int cell) { return left.data() + offset(cell); }
-  /// Returns the row of values at the upper edge of such a cell.
+  /// Returns the row of values at the upper edge of a cell begin−halo … end−1+halo.
   double* right_edge(int cell) { return right.data() + offset(cell); }
 
   std::vector<const double*> rows;  ///< rows of the cells from first_row on, owned by the field
@@ -31,7 +31,7 @@ struct pencil_block {
       right;                        ///< values at upper edges, [cell − first_edge][width]
   int first_row = 0,                ///< cell of rows[0]
       first_edge = 0,               ///< first cell with edge values
-      width = 0;                    ///< of a row: the stride of the field
+      width = 0;                    ///< numbers of a row: the stride of the field
 
  private:
   std::size_t offset(int cell) const {
@@ -39,14 +39,15 @@ struct pencil_block {
   }
 };
 
-/// Returns the cells per block for rows of `width` numbers that are read and written once.
+/// Returns the number of cells per block for rows of `width` numbers that are read and written once.
 int block_length(int width);
 
-/// Returns the cells per block of a pencil_block for rows of `width` numbers: enough to amortize the start of
-/// a sweep, few enough for the second-level cache.
+/// Returns the number of cells per block of a pencil_block for rows of `width` numbers. They are enough to
+/// amortize the start of a sweep, but fit into the second-level cache.
 int collision_block_length(int width);
 
-/// Returns the cells per block of a sweep over `columns` numbers of every cell, for the first-level cache.
+/// Returns the number of cells per block of a sweep over `columns` numbers of every cell, for
+/// the first-level cache.
 int sweep_block_length(int columns);
 
 }  // namespace apsis

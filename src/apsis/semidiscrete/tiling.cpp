@@ -7,8 +7,8 @@
 namespace apsis {
 namespace {
 
-/// With 32 components of u and of three accumulators these are about half of a cache of one MiB; boxes of
-/// fewer cells read more of their neighbours.
+/// With 32 components of u and of three accumulators, these cells fill about half of a cache of 1 MiB.
+/// Smaller boxes read more neighbouring cells.
 constexpr double cells_of_a_box = 576.0;
 
 std::vector<int> equal_parts(int n, double longest) {

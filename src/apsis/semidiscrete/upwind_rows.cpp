@@ -21,7 +21,7 @@ HWY_INLINE N outflow(const Walk& way, const cells& run, int j) {
   return way.load_downstream(run.left, run.right, run.pitch, j);
 }
 
-/// The factors λ = β|v|/Δx of a pack of velocities for all targets, the same in all cells.
+/// The factors λ = β|v|/Δx of a pack of velocities for all targets, which are the same in all cells.
 template <class N>
 class step_factors {
  public:
@@ -34,7 +34,7 @@ class step_factors {
   }
 
  private:
-  static constexpr std::size_t kept = 16, longest = 8;  ///< a pack has 512 bits at most
+  static constexpr std::size_t kept = 16, longest = 8;  ///< a pack has at most 512 bits
   alignas(64) double factors_[kept * longest];
   N speed_;
 };
@@ -53,7 +53,7 @@ HWY_INLINE void accumulate(const Walk& way, const cells& run, std::span<const ro
   }
 }
 
-/// Stores a pack in its row, if there is one.
+/// Stores a pack in its row unless the row is null.
 template <class Walk, class N = typename Walk::number>
 HWY_INLINE void store_row(const Walk& way, N value, double* row) {
   if (row != nullptr) way.store(value, row, 0, 0);
@@ -73,7 +73,7 @@ HWY_INLINE void add_along(const Walk& way, N speed, const cells& run, std::span<
 }
 
 void add(const cells& of, std::span<const row_target> targets) {
-  const cells run = of;  // a copy, which the compiler knows to stay as it is when targets are stored
+  const cells run = of;  // a copy, so that the compiler knows that storing targets does not change it
   for_walks(run.forward, run.count, run.width, [&](const auto& way, int k) APSIS_PACKED {
     using N = typename std::decay_t<decltype(way)>::number;
     add_along(way, N::load(run.per_cell + k), run, targets);
@@ -110,14 +110,14 @@ HWY_INLINE void add_limited_along(const Walk& way, N speed, N inverse_cfl, const
 }
 
 void add_limited(const cells& of, std::span<const row_target> targets) {
-  const cells run = of;  // a copy, which the compiler knows to stay as it is when targets are stored
+  const cells run = of;  // a copy, so that the compiler knows that storing targets does not change it
   for_walks(run.forward, run.count, run.width, [&](const auto& way, int k) APSIS_PACKED {
     using N = typename std::decay_t<decltype(way)>::number;
     add_limited_along(way, N::load(run.per_cell + k), N::load(run.inverse_cfl + k), run, targets);
   });
 }
 
-/// Operations on a component of a run of cells.
+/// Returns the operations per component for a run of cells.
 double operations_of_run(bool limited, int cells_in_run) {
   cells run{};
   run.count = cells_in_run;

@@ -19,12 +19,13 @@ namespace {
 
 using targets_view = std::span<const target<field, double>>;
 
-/// Largest number of components per sweep: with some dozens of cells, its buffers fit into the first-level
-/// cache.
+/// Largest number of components per sweep. With some dozens of cells, its buffers fit into
+/// the first-level cache.
 constexpr int most_columns = 32;
-/// Smallest numbers of components and cells that are worth a separate sweep.
+/// Smallest numbers of components and cells for which a separate sweep pays.
 constexpr int least_columns = 16, least_cells = 16;
-/// Limits on the length of a row and the tasks of a loop, so that sums with a few others fit into int.
+/// Limits on the length of a row and the number of tasks of a loop, so that sums with small numbers
+/// fit into int.
 constexpr int longest_row = 1 << 30, most_tasks = 1 << 30;
 
 /// Returns the first component of column 0 … columns of a row; columns are multiples of vectors.
@@ -38,9 +39,9 @@ int first_component(int width, int columns, int column) {
 struct upwind_transport::scratch {
   per_thread<block_sweep> sweeps;
   per_thread<std::vector<upwind::row_target>> rows;
-  std::vector<double> given;  ///< by force, rotation and source
+  std::vector<double> given;  ///< amounts given by force, rotation and source
 
-  /// The boxes of a mesh, rebuilt only for another width or number of threads.
+  /// Returns the boxes of a mesh, rebuilt only for another width or number of threads.
   const tiling& boxes(const domain& space, int longest, int parts) {
     if (made_ && longest == longest_made_ && parts == parts_made_) return *made_;
     made_.emplace(space.mesh(), longest, parts);
@@ -51,7 +52,7 @@ struct upwind_transport::scratch {
       waves[space.is_inner(made_->box(number)) ? 0 : 1].push_back(number);
     return *made_;
   }
-  /// Numbers of the boxes that depend on no other process, and of the others.
+  /// Numbers of the boxes that depend on no other process, and of the other boxes.
   std::array<std::vector<int>, 2> waves;
 
  private:
@@ -59,11 +60,11 @@ struct upwind_transport::scratch {
   int longest_made_ = 0, parts_made_ = 0;
 };
 
-/// How a sweep is divided into tasks: boxes of the tiling, or boxes times parts of the rows.
+/// The division of a sweep into tasks: boxes of the tiling, or boxes times parts of the rows.
 struct upwind_transport::sweep_plan {
   const tiling& boxes;
   int columns;    ///< parts of a row
-  bool by_boxes;  ///< whether a task is a whole box, whose cells are complete at its end
+  bool by_boxes;  ///< whether a task is a whole box, with complete cells at its end
 };
 
 upwind_transport::~upwind_transport() = default;
@@ -104,10 +105,10 @@ void upwind_transport::set_source(source_rate rate) {
 
 void upwind_transport::limit_for_steps(double share) {
   share_ = share;
-  // Every component moves with one velocity.
+  // All molecules of a component move with one velocity.
   const auto rates = rotation_ ? rotation_->rates_with(speeds_) : line_speeds::rates(speeds_);
   fastest_ = rates.empty() ? 0.0 : *std::max_element(rates.begin(), rates.end());
-  const double of_force = force_ ? force_->rate() : 0.0;  // of 1/Δt_FE
+  const double of_force = force_ ? force_->rate() : 0.0;  // part of 1/Δt_FE
   const double step = share * forward_euler_step();
   if (rotation_)
     rotation_->limit_for_steps(step / rounding_allowance, speeds_);
@@ -140,7 +141,7 @@ bool upwind_transport::add_transport(double t, const field& u, targets_view targ
     add_source(u, targets);
     return false;
   }
-  // Cells are complete box by box only where sweeps are all there is.
+  // Cells are complete box by box only if T consists of sweeps alone.
   const bool alone = !force_ && !rotation_ && !source_;
   bool done = false;
   first_error failure;
@@ -149,7 +150,8 @@ bool upwind_transport::add_transport(double t, const field& u, targets_view targ
   return done;
 }
 
-/// Adds force, rotation and source. Their sums are those of all processes, even if this one has failed.
+/// Adds force, rotation and source. Their sums are collective, and are computed even if this
+/// process has failed.
 void upwind_transport::add_inside(double t, const field& u, targets_view targets,
                                   first_error& failure) const {
   std::vector<double>& given = scratch_->given;
@@ -168,7 +170,7 @@ void upwind_transport::add_inside(double t, const field& u, targets_view targets
   }
   if (force_) given.insert(given.end(), force_->losses().begin(), force_->losses().end());
   failure.rethrow();
-  // One process keeps what all have received together.
+  // A single process stores the amounts that all processes have received.
   if (!space_->processes().is_root()) std::fill(given.begin(), given.end(), 0.0);
   faces_->set_inside(given);
 }
@@ -207,7 +209,7 @@ void upwind_transport::add_source(const field& u, targets_view targets) const {
 
 void upwind_transport::add_weighted(const field& u, targets_view targets, const cells_job& then) const {
   scratch_->rows.prepare([&](auto& rows) { rows.reserve(targets.size()); });
-  // As many cells as make a row whose length is an int.
+  // Blocks are short enough that the length of a row fits into an int.
   const int longest = std::min(block_length(u.stride()), std::max(1, longest_row / std::max(u.stride(), 1)));
   parallel_blocks(u.cells(), longest, [&](int begin, int end) {
     auto& rows = scratch_->rows.here();
@@ -225,7 +227,7 @@ void upwind_transport::add_weighted(const field& u, targets_view targets, const 
   });
 }
 
-/// body(segment, begin, end) for the cells of a box along a direction, as cells of segments.
+/// Calls body(segment, begin, end) for the cells of a box along a direction, as cells of segments.
 template <class Body>
 void upwind_transport::for_segments(int direction, const cell_box& box, const Body& body) const {
   const auto k = static_cast<std::size_t>(direction);
@@ -248,7 +250,7 @@ void upwind_transport::for_segments(int direction, const cell_box& box, const Bo
       }
 }
 
-/// Looks up the rows of a box. Sweeps go along all directions, and `all` and `u` must outlive them.
+/// Looks up the rows of a box for sweeps along all directions; `all` and `u` must outlive the sweeps.
 block_sweep& upwind_transport::sweep_of_box(const block_sweep::context& all, const field& u,
                                             const cell_box& box) const {
   block_sweep& sweep = scratch_->sweeps.here();
@@ -259,7 +261,7 @@ block_sweep& upwind_transport::sweep_of_box(const block_sweep::context& all, con
   return sweep;
 }
 
-/// Adds what enters through surfaces at the cells of a box.
+/// Adds the fluxes that enter through surfaces at the cells of a box.
 void upwind_transport::complete_box(double t, const field& u, targets_view targets,
                                     const cell_box& box) const {
   if (space_->budget_surfaces().empty()) return;
@@ -293,7 +295,7 @@ bool upwind_transport::sweep(double t, const field& u, targets_view targets, con
   const bool whole_cells = equation_.has_source();
   int columns = whole_cells ? 1 : (width + most_columns - 1) / most_columns;
   const int longest = sweep_block_length(std::min(width, most_columns));
-  // So many parts that threads of different speed end at about the same time.
+  // There are enough parts for threads of different speed to finish at about the same time.
   const int team = threads_here(), enough = team == 1 ? 1 : 4 * team;
   const bool parts_of_a_line = on_a_line && n / least_cells >= team;
   const tiling& boxes = scratch_->boxes(*space_, longest, parts_of_a_line ? team : 1);
@@ -311,13 +313,13 @@ bool upwind_transport::sweep(double t, const field& u, targets_view targets, con
   if (cut_) cut_->prepare(u);
   first_error failure;
   failure.run([&] {
-    // Rows of other processes arrive while the boxes that do not need them are swept.
+    // Boxes that do not need rows of other processes are swept while these rows arrive.
     space_->begin_ghosts(t, u);
     sweep_boxes(t, u, targets, plan, scratch_->waves[0], then);
     space_->finish_ghosts(t, u);
     sweep_boxes(t, u, targets, plan, scratch_->waves[1], then);
   });
-  // Other processes wait for the values at cut cells, even if a boundary of this one has failed.
+  // Other processes wait for the values at cut cells, even if a boundary of this process has failed.
   if (cut_) failure.run([&] { cut_->add(t, u, targets, by_boxes && !failure ? then : cells_job()); });
   failure.rethrow();
   return by_boxes && then;

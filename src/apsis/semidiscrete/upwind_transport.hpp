@@ -20,8 +20,8 @@
 namespace apsis {
 
 /// Transport by upwind fluxes of reconstructed edge values. For constant speeds the operator is the same for
-/// cell averages (finite volumes) and point values (finite differences). With the positivity limiter and
-/// β ≤ α Δt_FE no result is negative, also in floating point.
+/// cell averages (finite volumes) and point values (finite differences). With the positivity limiter and β ≤
+/// α Δt_FE, results are nonnegative, even in floating-point arithmetic.
 class upwind_transport final : public transport {
  public:
   /// `equation` and `unknown` must outlive the operator. Without space `edges` is ignored.
@@ -29,7 +29,7 @@ class upwind_transport final : public transport {
                    const cell_unknown& unknown);
   ~upwind_transport() override;
 
-  /// Fused where cells are complete box by box: without force, rotation and source, in many boxes.
+  /// Calls `then` if cells are complete box by box: in many boxes, without force, rotation and source.
   bool add_transport(double t, const field& u, std::span<const target<field, double>> targets,
                      const cells_job& then = {}) const override;
   void combine(std::span<const linear_term<field, double>> terms, field& sum) const override;
@@ -40,8 +40,8 @@ class upwind_transport final : public transport {
   void set_rotation(int radial) override;
   void set_source(source_rate rate) override;
 
-  /// 1/Δt_FE = max_j Σ_k |v_jk|/Δx_k / κ + force::rate(), κ = limited_reconstruction::kappa(), at most
-  /// cut_cells::cfl_number with bodies; in axisymmetric flow max_j ring_rotation::rates_with() / κ.
+  /// 1/Δt_FE = max_j Σ_k |v_jk|/Δx_k / κ + force::rate() with κ = limited_reconstruction::kappa(), at most
+  /// cut_cells::cfl_number with bodies. In axisymmetric flow it is max_j ring_rotation::rates_with() / κ.
   double forward_euler_step() const override;
   void limit_for_steps(double share) override;
   double growth_of_source(double t, const field& u) const override;
@@ -71,16 +71,16 @@ class upwind_transport final : public transport {
   std::shared_ptr<domain> space_;
   limited_reconstruction edges_;
   const cell_unknown& unknown_;
-  double share_ = 1.0;  ///< of Δt_FE that the limiter is for
+  double share_ = 1.0;  ///< bound for the limiter, in units of Δt_FE
   double kappa_ = 1.0;
   double fastest_ = 0.0;  ///< largest rate of transport and rotation of a component
   std::unique_ptr<face_fluxes> faces_;
   std::unique_ptr<cut_transport> cut_;       ///< null without bodies
-  std::unique_ptr<force> force_;             ///< null without
-  std::unique_ptr<ring_rotation> rotation_;  ///< null without
-  std::unique_ptr<source> source_;           ///< null without
+  std::unique_ptr<force> force_;             ///< null without a force
+  std::unique_ptr<ring_rotation> rotation_;  ///< null without rotation
+  std::unique_ptr<source> source_;           ///< null without a source
   struct scratch;
-  std::vector<line_speeds> speeds_;   ///< of each direction
+  std::vector<line_speeds> speeds_;   ///< speeds along each direction
   std::unique_ptr<scratch> scratch_;  ///< scratch memory of loops; one loop at a time
 };
 

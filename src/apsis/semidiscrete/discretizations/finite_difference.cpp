@@ -6,7 +6,8 @@
 namespace apsis {
 namespace {
 
-/// Point values at the centres of cells, which collide where they are; also of models without space.
+/// Point values at the centres of cells, where they also collide. This discretization also serves
+/// models without space.
 class finite_differences final : public discretization {
  public:
   const cell_unknown& unknown() const override { return point_values(); }

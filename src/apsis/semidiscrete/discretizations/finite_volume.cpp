@@ -7,8 +7,9 @@ namespace {
 
 constexpr const char *gauss_points = "gauss", *cell_centres = "centres";
 
-/// Cell averages on a line. They collide at points where the reconstruction, or all averages together, give
-/// values; with first-order upwind, which is no better than the average, each average collides as it is.
+/// Cell averages on a line. They collide at points with values from the reconstruction or from all averages
+/// together. With first-order upwind such values would be no more accurate than the average, so that each
+/// average collides itself.
 class finite_volumes final : public discretization {
  public:
   const cell_unknown& unknown() const override { return cell_averages(); }
@@ -38,7 +39,7 @@ class finite_volumes final : public discretization {
       return make_pointwise_collision(of.equation, std::move(epsilon), of.keeps_sign(),
                                       of.space->mesh().fluid(), of.stages);
     if (of.collisions == cell_centres) {
-      // Where solutions may be negative, limited averages would lose what they cut off.
+      // If solutions may be negative, limited averages would lose the parts that are cut off.
       const bool limited = of.limited && !of.smooth_collisions && of.equation.why_signed().empty();
       return make_cell_centre_collision(of.equation, of.space, limited, std::move(epsilon), of.stages);
     }
@@ -47,7 +48,7 @@ class finite_volumes final : public discretization {
 
  private:
   using limits = limited_reconstruction::limits;
-  /// Gauss points need edge values that fit the average; all else needs fluxes alone.
+  /// Gauss points need edge values that are consistent with the average. Everything else needs only fluxes.
   static limits limits_at(const std::string& place) {
     return place == cell_centres ? limits::fluxes : limits::edges;
   }

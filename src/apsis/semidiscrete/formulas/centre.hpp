@@ -12,7 +12,7 @@
 APSIS_BEFORE_FORMULAS();
 namespace apsis::APSIS_NUMBERS {
 
-/// A ρ^k.
+/// The weights A ρ^k.
 constexpr double centre_weights[] = {0.0,
                                      -0.0498962651136544960533352,
                                      0.00227271749006668625943531,
@@ -21,12 +21,12 @@ constexpr double centre_weights[] = {0.0,
                                      -2.14772019501291115056886e-07,
                                      9.78261847827065140353490e-09};
 
-/// Row i of the stencil is at(i), i = −3 … 3.
+/// Returns the value at a centre. Row i of the stencil is at(i), i = −6 … 6.
 template <class N, class At>
 APSIS_FORMULA N centre_value(const At& at, bool limited) {
   const N here = at(0), twice = here + here;
   N change(0.0);
-  // The smallest terms first, and both sides together: mirrored data give mirrored bits.
+  // Adds the smallest terms first, and both sides together, so that mirrored data give mirrored bits.
 #pragma GCC unroll 6
   for (int k = apsis::centre_rows::reach; k > 0; --k)
     change = fma(N(centre_weights[k]), (at(-k) + at(k)) - twice, change);
@@ -41,7 +41,7 @@ struct changed_cell {
   APSIS_FORMULA changed_cell(N u, N change) : d(change), b(u + change), half(N(0.5) * b) {}
 };
 
-/// Flux between two cells.
+/// Returns the flux between two cells.
 template <class N>
 APSIS_FORMULA N centre_flux(const changed_cell<N>& before, const changed_cell<N>& after, bool limited) {
   const N all = N(1.0 / 24.0) * (after.d - before.d);
@@ -51,11 +51,11 @@ APSIS_FORMULA N centre_flux(const changed_cell<N>& before, const changed_cell<N>
 template <class N>
 APSIS_FORMULA N centre_average(N b, N flux_before, N flux_after, bool limited) {
   const N all = b + (flux_after - flux_before);
-  // Rounding of halves of the smallest numbers.
+  // Removes negative results from the rounding of halves of the smallest numbers.
   return limited ? maximum(all, minimum(b, N(0.0))) : all;
 }
 
-/// min(p, u), if `all` or if u + d is negative; else p.
+/// Returns min(p, u) if `all`, or if u + d is negative; else p.
 template <class N>
 APSIS_FORMULA N lowered_centre(N u, N d, N p, bool all) {
   const N least = smaller(u, p);

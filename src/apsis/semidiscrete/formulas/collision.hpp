@@ -11,17 +11,17 @@
 APSIS_BEFORE_FORMULAS();
 namespace apsis::APSIS_NUMBERS {
 
-/// sum + weight q, the part of a quadrature point in Q of a cell.
+/// Returns sum + weight q. A quadrature point contributes weight q to Q of a cell.
 template <class N>
 APSIS_FORMULA N with_collision(N sum, N weight, N q) {
   return fma(weight, q, sum);
 }
 
-/// αu + βQ, the part of a cell in a target.
+/// Returns αu + βQ, the contribution of a cell to a target.
 template <class N>
 APSIS_FORMULA N collision_part(N alpha, N u, N beta, N q) {
-  // An increment below the margin is dropped: its rounding error, half of 4.9e-324, may exceed what it
-  // leaves of a subnormal number, which would become negative.
+  // Omits an increment below the margin. Its rounding error, half of 4.9e-324, may exceed the remainder of a
+  // subnormal number, which would become negative.
   const N increment = beta * q;
   return fma(alpha, u, select(absolute(increment) < N(apsis::limiter::absolute_margin), N(0.0), increment));
 }

@@ -12,17 +12,18 @@
 APSIS_BEFORE_FORMULAS();
 namespace apsis::APSIS_NUMBERS {
 
-/// Terms of a correction are at most so many times the value.
+/// Largest ratio of the terms of a correction to the value.
 inline constexpr double largest_terms = 50.0;
 
-/// Measures of the corrections of a cut cell: the largest sum of the sizes of their terms, and sums over the
-/// faces and walls where a component leaves, of its outflow in a step and of the corrections that increase
-/// it.
+/// Measures of the corrections of a cut cell. `size` is the largest sum of the sizes of their terms. The
+/// others are sums over the faces and walls through which a component leaves: its outflow in a step, and the
+/// corrections that increase the outflow.
 template <class N>
 struct cut_demand {
   N size, outflow, increase;
 
-  /// Adds a face or wall where a share `leaving` > 0 of the cell leaves in a step; nothing where it enters.
+  /// Adds a face or wall through which the fraction `leaving` > 0 of the cell leaves in a step. Adds nothing
+  /// if the component enters.
   APSIS_FORMULA void add(N leaving, N correction, N size_of_terms) {
     const N share = maximum(leaving, N(0.0));
     const N counted = select(leaving > N(0.0), correction, N(0.0));
@@ -31,12 +32,12 @@ struct cut_demand {
     increase = fma(share, maximum(counted, N(0.0)), increase);
   }
 
-  /// Returns the factor ϑ ∈ [0, 1] of the corrections with which a step lets out no more than the value u,
-  /// where values that leave are at least 0 (nonnegative_leaving_value()). `kept`: the share of u that
-  /// transport may take. 0 for NaN, and for negative u.
+  /// Returns the factor ϑ ∈ [0, 1] of the corrections with which at most the value u leaves in a step.
+  /// Leaving values are at least 0 (nonnegative_leaving_value()). `kept` is the fraction of u that transport
+  /// may take. Returns 0 for NaN and for negative u.
   APSIS_FORMULA N factor(N u, N kept) const {
     const N margin = N(1.0 - apsis::limiter::relative_margin);
-    // Terms that cancel leave rounding errors of their size, which must stay below the margin.
+    // Terms that cancel leave rounding errors proportional to their size. These must stay below the margin.
     const N most = N(largest_terms) * u;
     const N by_size = select(size > most, most / size, N(1.0));
     const N allowed = maximum((kept - outflow) * u * margin - N(apsis::limiter::absolute_margin), N(0.0));
@@ -46,13 +47,13 @@ struct cut_demand {
   }
 };
 
-/// The value of a cut cell where it leaves: none of a value that is negligible, as in whole cells.
+/// Returns the leaving value of a cut cell: 0 if the value of the cell is negligible, as in whole cells.
 template <class N>
 APSIS_FORMULA N leaving_value(N u, N correction) {
   return select(absolute(u) < N(apsis::limiter::negligible), N(0.0), u + correction);
 }
 
-/// The same with a limiter: not negative, unless the value of the cell is.
+/// Does the same with a limiter: the result is nonnegative unless the value of the cell is negative.
 template <class N>
 APSIS_FORMULA N nonnegative_leaving_value(N u, N correction) {
   const N value = leaving_value(u, correction);

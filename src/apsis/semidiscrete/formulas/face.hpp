@@ -11,19 +11,19 @@
 APSIS_BEFORE_FORMULAS();
 namespace apsis::APSIS_NUMBERS {
 
-/// The value where components leave the domain, else 0.
+/// Returns the value of components that leave the domain, and 0 for others.
 template <class N>
 APSIS_FORMULA N if_leaving(N inward, N value) {
   return select(inward < N(0.0), value, N(0.0));
 }
 
-/// One value where components enter, else another one.
+/// Returns `entering` for components that enter, and `value` for others.
 template <class N>
 APSIS_FORMULA N if_entering(N inward, N entering, N value) {
   return select(inward > N(0.0), entering, value);
 }
 
-/// acc + β (v·n/Δx) value where components enter, else acc.
+/// Returns acc + β (v·n/Δx) value for components that enter, and acc for others.
 template <class N>
 APSIS_FORMULA N with_entering(N acc, N beta, N inward, N spacing, N value) {
   return if_entering(inward, acc + (beta * (inward / spacing)) * value, acc);

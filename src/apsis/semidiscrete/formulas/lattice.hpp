@@ -13,15 +13,16 @@
 APSIS_BEFORE_FORMULAS();
 namespace apsis::APSIS_NUMBERS {
 
-/// acc + β change, and 0 between −2^−1022 and 0: there two roundings of subnormal numbers exceed the value.
+/// Returns acc + β change, but 0 for results between −2^−1022 and 0: there two roundings of subnormal numbers
+/// exceed the value.
 template <class N>
 APSIS_FORMULA N with_change(N acc, N beta, N change) {
   const N sum = acc + beta * change;
   return select(sum < N(0.0), select(sum > N(-0x1p-1022), N(0.0), sum), sum);
 }
 
-/// Five neighbouring values in the direction of motion, and the edge downstream of the middle one. Values at
-/// points beyond the ends are those of a vacuum.
+/// Five neighbouring values in the direction of motion, and the edge downstream of the middle one. Points
+/// beyond the ends have the values of a vacuum.
 template <bool FifthOrder, class N, class Values>
 struct edge_window {
   const Values& values;
@@ -44,7 +45,7 @@ struct edge_window {
   }
 };
 
-/// Limited fluxes between neighbouring points, as those between cells.
+/// Computes limited fluxes between neighbouring points, as between cells.
 template <class N, class Window>
 struct limited_walk {
   Window& window;
@@ -55,7 +56,7 @@ struct limited_walk {
       : window(of),
         inverse_cfl(inverse),
         here(limited_after(unlimited(N(0.0), N(0.0), inverse), of.value(), of.edge(), inverse)) {}
-  /// The flux out of point j − 1, having moved from it to point j.
+  /// Moves from point j − 1 to point j, and returns the flux out of point j − 1.
   APSIS_FORMULA N to(int j) {
     window.advance_to(j);
     const auto after = limited_after(here, window.value(), window.edge(), inverse_cfl);
@@ -65,7 +66,7 @@ struct limited_walk {
   }
 };
 
-/// Fluxes that are edges.
+/// Computes fluxes that are the edge values, without a limiter.
 template <class N, class Window>
 struct plain_walk {
   Window& window;
@@ -80,8 +81,8 @@ struct plain_walk {
   }
 };
 
-/// Calls put(flux into the point − flux out) for all points of a line in the direction of motion, whose
-/// values are values(j). Nothing leaves the last point. Returns the flux into it.
+/// Calls put(flux into the point − flux out) for all points of a line in the direction of motion. The window
+/// has the values of the points. Nothing leaves the last point. Returns the flux into the last point.
 template <class Walk, class Window, class N, class Put>
 APSIS_FORMULA N walk_along(Window& window, int points, N inverse_cfl, const Put& put) {
   Walk fluxes(window, inverse_cfl);
@@ -95,7 +96,7 @@ APSIS_FORMULA N walk_along(Window& window, int points, N inverse_cfl, const Put&
   return in;
 }
 
-/// walk_along() with fluxes of first or fifth order, limited or not.
+/// Calls walk_along() with fluxes of first or fifth order, limited or not; values(j) is the value of point j.
 template <bool Limited, bool FifthOrder, class N, class Values, class Put>
 APSIS_FORMULA N add_fluxes(const Values& values, int points, N inverse_cfl, const Put& put) {
   edge_window<FifthOrder, N, Values> window(values);

@@ -12,7 +12,7 @@
 APSIS_BEFORE_FORMULAS();
 namespace apsis::APSIS_NUMBERS {
 
-/// Fluxes out of an angle, of first order and by the reconstruction.
+/// Fluxes out of an angle, of first order and from the reconstruction.
 template <class N>
 struct rotation_fluxes {
   N low_order, high_order;
@@ -20,19 +20,19 @@ struct rotation_fluxes {
   APSIS_FORMULA N correction() const { return high_order - low_order; }
 };
 
-/// The edge between two angles downstream of one of them: the speed s |sin ω|, and Δω cos ω.
+/// The edge between two angles, downstream of one of them: the speed s |sin ω| and the slope Δω cos ω.
 template <class N>
 struct rotation_edge {
   N speed, slope;
 };
 
-/// Factors of the derivatives in the flux of fifth order, of angles Δω apart (rotation.hpp): those of Δω ∂F,
-/// Δω³ ∂³F, and of Δω² ∂²F beside `speed`.
+/// Factors of the derivatives in the flux of fifth order for angles with the distance Δω. They multiply Δω
+/// ∂F, Δω³ ∂³F, and Δω² ∂²F times `speed`.
 struct rotation_factors {
   double first, third, second;
 };
 
-/// The fluxes out of the angle c of five in the direction of motion; d and e lie downstream.
+/// Returns the fluxes out of the angle c of five angles in the direction of motion; d and e lie downstream.
 template <class N>
 APSIS_FORMULA rotation_fluxes<N> fluxes_of_rotation(const rotation_edge<N>& edge,
                                                     const rotation_factors& factors, bool fifth_order, N a,
@@ -46,8 +46,8 @@ APSIS_FORMULA rotation_fluxes<N> fluxes_of_rotation(const rotation_edge<N>& edge
   return {low, fma(edge.slope, along, edge.speed * upwind)};
 }
 
-/// The fraction of the corrections that leaves a value u ≥ 0 nonnegative, as limited_fraction(), where edges
-/// have different speeds. `inverse` = 1/τ: u − τ (out − in) ≥ 0.
+/// Returns the fraction of the corrections that leaves a value u ≥ 0 nonnegative, u − τ (out − in) ≥ 0 with
+/// `inverse` = 1/τ. Unlike in limited_fraction(), edges may have different speeds.
 template <class N>
 APSIS_FORMULA N fraction_of_rotation(const rotation_fluxes<N>& in, const rotation_fluxes<N>& out, N u,
                                      N inverse) {

@@ -9,7 +9,8 @@
 namespace apsis {
 namespace {
 
-/// Errors without a cell come first: they concern the whole run.
+/// Returns the cell of an error: the error in the lowest cell is thrown. An error without a cell (−1)
+/// concerns the whole run and precedes all others. Infinity means no error.
 double priority(const std::exception_ptr& mine) {
   if (!mine) return std::numeric_limits<double>::infinity();
   std::string message;

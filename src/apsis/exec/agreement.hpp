@@ -6,12 +6,13 @@
 
 namespace apsis {
 
-/// Throws on all processes if one of them has an error: the error of the smallest cell, then of the smallest
-/// rank, with its type (an exit code has one type of error), its message and its site. Collective; every
+/// Throws the same error on all processes if any of them has one. The error in the lowest cell takes
+/// precedence, then that of the lowest rank. Its type, message and site are preserved. Collective: every
 /// process passes its own error or nullptr.
 void agree_on_errors(communicator& processes, const std::exception_ptr& mine);
 
-/// Runs body(), without collective calls inside, on every process. If one throws, all throw the same error.
+/// Runs body() on every process. If one process throws, all throw the same error. body() must not make
+/// collective calls.
 template <class Body>
 void run_collectively(communicator& processes, const Body& body) {
   if (processes.is_single()) return body();

@@ -7,8 +7,8 @@
 namespace apsis {
 
 /// Alignment in bytes: a cache line, and the widest vector register. Rows of a field start on such a
-/// boundary, so that the order of operations in a vectorized loop, and hence every rounding error, is
-/// independent of addresses.
+/// boundary. The order of operations in a vectorized loop, and every rounding error, is then independent
+/// of addresses.
 inline constexpr std::size_t alignment = 64;
 
 /// Standard allocator of memory aligned to `alignment` bytes. Throws std::bad_alloc. All

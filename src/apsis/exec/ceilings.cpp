@@ -25,15 +25,15 @@ void triad(const double* b, const double* c, double s, std::size_t count, double
 
 constexpr int chains = 16;
 
-/// One multiply–add on each number, unrolled by the pack expansion, so that all numbers stay in registers
-/// independently of the optimizer.
+/// Applies one multiply–add to each number. The pack expansion unrolls the loop, so that all numbers stay in
+/// registers independently of the optimizer.
 template <class N, std::size_t... K>
 HWY_INLINE void advance(N (&x)[chains], N factor, N addend, std::index_sequence<K...>) {
   ((x[K] = fma(x[K], factor, addend)), ...);
 }
 
-/// Executes `rounds` × `chains` multiply–adds in independent chains; returns the sum, so that none can
-/// be optimized away.
+/// Executes `rounds` × `chains` multiply–adds of packs in independent chains. Returns the sum of the chains,
+/// so that the compiler cannot remove any.
 double multiply_adds(long rounds) {
   using N = pack<wide>;
   const N factor(0.999999), addend(1e-6);

@@ -4,10 +4,11 @@
 
 namespace apsis {
 
-/// A number that counts operations: kernels written for packs (exec/simd-inl.hpp) are instantiated with it to
+/// A number that counts operations. Kernels for packs (exec/simd-inl.hpp) are instantiated with it to
 /// obtain their operation count. An addition, multiplication, multiply–add, division, comparison, minimum,
-/// maximum or absolute value counts as one operation, one instruction on a pack. Selections and moves do not
-/// count. Data-dependent branches are assumed not taken: nothing is limited and nothing is exceptional.
+/// maximum or absolute value counts as one operation, because it is one instruction on a pack. Negations,
+/// selections and moves do not count. Branches that depend on data are assumed not taken: no number is
+/// limited or exceptional.
 class counted {
  public:
   /// Result of a comparison, without content.
@@ -63,7 +64,7 @@ struct counting_walk {
   counted load(const Where&...) const {
     return 0.0;
   }
-  /// Returns an arbitrary number, that of the downstream one of two rows, at no cost.
+  /// Returns an arbitrary number, in place of that of the downstream row, at no cost.
   template <class... Where>
   counted load_downstream(const Where&...) const {
     return 0.0;

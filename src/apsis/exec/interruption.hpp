@@ -9,21 +9,23 @@ namespace apsis {
 /// Work before the first step was interrupted, so that there is nothing to save.
 class interrupted_error : public error {
  public:
-  /// what() says so.
+  /// what() states that there is nothing to save.
   interrupted_error();
 };
 
-/// Makes work of the calling thread interruptible for its lifetime: long loops before the first step poll.
+/// Makes work of the calling thread interruptible while this object lives. Long loops before the first step
+/// call poll().
 class interruptible {
  public:
-  /// `check`: called by poll() some 20 times a second; it throws to end the work.
+  /// `check`: called by poll() at most 20 times a second; it throws to end the work.
   explicit interruptible(std::function<void()> check);
   ~interruptible();
   interruptible(const interruptible&) = delete;
   interruptible& operator=(const interruptible&) = delete;
 
-  /// Called by loops between pieces of their work; costs a comparison where nothing is interruptible, and
-  /// else the reading of a clock.
+  /// Calls `check` of the innermost object on this thread if 50 ms have passed since the last check. Loops
+  /// call it between pieces of their work. It costs a comparison without such an object, otherwise a reading
+  /// of the clock.
   static void poll();
 
  private:

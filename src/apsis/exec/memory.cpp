@@ -33,14 +33,15 @@ double number_in(const fs::path& path) {
   return in >> value ? value : unknown;
 }
 
-/// Memory left in one control group. The kernel reclaims the inactive part of the page cache on demand.
+/// Returns the bytes left in one control group. The inactive page cache counts as free, because the kernel
+/// reclaims it on demand.
 double left_in_group(const fs::path& group, const char* limit, const char* used, const char* cache) {
   const double most = number_in(group / limit), now = number_in(group / used);
   if (most == unknown || now == unknown) return unknown;
   return most - now + number_after(group / "memory.stat", cache, 0.0);
 }
 
-/// Minimum over control groups, each with the files of these names.
+/// Returns the minimum of left_in_group() over control groups.
 double left_in_groups(const std::vector<fs::path>& groups, const char* limit, const char* used,
                       const char* cache) {
   double left = unknown;
@@ -77,7 +78,7 @@ memory_limit available_memory(const fs::path& root) {
 
 void keep_freed_memory() {
 #ifdef __GLIBC__
-  constexpr int most = 0x7fffffff, largest_block_of_heap = 32 << 20;  // the largest that it accepts
+  constexpr int most = 0x7fffffff, largest_block_of_heap = 32 << 20;  // the largest that mallopt accepts
   mallopt(M_TRIM_THRESHOLD, most);
   mallopt(M_MMAP_THRESHOLD, largest_block_of_heap);
 #endif

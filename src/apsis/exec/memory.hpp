@@ -16,9 +16,9 @@ struct memory_limit {
 /// the file system with proc and sys; tests substitute their own.
 memory_limit available_memory(const std::filesystem::path& root = "/");
 
-/// Makes the C library keep up to 2 GiB of freed memory for later allocations, where it is that of GNU.
-/// Otherwise it returns large blocks to the system, and each later one takes pages that the system has to
-/// clear. This concerns the whole process: programs call it, the library does not.
+/// Makes the GNU C library retain up to 2 GiB of freed memory for later allocations; has no effect on other C
+/// libraries. By default, large blocks return to the system, which has to clear the pages of each later
+/// block. This concerns the whole process: programs call it, Apsis as a library does not.
 void keep_freed_memory();
 
 }  // namespace apsis

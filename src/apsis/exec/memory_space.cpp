@@ -12,7 +12,8 @@ namespace apsis {
 
 namespace {
 
-/// A page of this size costs about as much to take as one of 4 KiB. The system may ignore the advice.
+/// Asks the system for pages of 2 MiB, because one of them costs about as much to take as one of 4 KiB. The
+/// system may ignore the advice.
 void advise_huge_pages(void* memory, std::size_t bytes) {
   constexpr std::size_t huge = std::size_t{2} << 20;
   void* first = memory;

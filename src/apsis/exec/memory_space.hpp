@@ -6,8 +6,8 @@
 namespace apsis {
 
 /// Memory in which arrays of numbers live: that of the host, or that of a device. A space lives as long as
-/// the program, and is compared by its address. Only code that runs where a space lies follows pointers into
-/// it; all other code uses these functions.
+/// the program, and is compared by its address. Only code that runs where the memory lies may follow pointers
+/// into it. All other code uses these functions.
 class memory_space {
  public:
   memory_space() = default;
@@ -33,8 +33,8 @@ class memory_space {
   virtual void copy_to_host(const double* from, std::size_t count, double* host) const = 0;
 };
 
-/// Returns the memory of the host. allocate() does not touch it: the first thread to write a page gets the
-/// page near to its core.
+/// Returns the memory of the host. allocate() does not write to it, so that the thread that first writes a
+/// page gets the page near its core.
 const memory_space& host_memory();
 
 /// Numbers in a memory space, released with the object that owns them.
@@ -43,8 +43,8 @@ class stored_numbers {
   stored_numbers() = default;
   /// Allocates `count` uninitialized numbers. Throws std::bad_alloc.
   stored_numbers(std::size_t count, const memory_space& space);
-  stored_numbers(const stored_numbers&) = delete;              ///< the owner decides who copies
-  stored_numbers& operator=(const stored_numbers&) = delete;   ///< the owner decides who copies
+  stored_numbers(const stored_numbers&) = delete;              ///< not copyable
+  stored_numbers& operator=(const stored_numbers&) = delete;   ///< not copyable
   stored_numbers(stored_numbers&& other) noexcept;             ///< leaves the source empty
   stored_numbers& operator=(stored_numbers&& other) noexcept;  ///< leaves the source empty
   ~stored_numbers();

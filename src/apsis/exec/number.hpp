@@ -16,17 +16,16 @@
 //   }
 //   APSIS_AFTER_FORMULAS();
 //   #endif
-// In a kernel file, which is compiled once for each instruction set, it is included as often: a function must
-// carry the attributes of the instructions that it uses. APSIS_NUMBERS is the namespace of the instruction
-// set there; it is `scalar` in all other files.
+// A kernel file is compiled once for each instruction set and includes the header as often, because a
+// function must carry the attributes of the instructions that it uses. APSIS_NUMBERS is the namespace of the
+// instruction set there; it is `scalar` in all other files.
 //
-// Operations on numbers a, b, c of type N, beside + − * / and the comparisons < and >, whose result is a
-// mask:
+// Operations on numbers a, b, c of type N, beside + − * / and the comparisons < and >, which return a mask:
 //   N(x)                     the constant x;
 //   fma(a, b, c)             ab + c, rounded once (twice where the instruction set has no such instruction);
 //   negative_fma(a, b, c)    c − ab, rounded in the same way;
 //   select(mask, a, b)       a where the mask is set, else b;
-//   smaller(a, b)            a < b ? a : b, hence b if either is NaN; also larger(a, b);
+//   smaller(a, b)            a < b ? a : b, thus b if either is NaN; also larger(a, b);
 //   minimum(a, b)            as smaller, but unspecified if either is NaN or both are zeros; also maximum;
 //   absolute(a)              |a|;
 //   any<N>(mask), all<N>(mask)   whether the mask is set somewhere, or everywhere. A formula may use them to
@@ -35,8 +34,8 @@
 //   truncated(a)             a rounded towards 0, |a| < 2^31;
 //   power_of_two(a)          2^a for an integer −1022 ≤ a ≤ 1023;
 //   exponent_near_one(a)     e with 2^−e a between √½ and √2, for a normal and positive;
-//   scaled_near_one(a)       this 2^−e a.
-// Files with formulas on doubles are compiled with -ffp-contract=off: fma only where the source requests it.
+//   scaled_near_one(a)       2^−e a with this e.
+// Files with formulas on doubles are compiled with -ffp-contract=off, so that only the source requests fma.
 #if defined(HWY_TARGET_INCLUDE) || defined(APSIS_PACKS)
 #include <apsis/exec/simd-inl.hpp>
 #endif
@@ -44,7 +43,7 @@
 #ifndef APSIS_EXEC_NUMBER_HPP
 #define APSIS_EXEC_NUMBER_HPP
 
-/// Attribute of formulas: they are part of the loop that applies them.
+/// Attribute of formulas: inlined into the loop that applies them.
 #define APSIS_FORMULA inline __attribute__((always_inline))
 
 #if defined(HWY_TARGET_INCLUDE) || defined(APSIS_PACKS)
@@ -70,7 +69,7 @@ APSIS_FORMULA double fma(double a, double b, double c) {
 APSIS_FORMULA double negative_fma(double a, double b, double c) {
   return __builtin_fma(-a, b, c);
 }
-/// For every number type whose comparisons give a bool.
+/// Returns `yes` where the mask is set, else `no`; for every number type whose comparisons return bool.
 template <class N>
 APSIS_FORMULA N select(bool mask, N yes, N no) {
   return mask ? yes : no;
@@ -131,7 +130,7 @@ APSIS_FORMULA double truncated(double a) {
 APSIS_FORMULA double power_of_two(double a) {
   return from_bits(bits_of(a + (0x1p52 + 1023.0)) << 52);
 }
-/// The biased exponent of a 2^½, that of √½ being the first of its binade.
+/// Returns e + 1023 with e of exponent_near_one(): fractions from about √2 on carry into the exponent.
 APSIS_FORMULA unsigned long long biased_near_one(double a) {
   return (bits_of(a) + 0x00095f6200000000ull) >> 52;
 }
@@ -139,7 +138,7 @@ APSIS_FORMULA unsigned long long biased_near_one(double a) {
 APSIS_FORMULA double exponent_near_one(double a) {
   return static_cast<double>(static_cast<int>(biased_near_one(a)) - 1023);
 }
-/// Returns this 2^−e a.
+/// Returns 2^−e a with e of exponent_near_one(a).
 APSIS_FORMULA double scaled_near_one(double a) {
   return from_bits(bits_of(a) - ((biased_near_one(a) - 1023) << 52));
 }

@@ -1,5 +1,5 @@
-// Eight numbers side by side, whatever the length of vectors: sums of them and walks along them have the same
-// bits on every instruction set, and as eight lanes of a device.
+// Eight numbers side by side, whatever the length of vectors. Sums and walks over them have the same bits on
+// every instruction set, and in eight lanes of a device.
 #if defined(APSIS_EXEC_OCTET_INL_HPP) == defined(HWY_TARGET_TOGGLE)
 #ifdef APSIS_EXEC_OCTET_INL_HPP
 #undef APSIS_EXEC_OCTET_INL_HPP
@@ -117,10 +117,10 @@ struct several {
   }
 };
 
-/// Eight numbers: a vector where it holds so many, else several vectors.
+/// Eight numbers: one vector if it has eight lanes, otherwise several vectors.
 using octet = std::conditional_t<vectors_of_chains == 1, pack<wide>, several<vectors_of_chains>>;
 
-/// The vectors of an octet.
+/// Returns the vectors of an octet.
 HWY_INLINE const pack<wide>* vectors_of(const pack<wide>& x) {
   return &x;
 }
@@ -136,11 +136,12 @@ HWY_INLINE pack<wide>* vectors_of(several<Count>& x) {
   return x.part;
 }
 
-/// The operations that formulas ask of eight numbers (exec/octet.hpp), on this processor.
+/// The operations on eight numbers that formulas require (model/formulas/velocity_line.hpp), on
+/// this processor.
 struct octet_group {
   using number = octet;
 
-  /// The first `count` ≥ 1 numbers, all if there are more than eight; zeros behind them.
+  /// Returns the first min(count, 8) numbers, count ≥ 1, followed by zeros.
   HWY_INLINE octet load(const double* from, int count) const {
     octet x;
     constexpr int length = most_lanes / vectors_of_chains;
@@ -148,10 +149,10 @@ struct octet_group {
       vectors_of(x)[i] = load_some(from + i * length, count > i * length ? count - i * length : 0);
     return x;
   }
-  /// All eight numbers, read once.
+  /// Returns eight numbers; load_once() keeps them in registers.
   HWY_INLINE octet load(const double* from) const { return octet::load(from); }
   HWY_INLINE octet load_once(const double* from) const { return octet::load(from).loaded_once(); }
-  /// The first `count` ≥ 1 numbers of x, all if there are more than eight; zeros behind them.
+  /// Returns the first min(count, 8) numbers of x, count ≥ 1, followed by zeros.
   HWY_INLINE octet first(const octet& x, int count) const {
     octet some;
     constexpr int length = most_lanes / vectors_of_chains;
@@ -162,14 +163,14 @@ struct octet_group {
     }
     return some;
   }
-  /// Stores the first `count` ≥ 1 numbers, all if there are more.
+  /// Stores the first min(count, 8) numbers, count ≥ 1.
   HWY_INLINE void store(const octet& x, int count, double* to) const {
     constexpr int length = most_lanes / vectors_of_chains;
     for (int i = 0; i < vectors_of_chains && count > i * length; ++i)
       store_some(vectors_of(x)[i], count - i * length, to + i * length);
   }
   HWY_INLINE void store(const octet& x, double* to) const { x.store(to); }
-  /// 0 … 7.
+  /// Returns the numbers 0 … 7.
   HWY_INLINE octet numbers() const {
     octet x;
     constexpr int length = most_lanes / vectors_of_chains;
@@ -177,7 +178,7 @@ struct octet_group {
       vectors_of(x)[i] = pack<wide>(hn::Iota(wide(), static_cast<double>(i * length)));
     return x;
   }
-  /// The sum of all, halves of halves.
+  /// Returns the sum of all eight, by adding halves until one number remains.
   HWY_INLINE double total(const octet& x) const { return total_of_chains(vectors_of(x)); }
 };
 

@@ -19,8 +19,8 @@
 namespace apsis {
 namespace {
 
-/// Of the loops that this thread starts. Were it that of the process, a thread of Python could change it
-/// between the preparation of scratch memory for the threads of a loop and the loop.
+/// Number of threads of the loops that this thread starts. It is not shared by the process, because another
+/// thread of Python could then change it after a loop has prepared scratch memory for its threads.
 thread_local int thread_count = 1;
 std::atomic<std::size_t> fewest_shared = fewest_shared_numbers;
 
@@ -112,13 +112,13 @@ void run_parallel_for(int n, numbered_job body) {
 part_blocks::part_blocks(int n, int longest, int parts) : n_(n), parts_(std::max(1, parts)) {
   const int length = n_ / parts_ + (n_ % parts_ != 0 ? 1 : 0);
   whole_ = std::max(1, length / longest + (length % longest != 0 ? 1 : 0));
-  // Starting a block has a cost, so that short ones are not split.
+  // Short blocks are not split, because starting a block has a cost.
   const int last = length / whole_;
   pieces_ = parts_ == 1 || last < 32 ? 1 : last < 64 ? 2 : 4;
 }
 
 int part_blocks::begin(int block) const {
-  // In eighths of a whole block: the last one is split into a half, a quarter and two eighths.
+  // Where the pieces of the last block begin, in eighths of it: a half, a quarter and two eighths.
   static constexpr int eighths[] = {0, 4, 6, 7};
   const int part = block / per_part(), i = block % per_part();
   if (part == parts_) return n_;

@@ -19,18 +19,20 @@ int default_threads();
 int requested_threads();
 /// Returns the number of threads set by the calling thread; initially 1.
 int threads();
-/// Returns the number of threads of a loop started here: 1 inside another loop or below loops_over.
+/// Returns the number of threads of a loop started here: 1 inside another loop, or while a loops_over
+/// restricts loops to one thread.
 int threads_here();
 /// Returns the index of the calling thread: 0 … threads_here() − 1 in a loop, 0 outside loops.
 int thread_number();
 
-/// Loops over fewer numbers are faster on one thread than on several, which exchange them between their
-/// caches in every pass (docs/speed-measured.md, "Threads").
+/// Loops over fewer numbers run on one thread. Several threads would be slower, because they exchange the
+/// numbers between their caches in every pass (docs/speed-measured.md, "Threads").
 inline constexpr std::size_t fewest_shared_numbers = 16384;
 /// Replaces fewest_shared_numbers; for tests of threads on small fields.
 void share_loops_from(std::size_t numbers);
 
-/// Runs loops on the calling thread alone, for as long as it lives, if they pass over too few numbers.
+/// While an object of this class lives, loops of the calling thread run on this thread alone if they pass
+/// over too few numbers.
 class loops_over {
  public:
   /// `numbers`: size of the field over which the loops pass.
@@ -40,11 +42,11 @@ class loops_over {
   loops_over& operator=(const loops_over&) = delete;
 
  private:
-  bool outermost_;  ///< whether it ended the use of several threads
+  bool outermost_;  ///< whether this object restricts loops to one thread
 };
 
-/// Scratch space for every thread of a loop, prepared for all threads before the loop, so that memory use
-/// does not depend on which of them take part.
+/// Scratch space for every thread of a loop. It is prepared for all threads before the loop, so that memory
+/// use does not depend on which threads take part.
 template <class T>
 class per_thread {
  public:
@@ -82,21 +84,21 @@ struct numbered_job {
   }
   void operator()(int k) const { call(body, k); }  ///< calls body(k)
 };
-/// Compiled part of parallel_for.
+/// Non-template part of parallel_for.
 void run_parallel_for(int n, numbered_job job);
-/// Compiled part of parallel_tasks.
+/// Non-template part of parallel_tasks.
 void run_parallel_tasks(int n, numbered_job job);
 
-/// Runs body(k) for k = 0 … n−1 on all threads, in any order, neighbouring k on the same thread. Each k
-/// writes only its own data, so that results do not depend on the number of threads. An exception is rethrown
-/// after all threads have stopped; of several, that of the smallest k.
+/// Runs body(k) for k = 0 … n−1 on all threads, in any order, with neighbouring k on the same thread. Each k
+/// must write only its own data; results then do not depend on the number of threads. After all threads have
+/// stopped, rethrows the exception of the smallest k that failed.
 template <class Body>
 void parallel_for(int n, const Body& body) {
   run_parallel_for(n, numbered_job::of(body));
 }
 
 /// Splits 0 … n−1 into equal parts, one for each of `parts` threads, and each part into blocks of at most
-/// `longest`. The last blocks of a long part are short: block sizes taper for load balance.
+/// `longest`. At the end of a long part, block sizes taper for load balance.
 class part_blocks {
  public:
   /// Requires n ≥ 0 and longest ≥ 1; fewer than one part counts as one.
@@ -112,9 +114,9 @@ class part_blocks {
   int n_, parts_, whole_, pieces_;
 };
 
-/// Runs body(begin, end) for blocks of 0 … n−1 on all threads; see parallel_for. Whatever the block length,
-/// every thread gets the same part of the range: subsequent loops over the cells of a field find them in the
-/// caches of the core that wrote them.
+/// Runs body(begin, end) for blocks of 0 … n−1 on all threads; see parallel_for. Every thread gets the same
+/// part of the range, whatever the block length. Later loops over a field then find its cells in the caches
+/// of the core that wrote them.
 template <class Body>
 void parallel_blocks(int n, int longest, const Body& body) {
   const part_blocks blocks(n, longest, threads_here());

@@ -30,7 +30,7 @@ std::string first_line(const std::filesystem::path& file) {
   return line;
 }
 
-/// Minimum quota over the control groups of this process; 0 means no limit.
+/// Returns the fewest processors that a control group of this process grants; 0 means no limit.
 int processors_of_groups() {
   int least = 0;
   for (const auto& group : control_groups("/sys/fs/cgroup")) {
@@ -57,7 +57,7 @@ int available_processors() {
 
 int available_processors(int sharing) {
   const int all = available_processors();
-  // A launcher that binds processes to processors has shared them out already.
+  // A launcher that binds processes to processors has already divided them.
   const bool bound = processors_of_affinity() < static_cast<int>(std::thread::hardware_concurrency());
   return bound ? all : std::max(1, all / std::max(1, sharing));
 }

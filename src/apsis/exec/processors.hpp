@@ -8,7 +8,7 @@ namespace apsis {
 /// fewer if the CPU quota of a control group is smaller.
 int available_processors();
 
-/// Returns the number for one of `sharing` processes of the same run on this machine.
+/// Returns the number of processors for one of `sharing` processes of a run on this machine, at least 1.
 int available_processors(int sharing);
 
 /// Returns the number of processors that a line "quota period" of cpu.max (cgroup version 2) grants, rounded

@@ -14,16 +14,16 @@ enum class kernel {
   fluxes,       ///< flux limiter, T(u), and adding its multiples to the accumulators
   multiples,    ///< adding multiples of u alone to the accumulators
   halo,         ///< packing rows for other processes, and waiting for theirs
-  walls,        ///< rows beyond surfaces, and what enters through them
+  walls,        ///< rows beyond surfaces, and incoming components
   cut_cells,    ///< lines in cells that bodies cut, and T(u) there
   forces,       ///< forces and sources
   points,       ///< values at Gauss points from cell averages
   equilibria,   ///< moments and equilibria
   relaxation,   ///< convex combination with the equilibrium
-  derivatives,  ///< of fluxes and ends by moments, in a steady run
-  correction,   ///< of moments: assembly, factors and solutions of J
+  derivatives,  ///< derivatives of fluxes and boundary terms by moments, in a steady run
+  correction,   ///< correction of moments: assembly, factorization and solves with J
   implicit,     ///< implicit sweeps of a steady run
-  mixture,      ///< of iterates
+  mixture,      ///< mixture of iterates
   monitor       ///< minimum, conserved sums, entropy
 };
 /// Number of kernels.
@@ -41,7 +41,7 @@ struct kernel_work {
 struct kernel_totals {
   kernel which;    ///< the kernel
   double seconds,  ///< wall-clock time
-      numbers,     ///< numbers of the state processed, counted every time
+      numbers,     ///< numbers of the state processed, with repetitions
       operations,  ///< numbers times kernel_work::operations
       bytes;       ///< numbers times kernel_work::bytes
 };
@@ -63,7 +63,7 @@ void add(kernel which, double seconds, double numbers, const kernel_work& each);
 /// Times the enclosing scope as one call of a kernel on `numbers` numbers.
 class section {
  public:
-  /// Starts the timer if profiling is on. `threads`: those that the scope keeps from other work.
+  /// Starts the timer if profiling is on. `threads`: how many threads the scope keeps from other work.
   section(kernel which, double numbers, const kernel_work& each, int threads = 1)
       : on_(is_on()), which_(which), threads_(threads), numbers_(numbers), each_(each) {
     if (on_) start_ = std::chrono::steady_clock::now();

@@ -12,12 +12,12 @@ namespace apsis {
 struct sent_error {
   /// The type of the exception.
   enum kind : int { other, memory, input, numerical, output, claim, interrupted, interrupted_early };
-  int what = other;         ///< one of them
-  std::int64_t length = 0;  ///< of the message
-  failure_site site;        ///< of a numerical_error
+  int what = other;         ///< a kind
+  std::int64_t length = 0;  ///< length of the message in bytes
+  failure_site site;        ///< site of a numerical_error
 };
 
-/// Returns an error as it is sent, and its message.
+/// Returns an error as it is sent, and stores its text in `message`.
 sent_error describe(const std::exception_ptr& mine, std::string& message);
 
 /// Throws an exception of the type, with the message and the site of the original.

@@ -3,9 +3,9 @@
 //   #define HWY_TARGET_INCLUDE "apsis/scheme/limiter.cpp"     (the file itself)
 //   #include <hwy/foreach_target.h>
 //   #include <apsis/exec/simd-inl.hpp>
-// which is why this header may be included several times. The instruction set is chosen at run time
-// (Highway: HWY_EXPORT, HWY_DYNAMIC_DISPATCH), so that a program built for the baseline architecture is not
-// limited to it.
+// This header may therefore be included several times. The instruction set is chosen at run time (Highway:
+// HWY_EXPORT, HWY_DYNAMIC_DISPATCH), so that a program built for the baseline architecture is not limited
+// to it.
 #if defined(APSIS_CORE_SIMD_INL_HPP) == defined(HWY_TARGET_TOGGLE)
 #ifdef APSIS_CORE_SIMD_INL_HPP
 #undef APSIS_CORE_SIMD_INL_HPP
@@ -33,7 +33,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 #define APSIS_PACKED HWY_ATTR __attribute__((always_inline))
 #endif
 
-/// Widest vector, at most a cache line; rows of a field are padded to it (phase/field.hpp).
+/// Widest vector, at most a cache line; rows of a field are padded to it (mesh/field.hpp).
 using wide = hn::CappedTag<double, 8>;
 /// A single number, for the ends of rows that are not padded.
 using narrow = hn::CappedTag<double, 1>;
@@ -49,8 +49,8 @@ struct pack {
   HWY_INLINE pack(double from) : v(hn::Set(D(), from)) {}
   static HWY_INLINE pack load(const double* from) { return {hn::LoadU(D(), from)}; }
   HWY_INLINE void store(double* to) const { hn::StoreU(v, D(), to); }
-  /// Returns the same values, kept in a register: a compiler may repeat a load for every use, which costs
-  /// time where loads are the bottleneck.
+  /// Returns the same values, kept in a register. Otherwise a compiler may repeat a load for every use, which
+  /// costs time where loads are the bottleneck.
   HWY_INLINE pack loaded_once() const {
     pack copy = *this;
 #if HWY_ARCH_X86 && HWY_COMPILER_GCC_ACTUAL  // clang rejects this operand
@@ -97,8 +97,8 @@ HWY_INLINE pack<D> larger(pack<D> a, pack<D> b) {
   return select(a > b, a, b);
 }
 
-/// Returns 2^−e for a = 2^e m, 1 ≤ m < 2, a normal and below 2^1022: scales like a division, without its
-/// rounding and cost.
+/// Returns 2^−e for a = 2^e m, 1 ≤ m < 2, a normal and below 2^1022. Multiplying by it scales like a
+/// division, without the rounding and the cost.
 template <class D>
 HWY_INLINE pack<D> inverse_power_of_two(pack<D> a) {
   const hn::RebindToUnsigned<D> bits;
@@ -122,7 +122,7 @@ HWY_INLINE pack<D> absolute(pack<D> a) {
   return {hn::Abs(a.v)};
 }
 
-/// The other operations of exec/number.hpp on exponents.
+/// Returns a rounded towards 0. exec/number.hpp defines this and the following operations.
 template <class D>
 HWY_INLINE pack<D> truncated(pack<D> a) {
   return {hn::PromoteTo(D(), hn::DemoteTo(hn::Rebind<std::int32_t, D>(), a.v))};
@@ -134,7 +134,8 @@ HWY_INLINE pack<D> power_of_two(pack<D> a) {
   return {hn::BitCast(D(), hn::ShiftLeft<52>(hn::BitCast(bits, (a + pack<D>(0x1p52 + 1023.0)).v)))};
 }
 
-/// The biased exponent of a 2^½, that of √½ being the first of its binade, as an integer.
+/// Returns e + 1023 as an integer, with e of exponent_near_one(): fractions from about √2 on carry into
+/// the exponent.
 template <class D>
 HWY_INLINE auto biased_near_one(pack<D> a) {
   const hn::RebindToUnsigned<D> bits;
@@ -145,7 +146,7 @@ HWY_INLINE auto biased_near_one(pack<D> a) {
 template <class D>
 HWY_INLINE pack<D> exponent_near_one(pack<D> a) {
   const hn::RebindToUnsigned<D> bits;
-  // An integer below 2^52 is the fraction of 2^52 + itself.
+  // The fraction bits of 2^52 + n are the integer n < 2^52.
   const auto shifted = hn::Or(biased_near_one(a), hn::BitCast(bits, hn::Set(D(), 0x1p52)));
   return pack<D>(hn::BitCast(D(), shifted)) - pack<D>(0x1p52 + 1023.0);
 }
@@ -170,10 +171,10 @@ HWY_INLINE bool all(Mask mask) {
 /// Largest number of doubles in a `wide` vector.
 inline constexpr int most_lanes = 8;
 
-/// The first `count` ≥ 0 numbers, all if there are more than a vector holds; zeros behind them.
+/// Returns the first `count` ≥ 0 numbers, at most a whole vector, followed by zeros.
 HWY_INLINE pack<wide> load_some(const double* from, int count) {
   if (count >= static_cast<int>(hn::Lanes(wide()))) return pack<wide>::load(from);
-  // Reads no more than that where a vector is longer than two.
+  // MaskedLoad of vectors longer than two numbers reads none beyond `count`.
   if constexpr (HWY_MAX_BYTES > 16)
     return pack<wide>(hn::MaskedLoad(hn::FirstN(wide(), static_cast<std::size_t>(count)), wide(), from));
   alignas(64) double all[most_lanes] = {};
@@ -181,18 +182,18 @@ HWY_INLINE pack<wide> load_some(const double* from, int count) {
   return pack<wide>::load(all);
 }
 
-/// Stores the first `count` numbers, all if there are more than a vector holds.
+/// Stores the first `count` numbers, at most a whole vector.
 HWY_INLINE void store_some(pack<wide> x, int count, double* to) {
   if (count >= static_cast<int>(hn::Lanes(wide()))) return x.store(to);
   hn::BlendedStore(x.v, hn::FirstN(wide(), static_cast<std::size_t>(count)), wide(), to);
 }
 
-/// Sums that do not depend on the instruction set: number j is added in chain j mod sum_chains. A vector
-/// holds one number of some chains.
+/// Sums that do not depend on the instruction set: number j is added in chain j mod sum_chains. Each lane of
+/// a vector belongs to one chain.
 inline constexpr int sum_chains = 8;
 inline constexpr int vectors_of_chains = sum_chains / static_cast<int>(hn::MaxLanes(wide()));
 
-/// The sum of all chains, halves of halves.
+/// Returns the sum of all chains, by adding halves until one number remains.
 HWY_INLINE double total_of_chains(const pack<wide>* of_vectors) {
   pack<wide> all[vectors_of_chains];
   for (int i = 0; i < vectors_of_chains; ++i) all[i] = of_vectors[i];

@@ -2,7 +2,7 @@
 
 namespace apsis {
 
-/// Returns the CPU seconds of the calling thread, which for sequential work do not depend on the load
+/// Returns the CPU time of the calling thread in seconds. For sequential work it does not depend on the load
 /// of the machine.
 double thread_seconds();
 

@@ -1,5 +1,5 @@
-// Why not oneTBB: loops of microseconds take up to 1.3 times as long on a busy machine. Why not OpenMP: it
-// waits for preempted threads (docs/measured.md).
+// This team replaces oneTBB, whose loops of microseconds take up to 1.3 times as long on a busy machine. It
+// also replaces OpenMP, which waits for preempted threads (docs/measured.md).
 #include <apsis/exec/thread_team.hpp>
 
 #include <apsis/exec/processors.hpp>
@@ -24,7 +24,7 @@ namespace {
 
 std::atomic<long> forks_of_this_process = 0;
 
-/// Counts the forks in the ancestry of this process.
+/// Starts to count the forks in the ancestry of this process.
 void watch_forks() {
   static const int watched = pthread_atfork(nullptr, nullptr, [] { ++forks_of_this_process; });
   static_cast<void>(watched);  // if it fails, a child process runs at the speed of one thread
@@ -90,7 +90,7 @@ class first_failure {
 /// Jobs left in the part of one thread, on a cache line of its own.
 struct alignas(64) remaining {
   std::atomic<int> next = 0;
-  std::atomic<bool> owned = false;  ///< its thread has started on it
+  std::atomic<bool> owned = false;  ///< the thread of this part has started
   int end = 0;
 
   bool any() const { return next.load(std::memory_order_relaxed) < end; }
@@ -108,16 +108,16 @@ struct alignas(64) seat {
 struct thread_team::shared {
   explicit shared(int workers) : seats(std::make_unique<seat[]>(static_cast<std::size_t>(workers) + 1)) {}
 
-  // A region is open while its jobs are handed out. Its data do not change while any worker is inside.
+  // A region is open while threads may take its jobs. Its data do not change while any worker is inside.
   static constexpr int open = 1 << 30;
-  alignas(64) std::atomic<int> inside = 0;  ///< workers inside, plus `open`
+  alignas(64) std::atomic<int> inside = 0;  ///< number of workers inside, plus `open`
 
   numbered_job job{};
   split mode = split::parts;
   int n = 0, threads = 1;
   std::array<remaining, most_threads> parts;
   first_failure failure;
-  std::unique_ptr<seat[]> seats;  ///< of workers 1, 2, …; that of the caller is unused
+  std::unique_ptr<seat[]> seats;  ///< seats of workers 1, 2, …; that of the caller is unused
   microseconds spin_limit{0};     ///< time that a thread spins before it sleeps
 
   bool enter() {
@@ -131,7 +131,7 @@ struct thread_team::shared {
     if (inside.fetch_sub(1, std::memory_order_release) == 1) inside.notify_all();
   }
 
-  /// Runs jobs of a part and returns how many.
+  /// Runs jobs of a part; returns their number.
   int take(remaining& part, int end) {
     int taken = 0;
     while (part.next.load(std::memory_order_relaxed) < end) {
@@ -146,9 +146,9 @@ struct thread_team::shared {
   int work(int own) {
     if (mode == split::one_by_one) return take(parts[0], n);
     if (own >= threads) return 0;
-    // Every thread runs its own part first, whose memory is close to it, and then steals from the others:
-    // processors may differ in speed or be preempted. The last job of a part is left to its owner if that has
-    // started, otherwise short parts would migrate between caches.
+    // Every thread first runs its own part, whose memory is close to it. It then steals from the others,
+    // because processors may differ in speed and threads may be preempted. An owner that has started keeps
+    // the last job of its part; otherwise short parts would migrate between caches.
     parts[static_cast<std::size_t>(own)].owned.store(true, std::memory_order_relaxed);
     int taken = 0;
     for (int p = 0; p < threads; ++p) {
@@ -159,7 +159,8 @@ struct thread_team::shared {
     return taken;
   }
 
-  /// Runs jobs of owners that are not running.
+  /// Runs the jobs that are still left after 2 µs, because their owners are not running; returns
+  /// their number.
   int work_of_others() {
     constexpr microseconds until_owner_comes(2);
     const auto nothing_left = [this] {
@@ -175,7 +176,7 @@ struct thread_team::shared {
     return taken;
   }
 
-  /// Closes the region and waits for the workers that hold a job.
+  /// Closes the region and waits for the workers that still run a job.
   void close() {
     inside.fetch_and(~open, std::memory_order_relaxed);
     const auto alone = [this] { return inside.load(std::memory_order_acquire) == 0; };
@@ -210,8 +211,8 @@ thread_team::thread_team(int size)
 
 void team_overhead::add(const times& at, int own, int n) {
   using seconds = std::chrono::duration<double>;
-  // Debts below the limit are the price of waking workers; backing off for 12 debts bounds the loss to one
-  // part in 13.
+  // Debts below the limit are the cost of waking workers. Backing off for 12 debts bounds the loss to 1/13 of
+  // the time.
   constexpr double limit = 2e-4, backoff_per_debt = 12.0;
   if (own == 0) return;  // the workers did everything
   const double alone = seconds(at.worked - at.called).count() * n / own;

@@ -15,8 +15,8 @@ struct region_position {
 /// Returns the position of the calling thread.
 region_position& this_thread_position();
 
-/// Compares the cost of parallel regions with an estimated sequential cost and decides when the caller should
-/// run regions alone for a while: a worker preempted while it holds a job delays the whole region.
+/// Decides when the caller should run regions alone for a while. It compares the cost of parallel regions
+/// with an estimate for the caller alone, because a worker preempted during a job delays the whole region.
 class team_overhead {
  public:
   /// Timestamps of a region.
@@ -31,7 +31,7 @@ class team_overhead {
   void add(const times& at, int own, int n);
   /// Whether regions should run on the caller alone at time `now`.
   bool backs_off(std::chrono::steady_clock::time_point now) const { return now < backoff_until_; }
-  /// The same for the current time; reads no clock unless a debt has ever been incurred.
+  /// Whether regions should run on the caller alone now. Reads no clock before the first time of backing off.
   bool backs_off() const {
     return backoff_until_ != std::chrono::steady_clock::time_point() &&
            backs_off(std::chrono::steady_clock::now());
@@ -42,9 +42,9 @@ class team_overhead {
   std::chrono::steady_clock::time_point backoff_until_{};
 };
 
-/// The threads of one caller: itself and workers that wait between parallel regions. A preempted worker
-/// is not waited for: the caller takes over its jobs and at the end of a region waits only for workers
-/// that hold one.
+/// The threads of one caller: itself and workers that wait between parallel regions. The caller does not wait
+/// for a preempted worker, but takes over its jobs. At the end of a region it waits only for workers that run
+/// a job.
 class thread_team {
  public:
   /// Distribution of the jobs 0 … n−1 of a region over the threads.

@@ -13,7 +13,7 @@ namespace apsis {
 /// Throws std::runtime_error with the text of MPI if a call failed.
 void check_mpi(int code, const char* what);
 
-/// The error of a process that fails alone, on its way to the processes that wait for it.
+/// Sends the error of a process that fails alone to the processes that wait for it.
 class failure_notice {
  public:
   /// Listens on a communicator that carries no other messages.
@@ -24,7 +24,7 @@ class failure_notice {
 
   /// Whether another process has announced its error.
   bool arrived();
-  /// Whether an announcement was seen or sent.
+  /// Whether this process has received or sent an announcement.
   bool known() const { return arrived_ || !sending_.empty(); }
   /// Throws the announced error with the rank of its process.
   [[noreturn]] void raise() const { raise(received_); }

@@ -20,7 +20,7 @@
 namespace apsis {
 namespace {
 
-/// MPI counts with int: longer data are sent in pieces.
+/// MPI counts with int, so that longer data are sent in pieces.
 constexpr std::size_t longest_piece = std::size_t{1} << 30U;
 
 template <class T>
@@ -29,7 +29,8 @@ int count_of(std::span<T> values) {
   return static_cast<int>(values.size());
 }
 
-/// A duplicate of an MPI communicator. `session` finalizes MPI after it, if this program initialized it.
+/// A duplicate of an MPI communicator. `session` finalizes MPI after the communicator if this program
+/// initialized MPI.
 class mpi_communicator final : public communicator {
  public:
   explicit mpi_communicator(MPI_Comm of, std::shared_ptr<void> session = nullptr)
@@ -50,7 +51,7 @@ class mpi_communicator final : public communicator {
     int finalized = 0;
     MPI_Finalized(&finalized);
     if (finalized != 0) {
-      static_cast<void>(notice_.release());  // its request is gone
+      static_cast<void>(notice_.release());  // MPI_Finalize has ended its request
       return;
     }
     notice_.reset();
@@ -101,7 +102,7 @@ class mpi_communicator final : public communicator {
   /// Messages of this process that are under way.
   struct pending {
     std::vector<MPI_Request> requests;
-    std::size_t received = 0;  ///< the first ones receive
+    std::size_t received = 0;  ///< how many of the requests, the first ones, receive
 
     bool complete() {
       int all_done = 0;
@@ -149,8 +150,8 @@ class mpi_communicator final : public communicator {
     for (std::size_t k = 0; k < std::min(messages.received, messages.requests.size()); ++k)
       if (messages.requests[k] != MPI_REQUEST_NULL) MPI_Cancel(&messages.requests[k]);
   }
-  /// Withdraws messages, so that their memory may be freed. Messages of others are discarded meanwhile, since
-  /// they also wait here.
+  /// Withdraws messages, so that their memory may be freed. Meanwhile discards messages of other processes,
+  /// because their senders wait for this process.
   void abandon(pending& messages) {
     cancel_received(messages);
     for (const stopwatch waited; !messages.complete() && waited.seconds() < longest_withdrawal; pause())
@@ -192,8 +193,9 @@ class mpi_communicator final : public communicator {
     wait(both);
   }
 
-  /// Combines the values of all processes on all of them, by recursive doubling: log₂ messages one after
-  /// another. Processes beyond a power of two give their values to a neighbour and get the result from it.
+  /// Combines the values of all processes on every process by recursive doubling: about log₂(size) messages,
+  /// one after another. Processes beyond a power of two send their values to a neighbour and receive the
+  /// result from it.
   template <class T, class Combine>
   void reduce(std::span<T> values, const Combine& combine) {
     throw_if_failed();
@@ -287,7 +289,7 @@ class mpi_communicator final : public communicator {
 
   static constexpr int gathers = 1, exchanges = 2, reductions = 3, broadcasts = 4;  // tags
   static constexpr long turns_of_notice = 8, turns_of_signals = 1024, turns_of_spinning = 1000;
-  static constexpr double delay_of_notice = 0.1,  ///< s: processes that fail together need none
+  static constexpr double delay_of_notice = 0.1,  ///< s; processes that fail together need no notice
       longest_withdrawal = 10.0;                  ///< s
 
   std::shared_ptr<void> session_;

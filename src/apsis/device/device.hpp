@@ -30,13 +30,13 @@ class device {
 
   /// Returns the name of the processor.
   virtual std::string name() const = 0;
-  /// Returns its memory.
+  /// Returns the memory of the device.
   virtual const memory_space& memory() const = 0;
-  /// Returns the size of its memory in bytes.
+  /// Returns the size of the memory in bytes.
   virtual std::size_t bytes() const = 0;
-  /// Returns the bytes of it that are free.
+  /// Returns the number of free bytes of the memory.
   virtual std::size_t free_bytes() const = 0;
-  /// Starts a kernel. `arguments` are copied.
+  /// Starts a kernel by its name. `arguments` are copied.
   virtual void start(std::string_view kernel, const launch_size& size, const void* arguments,
                      std::size_t bytes_of_arguments) = 0;
   /// Waits until all launches are complete.
@@ -49,16 +49,16 @@ class device {
   }
 };
 
-/// A kind of devices: a file of device/backends/ defines `extern const device_backend_entry
-/// device_backend_<file>`.
+/// A kind of device: a file of device/backends/ defines `extern const
+/// device_backend_entry device_backend_<file>`.
 struct device_backend_entry {
   std::string name;         ///< "cuda"
   std::string description;  ///< one line
-  bool is_real;             ///< false for processors of the host that take the part of a device
-  /// Returns the names of all devices that are found; throws nothing.
+  bool is_real;             ///< false if the host plays the device, for tests
+  /// Returns the names of all devices found; throws nothing.
   std::vector<std::string> (*names)();
-  /// Returns a device by its number. Throws input_error where no device has this number, or it cannot run
-  /// the kernels.
+  /// Opens a device by its index in names(). Throws input_error if the device cannot run the kernels, and
+  /// io_error if it fails.
   std::unique_ptr<device> (*open)(int number);
 };
 

@@ -12,7 +12,7 @@ namespace {
 
 constexpr int attempts = 5;
 
-/// Wall-clock seconds until a device has done a job.
+/// Returns the wall-clock seconds that a device needs for a job.
 template <class Job>
 double seconds_of(device& on, const Job& job) {
   on.finish();
@@ -22,7 +22,7 @@ double seconds_of(device& on, const Job& job) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-/// The best time of a job after one that loads the kernel.
+/// Returns the best time of several attempts at a job; the first one also loads the kernel.
 template <class Job>
 double best_seconds(device& on, const Job& job) {
   double best = seconds_of(on, job);
@@ -45,7 +45,7 @@ double multiply_adds_per_second(device& on) {
   constexpr long rounds = 4096;
   constexpr double long_enough = 0.02, factor = 0.999999, addend = 1e-6;
   constexpr int most_blocks = 1 << 20;
-  // The launch grows until its time exceeds by far that of its start.
+  // Enlarges the launch until its time far exceeds that of its start.
   for (int blocks = 1;; blocks *= 2) {
     stored_numbers sums(static_cast<std::size_t>(blocks) * independent_lanes, on.memory());
     const kernel::arguments of{sums.data(), rounds, factor, addend};

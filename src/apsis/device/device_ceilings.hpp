@@ -6,7 +6,7 @@
 
 namespace apsis {
 
-/// Performance ceilings of a device, measured on the spot by kernels. Each is the best of several attempts,
+/// Performance ceilings of a device, measured by kernels at each call. Each is the best of several attempts,
 /// because a ceiling is the performance of an undisturbed machine.
 
 /// Measures the memory bandwidth in bytes per second: copies of arrays of `count` numbers each, 16 bytes per

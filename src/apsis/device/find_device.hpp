@@ -11,16 +11,16 @@ namespace apsis {
 /// A device of this machine.
 struct found_device {
   std::string place;  ///< "cuda:0": kind and number
-  std::string name;   ///< of the processor
+  std::string name;   ///< name of the processor
 };
 
-/// Returns the devices of this machine; those of tests are not among them.
+/// Returns the devices of this machine, without those for tests.
 std::vector<found_device> found_devices();
 
-/// Opens a device: the first one by "", one of found_devices() by its number there or its place, or one of a
-/// kind for tests by its name. `process`: the number of this process among those of the machine; so many
-/// devices behind the one of a number is that of the process, in turn. Throws input_error with those that
-/// there are, and what device_backend_entry::open() throws.
+/// Opens a device. `wanted` is "" for the first device, the number or the place of one in found_devices(), or
+/// the name of a kind for tests. `process` is the number of this process on this machine. With "" or a
+/// number, process p opens the p-th device after the wanted one, in cyclic order. Throws input_error with a
+/// list of the devices if none is wanted, and what device_backend_entry::open() throws.
 std::shared_ptr<device> open_device(const std::string& wanted, int process = 0);
 
 }  // namespace apsis

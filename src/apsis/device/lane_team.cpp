@@ -14,7 +14,7 @@
 
 namespace apsis {
 
-/// The stacks of the lanes, of pages that the system provides when they are used.
+/// The stacks of the lanes. The system provides their pages on first use.
 struct lane_team::stacks {
   static constexpr std::size_t bytes = std::size_t{256} << 10;
 
@@ -73,7 +73,7 @@ void lane_team::order_lanes() {
   }
 }
 
-/// Contexts pass numbers of type int alone: a pointer in two parts.
+/// Runs the body of a lane. Contexts pass only numbers of type int, so that a pointer comes in two parts.
 void lane_team::enter(unsigned high, unsigned low) {
   auto* team = reinterpret_cast<lane_team*>((static_cast<std::uintptr_t>(high) << 32) | low);
   const int lane = team->running_;
@@ -82,7 +82,8 @@ void lane_team::enter(unsigned high, unsigned low) {
   ++team->ended_;
 }
 
-/// A function of its own, as getcontext() may return more than once for all that the compiler knows.
+/// Prepares the context of a lane. It is a separate function because the compiler assumes that getcontext()
+/// may return more than once.
 void lane_team::prepare(std::size_t lane) {
   const auto self = reinterpret_cast<std::uintptr_t>(this);
   ucontext_t& context = stacks_->contexts[lane];

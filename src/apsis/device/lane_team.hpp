@@ -28,21 +28,22 @@ class team_lane {
 
 /// The orders in which a team runs its lanes from one call of team_lane::wait() to the next.
 enum class lane_order {
-  forward,   ///< by their numbers
-  backward,  ///< by their numbers, the last one first
-  random     ///< by pseudorandom numbers, in another order each time
+  forward,   ///< by increasing number
+  backward,  ///< by decreasing number
+  random     ///< in a pseudorandom order, another one each time
 };
 
-/// The lanes of a block on one thread of the host. Each of them has a stack of its own, and runs until it
-/// waits; the next one runs then. A kernel that does not depend on the order of its lanes has the same
-/// results in every order, and one in which a wait() is missing has others.
+/// The lanes of a block on one thread of the host. Each lane has a stack of its own, and runs until it waits;
+/// then the next lane runs. A correct kernel has the same results in every order of its lanes. A kernel in
+/// which a wait() is missing has different ones.
 class lane_team {
  public:
-  /// A team of `lanes` that share so many numbers, which are NaN at the beginning of every block.
+  /// Makes a team of `lanes` with shared memory for `shared_numbers` numbers, which are NaN at the beginning
+  /// of every block.
   lane_team(int lanes, std::size_t shared_numbers, lane_order order);
   ~lane_team();
-  lane_team(const lane_team&) = delete;             ///< lanes refer to it
-  lane_team& operator=(const lane_team&) = delete;  ///< lanes refer to it
+  lane_team(const lane_team&) = delete;             ///< not copyable
+  lane_team& operator=(const lane_team&) = delete;  ///< not copyable
 
   /// Runs body(lane) in all lanes of block number `block` of `blocks`. Throws std::logic_error if some lanes
   /// wait while others have ended.

@@ -12,7 +12,7 @@
 namespace apsis {
 namespace {
 
-/// The blocks of a launch for so many cells.
+/// Returns the size of a launch for `count` cells.
 template <class Kernel>
 launch_size launch_of_cells(int count) {
   return {(count + Kernel::cells - 1) / Kernel::cells, Kernel::lanes,

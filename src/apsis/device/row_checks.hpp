@@ -11,29 +11,29 @@
 
 namespace apsis {
 
-/// compute_squares() for all rows of two states on a device, with the same bits. Copies two numbers of every
-/// cell to the host.
+/// Returns compute_squares() for all rows of two states on a device, with the same bits. Copies two numbers
+/// of every cell to the host.
 std::vector<row_squares> compute_squares(device& on, const field& u, const field& v);
 
-/// Checks of all rows of a state on a device, with the bits of the host. Copies seven numbers of every cell
-/// to the host.
+/// Checks of all rows of a state on a device, with the same bits as on the host. Copies seven to nine numbers
+/// of every cell to the host.
 class device_row_checks {
  public:
   /// The checks of a row.
   struct row {
     row_extremes extremes;    ///< compute_extremes()
     const double* densities;  ///< model::invariant_densities()
-    double entropy;           ///< of a row without negative numbers, if the model has an entropy
+    double entropy;           ///< entropy of a row without negative numbers, if the model has one
   };
 
-  /// Makes the checks of the cells of the gas in a mesh; null if the model has no kernel for them. `on` and
-  /// `equation` must outlive the object.
+  /// Returns the checks for the cells of a mesh that contain gas; null if there is no kernel for the model.
+  /// `on` and `equation` must outlive the object.
   static std::unique_ptr<device_row_checks> make(device& on, const model& equation, const grid& mesh);
   virtual ~device_row_checks() = default;
 
   /// Checks all rows.
   virtual void evaluate(const field& u) = 0;
-  /// Returns the checks of a row of the last evaluate().
+  /// Returns the checks of the row of a cell from the last evaluate(), which the next one overwrites.
   virtual row of(int cell) const = 0;
 };
 

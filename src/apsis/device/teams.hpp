@@ -7,8 +7,8 @@
 
 namespace apsis {
 
-/// Returns a device whose kernels run on the host, lane by lane, for tests. Its memory is apart from that of
-/// the host, and NaN at first.
+/// Returns a device whose kernels run on the host, lane by lane, for tests. Its memory is separate from that
+/// of the host, and initially NaN.
 std::unique_ptr<device> make_team_device(lane_order order);
 
 }  // namespace apsis

@@ -13,8 +13,8 @@
 namespace apsis {
 namespace {
 
-/// The functions of the CUDA driver that are needed, declared as in its documentation (CUDA Driver
-/// API, 12.0). They return 0 on success.
+/// The required functions of the CUDA driver, declared as in its documentation (CUDA Driver API, 12.0). They
+/// return 0 on success.
 struct cuda_functions {
   using address = std::uint64_t;
   using handle = void*;
@@ -48,7 +48,7 @@ struct cuda_functions {
     error_text(error, &text);
     return fmt::format("CUDA error {}: {}", error, text == nullptr ? "unknown" : text);
   }
-  /// Finds all of them; false if the library lacks one.
+  /// Looks up all functions; returns false if the library lacks one.
   bool find_in(const driver_library& library) {
     return library.find("cuInit", init) && library.find("cuDeviceGetCount", device_count) &&
            library.find("cuDeviceGet", device_of) && library.find("cuDeviceGetName", device_name) &&
@@ -66,10 +66,10 @@ struct cuda_functions {
   }
 };
 
-/// The driver as driven_device asks for it.
+/// The CUDA driver with the interface that driven_device requires.
 class cuda_driver : public driver_calls<cuda_functions> {
  public:
-  /// A device that is open, with its kernels.
+  /// An open device with its kernels.
   struct context {
     context(const cuda_driver& of, int number) : driver(of) {
       driver.require(driver.call_.device_of(&device, number), "it was opened");

@@ -12,8 +12,8 @@
 namespace apsis {
 namespace {
 
-/// The functions of the HIP runtime that are needed, declared as in its documentation (HIP 5.0). They return
-/// 0 on success.
+/// The required functions of the HIP runtime, declared as in its documentation (HIP 5.0). They return 0
+/// on success.
 struct hip_functions {
   using handle = void*;
 
@@ -37,7 +37,7 @@ struct hip_functions {
     return driver_library({"libamdhip64.so", "libamdhip64.so.7", "libamdhip64.so.6", "libamdhip64.so.5"});
   }
   std::string describe(int error) const { return fmt::format("HIP error {}: {}", error, error_text(error)); }
-  /// Finds all of them; false if the library lacks one.
+  /// Looks up all functions; returns false if the library lacks one.
   bool find_in(const driver_library& library) {
     return library.find("hipInit", init) && library.find("hipGetDeviceCount", device_count) &&
            library.find("hipDeviceGetName", device_name) && library.find("hipSetDevice", set_device) &&
@@ -49,14 +49,14 @@ struct hip_functions {
   }
 };
 
-/// The runtime as driven_device asks for it.
+/// The HIP runtime with the interface that driven_device requires.
 class hip_driver : public driver_calls<hip_functions> {
  public:
-  /// A device that is open, with its kernels.
+  /// An open device with its kernels.
   struct context {
     context(const hip_driver& driver, int number) {
       driver.require(driver.call_.set_device(number), "it was opened");
-      // The runtime accepts the code of its own processor alone.
+      // The runtime loads only code for the processor of the device.
       for (const auto& one : device_code_objects())
         if (std::string_view(one.processor).starts_with("gfx") && driver.call_.load(&code, one.code) == 0)
           return;
@@ -96,7 +96,7 @@ class hip_driver : public driver_calls<hip_functions> {
   }
 
   void launch(handle function, const launch_size& size, const void* arguments, std::size_t bytes) const {
-    // The marks of the runtime for a buffer with all arguments, its size, and the end.
+    // In the runtime, 1 marks a buffer with all arguments, 2 its size, and 3 the end of the list.
     void* extra[] = {reinterpret_cast<void*>(1), const_cast<void*>(arguments), reinterpret_cast<void*>(2),
                      &bytes, reinterpret_cast<void*>(3)};
     require(

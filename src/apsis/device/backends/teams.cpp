@@ -13,7 +13,7 @@
 namespace apsis {
 namespace {
 
-/// Memory of the host that stands for that of a device: what is not copied there is NaN.
+/// Memory of the host in the role of device memory. New numbers are NaN until they are written.
 class team_memory final : public memory_space {
  public:
   std::string_view name() const override { return "lanes on the host"; }

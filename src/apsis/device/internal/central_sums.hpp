@@ -4,22 +4,22 @@
 
 namespace apsis::kernels {
 
-/// Central moments Σ w g Π_k c_k^p_k of a row g up to some degree, as central_sums has them.
+/// Central moments Σ w g Π_k c_k^p_k of a row g up to some degree, as in central_sums.
 template <int Dimensions, int Degree>
 struct central_sums_of_row {
   static constexpr int along(int dimension) { return Dimensions > dimension ? Degree + 1 : 1; }
 
   double of[along(0)][along(1)][along(2)] = {};  ///< of[p_1][p_2][p_3]
 
-  /// That with exponents p.
+  /// Returns the moment with exponents p.
   APSIS_FORMULA double operator()(const int* p) const { return of[p[0]][p[1]][p[2]]; }
-  /// Σ c_k g.
+  /// Returns Σ w c_k g.
   APSIS_FORMULA double first(int k) const { return of[k == 0][k == 1][k == 2]; }
-  /// Σ c_k c_l g.
+  /// Returns Σ w c_k c_l g.
   APSIS_FORMULA double second(int k, int l) const {
     return of[(k == 0) + (l == 0)][(k == 1) + (l == 1)][(k == 2) + (l == 2)];
   }
-  /// Σ c_k c_l² g.
+  /// Returns Σ w c_k c_l² g.
   APSIS_FORMULA double third(int k, int l) const {
     return of[(k == 0) + 2 * (l == 0)][(k == 1) + 2 * (l == 1)][(k == 2) + 2 * (l == 2)];
   }
@@ -28,19 +28,19 @@ struct central_sums_of_row {
 /// Memory for the sums of a cell up to some degree.
 struct memory_of_central_sums {
   double *powers,  ///< shared: powers of the velocities of all directions but the last
-      *planes;     ///< of the device, in three dimensions: for each power of the first component
+      *planes;     ///< memory of the device, in three dimensions: a plane for each power of c_1
 
-  /// How many numbers `powers` has.
+  /// Returns the length of `powers`.
   static constexpr APSIS_FORMULA int powers_of(const gas_rows& rows, int degree) {
     return (degree + 1) * (rows.points - rows.of[rows.dimensions - 1].n);
   }
-  /// How many numbers `planes` has.
+  /// Returns the length of `planes`.
   static constexpr APSIS_FORMULA long planes_of(const gas_rows& rows, int degree) {
     return rows.dimensions < 3 ? 0 : static_cast<long>(degree + 1) * rows.of[1].n * rows.of[2].n;
   }
 };
 
-/// The accumulator of powers that central_sums has for some degree.
+/// The accumulator of powers that central_sums uses for a degree.
 template <bool MoreThanThree>
 struct powers_of_degree {
   using sums = scalar::sums_of_powers<double>;
@@ -50,14 +50,14 @@ struct powers_of_degree<true> {
   using sums = scalar::sums_of_six_powers<double>;
 };
 
-/// Sums up to a highest degree by directions, one after the other, by eight lanes for each row. The lanes of
-/// a block call all functions together.
+/// Computes sums up to a highest degree, one direction after the other, with eight lanes for each row. All
+/// lanes of a block must call each function together.
 template <int Dimensions, int Highest, class Group>
 struct central_summation {
   const Group& group;
   const gas_rows& rows;
   const double* u;                ///< bulk velocity
-  memory_of_central_sums memory;  ///< of the cell
+  memory_of_central_sums memory;  ///< memory of the cell
 
   /// Prepares the powers of c_k in all directions but the last.
   APSIS_FORMULA void start() const {
@@ -72,7 +72,7 @@ struct central_summation {
     group.lane.wait();
   }
 
-  /// The sums of a row.
+  /// Returns the sums of a row.
   template <int Degree>
   APSIS_FORMULA central_sums_of_row<Dimensions, Degree> sum(const double* g) const {
     using namespace scalar;
@@ -99,8 +99,8 @@ struct central_summation {
     return memory.powers + (k == 0 ? 0 : (Highest + 1) * rows.of[0].n);
   }
 
-  /// Calls put(p, q, Σ w c_k^p c^q f), c along the last direction, for lines along it whose velocities are
-  /// those of direction k; p < Functions, p + q < Functions.
+  /// Calls put(p, q, Σ w c_k^p c^q f) for all p + q < Functions, where c is the component along the last
+  /// direction. `f` has a line along that direction for each velocity of direction k.
   template <class Powers, int Functions, class Put>
   APSIS_FORMULA void sum_lines(const double* f, int k, const Put& put) const {
     using namespace scalar;
@@ -120,7 +120,7 @@ struct central_summation {
     using namespace scalar;
     const int plane = rows.of[1].n * rows.of[2].n;
     const lines_of_grid of{g, plane, rows.of[0].n, powers(0)};
-    group.lane.wait();  // for those who still read the planes of another row
+    group.lane.wait();  // other lanes may still read the planes of another row
     for (int j = 0; j < plane; j += octet_length) {
       double sum[Functions];
       sum_over_lines<Functions, 1, gas_rows::halvings>(group, columns_of_grid::from(of, j, 1), sum);

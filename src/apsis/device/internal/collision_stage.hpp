@@ -12,22 +12,23 @@ namespace apsis::kernels {
 /// unchanged and are marked.
 struct collision_stage {
   double* u;                       ///< rows of all cells
-  double* marks;                   ///< of every cell: 1 if it remains unchanged, else 0
+  double* marks;                   ///< mark of every cell: 1 if the cell remains unchanged, else 0
   const double* epsilon;           ///< ε of every cell
   long stride;                     ///< numbers of a row
-  int first, last;                 ///< cells
-  int by_viscosity;                ///< whether C is the rate by viscosity instead of 1
-  scalar::rate_by_viscosity rate;  ///< this rate
+  int first, last;                 ///< cells first … last − 1
+  int by_viscosity;                ///< whether C is `rate` instead of 1
+  scalar::rate_by_viscosity rate;  ///< the rate from a viscosity
   double a, b;                     ///< a ≥ 0, b ≤ 0
 
-  /// Returns the cell of a group. Groups beyond the last cell get the last one, because all lanes join the
-  /// sums.
+  /// Returns the cell of a group. Groups beyond the last cell get the last one, because all lanes take part
+  /// in the sums.
   template <class Group>
   APSIS_FORMULA int cell_of(const Group& group) const {
     const int number = first + group.number_in_launch();
     return number < last ? number : last - 1;
   }
-  /// Marks the cell of a group. Returns whether the group has to solve it.
+  /// Marks the cell of a group; `by_formula` states that the kernel can solve it. Returns whether the group
+  /// has to solve it.
   template <class Group>
   APSIS_FORMULA bool takes(const Group& group, bool by_formula) const {
     const int number = first + group.number_in_launch();
@@ -40,7 +41,7 @@ struct collision_stage {
   APSIS_FORMULA relaxation_weights<double> weights(int cell, double rho, double T) const {
     return relax_weights(a, b, rate_of(rho, T), epsilon[cell]);
   }
-  /// Returns the coefficients of the stage of such a cell.
+  /// Returns the coefficients of the stage of a cell with density ρ > 0 and temperature T.
   APSIS_FORMULA stage_coefficients coefficients(int cell, double rho, double T) const {
     return coefficients_of_stage(a, b, rate_of(rho, T), epsilon[cell]);
   }

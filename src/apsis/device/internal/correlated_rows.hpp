@@ -5,19 +5,19 @@
 
 namespace apsis::kernels {
 
-/// Rows of Gaussians whose components depend on each other, as correlated_gaussian(); eight lanes for each
-/// row.
+/// Rows of Gaussians with correlated velocity components, as correlated_gaussian(), with eight lanes for
+/// each row.
 template <int Dimensions>
 struct correlated_rows {
-  /// Numbers of the tables of a row in three dimensions.
+  /// Returns the number of numbers in the tables of a row, which three dimensions need.
   static constexpr APSIS_FORMULA long numbers_of_tables(const gas_rows& rows) {
     if (rows.dimensions < 3) return 0;
     const long n0 = rows.of[0].n, n1 = rows.of[1].n, n2 = rows.of[2].n;
     return n0 * n1 + n0 * n2 + n1 * n2;
   }
 
-  /// row ← the Gaussian, which the lanes of the block may read when this function returns. Any numbers for a
-  /// covariance that is not positive definite.
+  /// row ← the Gaussian. All lanes of the block may read it when this function returns. The numbers are
+  /// arbitrary if the covariance is not positive definite.
   template <class Group>
   static APSIS_FORMULA void put(const Group& group, const gas_rows& rows, const fluid_state& state,
                                 const scalar::small_matrix<Dimensions>& covariance,
@@ -47,7 +47,7 @@ struct correlated_rows {
   struct ends {
     double of[3];
   };
-  /// The largest |c_k|.
+  /// Returns the largest |c_k| for every k.
   static APSIS_FORMULA ends farthest(const gas_rows& rows, const fluid_state& state) {
     ends found{};
     for (int k = 0; k < 3; ++k) {
@@ -59,7 +59,7 @@ struct correlated_rows {
     return found;
   }
 
-  /// Line by line.
+  /// row ← the Gaussian, line by line.
   template <class Group>
   static APSIS_FORMULA void put_lines(const Group& group, const gas_rows& rows, const fluid_state& state,
                                       const scalar::conditional_gaussian<Dimensions>& of, double* row) {

@@ -28,7 +28,7 @@ const gas_model& gas_of(const model& equation, stage_solution stages) {
 /// Lanes that share the work on a cell.
 constexpr int lanes_of_cell = scalar::octet_length;
 
-/// Numbers that a cell needs in the memory of a block.
+/// Returns how many numbers a cell needs in the memory of a block.
 std::size_t shared_by_cell(const gas_model& gas, const kernels::gas_rows& rows) {
   using namespace kernels;
   int numbers = most_totals * lanes_of_cell;
@@ -41,7 +41,7 @@ std::size_t shared_by_cell(const gas_model& gas, const kernels::gas_rows& rows) 
   return static_cast<std::size_t>(numbers);
 }
 
-/// Numbers that a cell needs in the memory of the device.
+/// Returns how many numbers a cell needs in the memory of the device.
 std::size_t room_of_cell(const gas_model& gas, const kernels::gas_rows& rows) {
   using namespace kernels;
   return static_cast<std::size_t>(gas.as_ellipsoidal() != nullptr ? collide_es_bgk::numbers_of_room(rows)
@@ -49,10 +49,10 @@ std::size_t room_of_cell(const gas_model& gas, const kernels::gas_rows& rows) {
                                                                   : 0);
 }
 
-/// Memory that blocks have on every device, 48 KiB.
+/// Numbers of shared memory that a block has on every device, 48 KiB.
 constexpr std::size_t most_shared = 6144;
 
-/// A launch for so many cells, with as many of them in a block as its memory and 128 lanes allow.
+/// Returns a launch for `cells` cells. A block has as many of them as its memory and 128 lanes allow.
 launch_size launch_of_cells(int cells, std::size_t shared_by_cell) {
   int together = launch_room::cells_of_block;
   while (static_cast<std::size_t>(together) * shared_by_cell > most_shared) together /= 2;
@@ -134,7 +134,7 @@ void device_collision::launch(const kernels::collision_stage& stage) {
     device_.launch<kernels::collide>(size, {stage, rows, formulas});
 }
 
-/// Solves the cells that the kernel has left.
+/// Solves on the host the cells that the kernel has left unchanged.
 void device_collision::solve_rest(double a, double b, const cell_range& cells, field& u) {
   const memory_space& memory = device_.memory();
   const auto first = static_cast<std::size_t>(cells.begin),

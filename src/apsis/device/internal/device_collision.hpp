@@ -14,15 +14,16 @@
 
 namespace apsis {
 
-/// make_pointwise_collision() on a device, with the same bits: stages of the BGK model, of Shakhov's and of
-/// the ellipsoidal one, whose velocities are a product of lines. Cells for whose equilibrium Newton's method
-/// does not converge from a Gaussian, and those whose target is cut off, are solved on the host, row by row.
+/// make_pointwise_collision() on a device, with the same bits. It solves stages of the BGK, Shakhov and
+/// ellipsoidal models on velocity grids that are products of lines. The host solves two kinds of cells,
+/// row by row: those whose target is cut off, and those whose equilibrium Newton's method does not find
+/// from a Gaussian.
 ///
 /// Its states live in the memory of the device.
 class device_collision final : public collision {
  public:
-  /// `on` and `equation` must outlive the operator. Arguments as of make_pointwise_collision(). Throws
-  /// input_error where why_not() has a reason.
+  /// `on` and `equation` must outlive the operator. The other arguments are those of
+  /// make_pointwise_collision(). Throws input_error if why_not() returns a reason.
   device_collision(device& on, const model& equation, std::vector<double> epsilon, bool keeps_sign,
                    std::vector<cell_range> cells, stage_solution stages);
 
@@ -30,14 +31,14 @@ class device_collision final : public collision {
   static std::string why_not(const model& equation, stage_solution stages);
 
   void solve(double t, double a, double b, field& u) override;
-  /// On the host, with copies of the states.
+  /// Runs on the host, with copies of the states.
   void add_collision(double t, const field& u, std::span<const target<field, double>> targets) override;
   /// On the host, with a copy of the state.
   double forward_euler_step(const field& u) const override;
   /// On the host, with a copy of the state.
   double relaxation_time(const field& u) const override;
   double take_cut() override;
-  /// Returns how many cells all stages so far have left to the host.
+  /// Returns how many cells the host has solved in all stages so far.
   long solved_on_host() const { return solved_on_host_; }
 
  private:

@@ -13,16 +13,16 @@
 
 namespace apsis {
 
-/// The force on a device, with the same bits. The host evaluates accelerations.
+/// `force` on a device, with the same bits. The host evaluates the accelerations.
 class device_force {
  public:
-  /// `on` and `gas` must outlive the object; other arguments as of force.
+  /// `on` and `gas` must outlive the object; the arguments are those of `force`.
   device_force(device& on, const gas_model& gas, std::shared_ptr<domain> space, acceleration of,
                const limited_reconstruction& edges);
 
-  /// As force::add(), for states on the device. Collective, also where a process fails.
+  /// Does the same as force::add(), for states on the device. Collective, even if a process fails.
   void add(double t, const field& u, std::span<const target<field, double>> targets);
-  /// Returns the force on the host, with what the last add() gave and lost.
+  /// Returns the force on the host, with given() and losses() of the last add().
   force& on_host() { return host_; }
   /// Returns the force on the host.
   const force& on_host() const { return host_; }

@@ -10,7 +10,7 @@ namespace {
 
 static_assert(velocity_rows::longest_chain == scalar::longest_chain_of_line, "host and device halve alike");
 
-/// The numbers of all directions, one after the other.
+/// Returns the numbers of all directions, one direction after the other.
 template <class Numbers>
 std::vector<double> of_directions(const velocity_grid& grid, const Numbers& numbers) {
   std::vector<double> all;
@@ -21,12 +21,13 @@ std::vector<double> of_directions(const velocity_grid& grid, const Numbers& numb
   return all;
 }
 
-/// Factors in the sums of kernels: ½v² on an even line, functions of all lines otherwise.
+/// Returns the factors in the sums of kernels: ½v² on an evenly spaced line, otherwise the functions of
+/// all lines.
 const aligned_vector<double>& functions_of(const velocity_grid& grid) {
   return grid.dimensions() == 1 && grid.uniform() ? grid.half_square() : grid.functions_of_lines();
 }
 
-/// The weights of all velocities, or nothing if they are equal.
+/// Returns the weights of all velocities; an empty list if they are equal.
 std::span<const double> weights_of(const velocity_grid& grid) {
   return grid.uniform() ? std::span<const double>() : grid.set().weights();
 }

@@ -12,13 +12,13 @@ namespace apsis {
 /// Arguments of kernels that describe the rows of a gas, in the memory of a device.
 class device_gas_rows {
  public:
-  /// `on` and `molecules` must outlive the object. The gas must be one that kernels can have.
+  /// `on` and `molecules` must outlive the object. Kernels must support the gas: why_not() returns "".
   device_gas_rows(const device& on, const gas& molecules);
 
-  /// Returns why kernels cannot have the rows of a gas, as a clause; "" if they can.
+  /// Returns why kernels do not support the rows of a gas, as a clause; "" if they do.
   static std::string why_not(const gas& molecules);
 
-  /// Returns view() without any pointer.
+  /// Returns the numbers of view(), without its pointers.
   static kernels::gas_rows shape(const gas& molecules);
   /// Returns the arguments of kernels, which live as long as this object.
   kernels::gas_rows view() const;

@@ -97,13 +97,13 @@ bool device_transport::add_transport(double t, const field& u, targets_view targ
   return false;
 }
 
-/// Its sums are those of all processes, even if this one has failed.
+/// Adds the force. This is collective: the sums are over all processes, even if this one has failed.
 void device_transport::add_force(double t, const field& u, targets_view targets, first_error& failure) const {
   failure.run([&] { force_->add(t, u, targets); });
   std::vector<double> given = force_->on_host().given();
   const auto& losses = force_->on_host().losses();
   given.insert(given.end(), losses.begin(), losses.end());
-  // One process keeps what all have received together.
+  // Only the root accounts for the amount that all processes have received.
   if (!space_->processes().is_root()) std::fill(given.begin(), given.end(), 0.0);
   surfaces_.set_inside(given);
 }
@@ -116,7 +116,7 @@ void device_transport::sweep_all(double t, const field& u, targets_view targets)
 
 void device_transport::sweep(int direction, const field& u, targets_view targets) const {
   constexpr auto most = static_cast<std::size_t>(kernels::sweep_arguments::most_targets);
-  // Without targets the sweep sets the rows at surfaces alone.
+  // Without targets the sweep only sets the rows at surfaces.
   std::size_t first = 0;
   do {
     const auto some = targets.subspan(first, std::min(most, targets.size() - first));

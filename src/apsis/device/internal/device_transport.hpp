@@ -16,36 +16,36 @@ namespace apsis {
 
 class first_error;
 
-/// Returns the name of the kernel with the edges of a reconstruction, "sweep_weno5_z" of "weno5-z". Throws
-/// input_error if that kernel is missing.
+/// Returns the name of the kernel for a reconstruction, such as "sweep_weno5_z" for "weno5-z". Throws
+/// input_error if this kernel is missing.
 std::string kernel_of_reconstruction(const std::string& name);
 
-/// upwind_transport on a device, with the same bits. Boundaries are evaluated on the host, with the rows next
+/// upwind_transport on a device, with the same bits. The host evaluates boundaries with the rows next
 /// to them.
 ///
 /// Its states live in the memory of the device.
 class device_transport final : public transport {
  public:
-  /// `on`, `equation` and `unknown` must outlive the operator. `kernel` is that of the reconstruction
-  /// (kernel_of_reconstruction()). Throws input_error where why_not() has a reason.
+  /// `on`, `equation` and `unknown` must outlive the operator. `kernel` is kernel_of_reconstruction() of the
+  /// scheme of `edges`. Throws input_error if why_not() returns a reason.
   device_transport(device& on, const model& equation, std::shared_ptr<domain> space,
                    limited_reconstruction edges, const cell_unknown& unknown, std::string kernel);
 
   /// Returns why transport cannot run on a device, as a clause; "" if it can.
   static std::string why_not(const model& equation, const domain& space, const limited_reconstruction& edges);
 
-  /// Not fused: `then` is not called, and false is returned.
+  /// Does not fuse the stage: does not call `then`, and returns false.
   bool add_transport(double t, const field& u, std::span<const target<field, double>> targets,
                      const cells_job& then = {}) const override;
   void combine(std::span<const linear_term<field, double>> terms, field& sum) const override;
   std::span<const double> budget_rates() const override { return surfaces_.rates(); }
   std::vector<double> observe_surfaces(double t, const field& u) const override;
 
-  /// Throws input_error for a model that is no gas on a product of lines, or as the force does.
+  /// Throws input_error unless the model is a gas on a product of velocity lines, and the errors of `force`.
   void set_force(acceleration of) override;
-  /// Throws input_error: rotations are not on the device.
+  /// Throws input_error, because the kernel for rotations is missing.
   void set_rotation(int radial) override;
-  /// Throws input_error: sources are not on the device.
+  /// Throws input_error, because the kernel for sources is missing.
   void set_source(source_rate rate) override;
 
   double forward_euler_step() const override { return host_.forward_euler_step(); }
@@ -64,12 +64,12 @@ class device_transport final : public transport {
   std::shared_ptr<domain> space_;
   limited_reconstruction edges_;
   std::string kernel_;
-  upwind_transport host_;  ///< its step sizes
+  upwind_transport host_;  ///< for step sizes
   mutable surface_rows surfaces_;
   std::vector<swept_segments> along_;  ///< [direction]
   std::vector<line_speeds> speeds_;
   std::unique_ptr<device_force> force_;
-  double share_ = 1.0;  ///< of limit_for_steps()
+  double share_ = 1.0;  ///< argument of limit_for_steps()
 };
 
 }  // namespace apsis

@@ -11,10 +11,10 @@
 
 namespace apsis {
 
-/// Directions of a copy.
+/// Direction of a copy.
 enum class copy_kind { to_device, to_host, inside };
 
-/// Memory of a device by the functions of its `Driver`:
+/// Memory of a device, implemented with functions of its `Driver`:
 ///   allocate(bytes, memory)         memory ← an address, null if there is not enough
 ///   release(memory), clear(memory, bytes), copy(to, from, bytes, kind)
 template <class Driver>
@@ -49,7 +49,7 @@ class driver_memory final : public memory_space {
   std::string name_;
 };
 
-/// A device by the functions of its `Driver`, beside those of driver_memory:
+/// A device, implemented with functions of its `Driver` beside those of driver_memory:
 ///   find()                      the driver of this machine, or null
 ///   count(), name_of(number)    the devices
 ///   context                     a type that opens device `number` with Driver, and loads the kernels
@@ -81,7 +81,7 @@ class driven_device final : public device {
     for (int k = 0; driver != nullptr && k < driver->count(); ++k) all.push_back(driver->name_of(k));
     return all;
   }
-  /// Opens a device, of those that names() has.
+  /// Opens the device with this index in names().
   static std::unique_ptr<device> open(int number) {
     return std::make_unique<driven_device>(*Driver::find(), number);
   }

@@ -12,7 +12,7 @@
 
 namespace apsis {
 
-/// The calls that drivers of all vendors have. `Functions` is a table of them with
+/// The calls that drivers of all vendors have. `Functions` is a table of these calls with
 ///   handle                               a pointer without a type
 ///   library()                            the library, which may be missing
 ///   find_in(library)                     fills the table; false if the library lacks a function
@@ -41,7 +41,8 @@ class driver_calls {
   void finish() const { require(call_.synchronize(), "kernels ran"); }
 
  protected:
-  /// Returns the only Driver of this machine; null if it has none, or an older one without these functions.
+  /// Returns the only Driver of this machine; null if there is no driver, or an older one that lacks
+  /// a function.
   template <class Driver>
   static const Driver* only() {
     static const std::optional<Driver> found = [] {
@@ -52,7 +53,7 @@ class driver_calls {
     return found ? &*found : nullptr;
   }
 
-  /// Throws io_error unless a result is success.
+  /// Throws io_error unless `result` is 0; the message states what failed, `doing`.
   void require(int result, const char* doing) const {
     if (result != 0)
       throw io_error(fmt::format("the device failed while {} ({}); restart from the last checkpoint", doing,

@@ -5,7 +5,7 @@
 namespace apsis {
 
 driver_library::driver_library(std::initializer_list<const char*> names) {
-  // Drivers have threads and handlers of their own, and are not made for being closed.
+  // The library is never closed, because drivers have threads and handlers of their own.
   for (const char* name : names)
     if (void* library = dlopen(name, RTLD_NOW | RTLD_LOCAL); library != nullptr) {
       library_ = std::shared_ptr<void>(library, [](void*) {});

@@ -6,15 +6,15 @@
 
 namespace apsis {
 
-/// A shared library of a driver, opened while the program runs.
+/// The shared library of a driver, opened at run time.
 class driver_library {
  public:
-  /// Opens the first of several names that the system finds.
+  /// Opens the first of these libraries that the system finds.
   explicit driver_library(std::initializer_list<const char*> names);
 
-  /// Whether one was found.
+  /// Whether a library was found.
   bool found() const { return library_ != nullptr; }
-  /// Sets a pointer to a function of the library; returns whether it has one of this name.
+  /// Sets a pointer to a function of the library; returns whether the library has a function of this name.
   template <class Function>
   bool find(const char* name, Function*& function) const {
     function = reinterpret_cast<Function*>(symbol(name));

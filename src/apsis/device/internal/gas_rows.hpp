@@ -7,22 +7,23 @@
 
 namespace apsis::kernels {
 
-/// Rows of a gas on the product of one to three velocity lines: f, or (g, h) where molecules have more
-/// degrees of freedom than velocities (model/gas.hpp). All pointers are those of the device.
+/// Rows of a gas on the product of one to three velocity lines. A row is f, or (g, h) if molecules have
+/// more degrees of freedom than the grid has dimensions (model/gas.hpp). All pointers are in the memory of
+/// the device.
 struct gas_rows {
-  static constexpr int halvings = 12;                                            ///< of sums over lines
-  static constexpr int most_lines = scalar::longest_chain_of_lines << halvings;  ///< which halves can be
-  static constexpr int halvings_of_line = 4;                                     ///< of sums along a line
+  static constexpr int halvings = 12;  ///< levels at which sums over lines are halved
+  static constexpr int most_lines = scalar::longest_chain_of_lines << halvings;  ///< their largest number
+  static constexpr int halvings_of_line = 4;  ///< levels at which sums along a line are halved
   static constexpr int most_velocities_of_line = scalar::longest_chain_of_line
-                                                 << halvings_of_line;  ///< which halves can be
+                                                 << halvings_of_line;  ///< their largest number
 
   /// Velocities of a direction.
   struct direction {
     const double *v,      ///< velocities
-        *weights;         ///< of the quadrature; nullptr: all are 1
-    int n,                ///< how many
+        *weights;         ///< weights of the quadrature; nullptr: all are 1
+    int n,                ///< number of velocities
         even;             ///< whether they are evenly spaced
-    double spacing, max;  ///< Δv and the end of the line, if so
+    double spacing, max;  ///< Δv and the end of an evenly spaced line
 
     APSIS_FORMULA scalar::variances variances_at(double u) const {
       return even != 0 ? scalar::variances_at(v, n, spacing, u) : scalar::variances_at(v, n, u);
@@ -31,18 +32,18 @@ struct gas_rows {
 
   direction of[3];          ///< each direction
   const double *functions,  ///< velocity_grid::functions_of_lines(), or ½v² of an even line
-      *weights;             ///< of all velocities; nullptr: all are 1
+      *weights;             ///< weights of all velocities; nullptr: all are 1
   int dimensions,           ///< 1, 2 or 3
       degrees,              ///< degrees of freedom
-      size,                 ///< velocities
-      points,               ///< of all directions together
+      size,                 ///< number of velocities
+      points,               ///< sum of the points of all directions
       uniform;              ///< whether all directions are evenly spaced
-  double weight;            ///< of the sums
+  double weight;            ///< weight of the sums
 
   /// Whether a row is (g, h).
   APSIS_FORMULA bool reduced() const { return degrees > dimensions; }
 
-  /// ω ← the moments of a row, as gas::moments(). Eight lanes for each row of a block take part.
+  /// ω ← the moments of a row, as gas::moments(). All lanes of the block take part, eight for each row.
   template <int Dimensions, class Group>
   APSIS_FORMULA void moments(const Group& group, const double* row, double* omega) const {
     using namespace scalar;
@@ -57,21 +58,21 @@ struct gas_rows {
     if (reduced()) omega[Dimensions + 1] += 0.5 * mass<Dimensions>(group, row + size);
   }
 
-  /// Σ f log f, or that of (g, h), without the weight of the sums, as gas::entropy().
+  /// Returns the entropy of a row as gas::entropy() does, without the weight of the sums.
   template <class Group>
   APSIS_FORMULA double entropy(const Group& group, const double* row) const {
     return scalar::entropy_of_row(group, weights, row, reduced() ? row + size : nullptr,
                                   0.5 * (degrees - dimensions), size);
   }
 
-  /// The state of ω, as gas::state().
+  /// Returns the state of ω, as gas::state() does.
   template <int Dimensions>
   APSIS_FORMULA fluid_state state(const double* omega) const {
     return reduced() ? scalar::reduced_gas{Dimensions, degrees}.state(omega)
                      : to_fluid_state(omega, Dimensions);
   }
 
-  /// c ← the components v − u of a last line, without that along it.
+  /// c ← the components of v − u across a line along the last direction.
   template <int Dimensions>
   APSIS_FORMULA void components_across(int line, const double* u, double* c) const {
     if constexpr (Dimensions == 2) c[0] = of[0].v[line] - u[0];
@@ -89,7 +90,7 @@ struct gas_rows {
     return all;
   }
 
-  /// Powers along the last direction of sums over lines, weighted by so many functions.
+  /// sums[f] ← the sums of powers along the last direction, over lines weighted by function f < Functions.
   template <int Dimensions, int Functions, class Group>
   APSIS_FORMULA void sum(const Group& group, const double* row, scalar::sums_of_powers<double>* sums) const {
     using namespace scalar;
@@ -117,7 +118,7 @@ struct gas_rows {
     omega[Dimensions + 1] = weight * scalar::energy_of_grid(mine[2], across > 1 ? mine[across + 1] : 0.0);
   }
 
-  /// As kinetic_mass().
+  /// Returns the mass of a row, as kinetic_mass() does.
   template <int Dimensions, class Group>
   APSIS_FORMULA double mass(const Group& group, const double* row) const {
     scalar::sums_of_powers<double> sums[1];

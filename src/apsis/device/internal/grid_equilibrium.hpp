@@ -7,14 +7,14 @@
 
 namespace apsis::kernels {
 
-/// Which equilibria are formulas.
+/// The cells whose equilibrium is a closed formula.
 enum class equilibrium_formulas {
-  none,         ///< of no cell
-  where_exact,  ///< where the moments are exact
-  all           ///< of all cells
+  none,         ///< no cell
+  where_exact,  ///< cells where the formula has exact moments
+  all           ///< all cells
 };
 
-/// Calls put(first velocity, value) for the octets of a Gaussian, as velocity_rows::gaussians().
+/// Calls put(first velocity, value) for the octets of a Gaussian, as velocity_rows::gaussians() does.
 template <class Group, class Put>
 APSIS_FORMULA void gaussian_on_line(const Group& group, const scalar::spaced_line& line,
                                     const scalar::gaussian_of_line& curve, const Put& put) {
@@ -29,7 +29,7 @@ APSIS_FORMULA void gaussian_on_line(const Group& group, const scalar::spaced_lin
                 static_cast<int>(centre), line, curve, put);
 }
 
-/// values ← a Gaussian, as gaussians_on().
+/// values ← a Gaussian on a line, as gaussians_on().
 template <class Group>
 APSIS_FORMULA void put_gaussian(const Group& group, const gas_rows::direction& of,
                                 const scalar::gaussian_of_line& curve, double* values) {
@@ -40,19 +40,20 @@ APSIS_FORMULA void put_gaussian(const Group& group, const gas_rows::direction& o
     put(j, gaussian_start(curve.a, group.load(of.v + j, of.n - j) - curve.u, curve.per()));
 }
 
-/// The equilibrium of a cell as the product of functions along each direction: Gaussians, or the weights that
-/// Newton's method finds next to them.
+/// The equilibrium of a cell as a product of one function along each direction: a Gaussian, or the weights
+/// next to it that Newton's method finds.
 template <int Dimensions>
 struct grid_equilibrium {
   fluid_state of_g;                       ///< state of g alone
   double others;                          ///< h/g
   scalar::functions_of_directions along;  ///< the functions
-  double factor;                          ///< of their product
-  bool found;                             ///< whether the rest is the equilibrium
-  line_moments moments;                   ///< those of the product, if known
+  double factor;                          ///< factor of the product
+  bool found;                             ///< whether the other members are the equilibrium
+  line_moments moments;                   ///< moments of the product, if known
 
-  /// Finds that of moments ω with the state s, together with the other lanes of the block. `free`: as many
-  /// numbers of shared memory as the directions have points. The lanes see the functions after the next wait.
+  /// Finds the equilibrium of moments ω with the state s, together with the other lanes of the block. `free`
+  /// is shared memory for as many numbers as the directions have points. Other lanes may read the functions
+  /// after the next wait.
   template <class Group>
   APSIS_FORMULA void find(const Group& group, const gas_rows& rows, equilibrium_formulas closed_forms,
                           const double* omega, const fluid_state& s, double* free) {
@@ -78,7 +79,8 @@ struct grid_equilibrium {
   }
 
  private:
-  /// The state of g, of (g, h) as in gas::moments_of_g(). Returns whether the equilibrium may be a Gaussian.
+  /// Sets the state of g and h/g, for (g, h) as in gas::moments_of_g(). Returns whether the equilibrium may
+  /// be a Gaussian.
   APSIS_FORMULA bool set_state(const gas_rows& rows, const double* omega, const fluid_state& s) {
     of_g = s;
     others = 0.0;
@@ -94,7 +96,7 @@ struct grid_equilibrium {
     return others == others && of_g.admissible();
   }
 
-  /// As formula_has_exact_moments().
+  /// Whether the formula has exact moments, as formula_has_exact_moments().
   APSIS_FORMULA bool has_exact_moments(const gas_rows& rows) const {
     bool exact = rows.uniform != 0;
     for (int k = 0; k < Dimensions; ++k)
@@ -103,9 +105,9 @@ struct grid_equilibrium {
     return exact;
   }
 
-  /// Newton's method in the cells that need it, as nearby_maxwellian(). Returns whether it has found the
-  /// weights of this cell, and sets the factor and moments of their product then. All lanes of a block take
-  /// part.
+  /// Runs Newton's method in the cells that need it, as nearby_maxwellian(). Returns whether it has found
+  /// the weights of this cell; if so, sets the factor and the moments of their product. All lanes of a block
+  /// take part.
   template <class Group>
   APSIS_FORMULA bool find_weights(const Group& group, const gas_rows& rows, bool wanted,
                                   double* const* values) {
@@ -114,7 +116,7 @@ struct grid_equilibrium {
     for (int k = 0; k < Dimensions; ++k)
       newton.of[k].set_ends(rows.of[k].v[0] - of_g.u[k], rows.of[k].v[rows.of[k].n - 1] - of_g.u[k]);
     bool first = true, running = wanted;
-    while (group.any_of_block(running)) {  // behind it the weights are there for all lanes
+    while (group.any_of_block(running)) {  // after the loop all lanes may read the weights
       for (int k = 0; k < Dimensions; ++k) {
         const line_points line{rows.of[k].n, rows.of[k].v, rows.of[k].weights};
         double* w = values[k];

@@ -5,9 +5,9 @@
 //     template <class Lane> static APSIS_FORMULA void run(const Lane& lane, const arguments& of);
 //   };
 // A launch runs it in blocks of lanes. Each lane calls run() with the same arguments. Lanes of a block share
-// memory, and wait for each other in lane.wait(), which all of them call equally often; blocks know nothing
-// of each other. Lanes run in any order between two calls of wait(): a number that one of them writes is for
-// others to read only after the next one.
+// memory. They wait for each other in lane.wait(), which all lanes must call equally often. Blocks are
+// independent of each other. Between two calls of wait(), lanes run in any order: other lanes may read a
+// number that a lane writes only after the next wait().
 //
 //   lane.index(), lane.count()    number of this lane in its block, and number of lanes
 //   lane.block(), lane.blocks()   number of its block, and number of blocks
@@ -43,8 +43,8 @@ struct lane {
 
 extern __attribute__((address_space(3))) double shared_numbers[];
 
-/// A lane of a graphics processor. Its sizes are those of a launch in the packet of the queue (HSA Platform
-/// System Architecture Specification 1.2, 2.9.6): bytes 4 and 12.
+/// A lane of a graphics processor. The dispatch packet contains the sizes of the launch at bytes 4 and 12
+/// (HSA Platform System Architecture Specification 1.2, 2.9.6).
 struct lane {
   APSIS_FORMULA int index() const { return static_cast<int>(__builtin_amdgcn_workitem_id_x()); }
   APSIS_FORMULA int count() const {

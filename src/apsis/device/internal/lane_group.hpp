@@ -4,42 +4,42 @@
 
 namespace apsis::kernels {
 
-/// Sums that a group takes together.
+/// Largest number of sums that a group computes together.
 inline constexpr int most_totals = 6;
 
-/// Eight lanes of a block as the group of formulas (model/formulas/velocity_line.hpp): each of them has one
-/// number. All groups of a block take the sums together, with `shared`, most_totals for each lane.
+/// Eight lanes of a block as the group of formulas (model/formulas/velocity_line.hpp). Each lane has one
+/// number. All groups of a block compute sums together; `shared` has most_totals numbers for each lane.
 template <class Lane>
 struct lane_group {
-  using number = double;  ///< of a lane
+  using number = double;  ///< number of a lane
 
   const Lane& lane;  ///< this lane
-  double* shared;    ///< of the block
+  double* shared;    ///< memory of the block
 
   APSIS_FORMULA int place() const { return lane.index() % 8; }  ///< 0 … 7
   APSIS_FORMULA int group() const { return lane.index() / 8; }  ///< number of the group
-  /// The number of the group among those of all blocks.
+  /// Returns the number of the group among the groups of all blocks.
   APSIS_FORMULA int number_in_launch() const { return lane.block() * (lane.count() / 8) + group(); }
   APSIS_FORMULA double load(const double* from) const { return from[place()]; }       ///< one of eight
   APSIS_FORMULA double load_once(const double* from) const { return from[place()]; }  ///< one of eight
-  /// One of `count`, or 0.
+  /// Returns the number of this lane among `count`; 0 beyond.
   APSIS_FORMULA double load(const double* from, int count) const {
     return place() < count ? from[place()] : 0.0;
   }
-  /// One of the first `count`, or 0.
+  /// Returns `mine` for the first `count` lanes, and 0 for the others.
   APSIS_FORMULA double first(double mine, int count) const { return place() < count ? mine : 0.0; }
   APSIS_FORMULA double numbers() const { return place(); }  ///< 0 … 7
-  /// Stores this one of the first `count`.
+  /// Stores the number of this lane if it is one of the first `count`.
   APSIS_FORMULA void store(double mine, int count, double* to) const {
     if (place() < count) to[place()] = mine;
   }
-  /// The sum of the numbers of a group, halves of halves.
+  /// Returns the sum of the numbers of a group, by adding halves until one number remains.
   APSIS_FORMULA double total(double mine) const {
     double one[1] = {mine};
     totals(one);
     return one[0];
   }
-  /// Replaces several numbers by their sums.
+  /// Replaces several numbers of each lane by their sums over the group.
   template <int Count>
   APSIS_FORMULA void totals(double (&of)[Count]) const {
     static_assert(Count <= most_totals);
@@ -52,7 +52,7 @@ struct lane_group {
     }
     lane.wait();
   }
-  /// Whether something holds for any group of the block; all lanes of a group have the same answer.
+  /// Whether `here` holds for any group of the block. All lanes of a group must pass the same value.
   APSIS_FORMULA bool any_of_block(bool here) const {
     shared[lane.index()] = here ? 1.0 : 0.0;
     lane.wait();

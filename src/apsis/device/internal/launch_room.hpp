@@ -9,11 +9,11 @@
 
 namespace apsis {
 
-/// Memory that kernels have for each cell of a launch. Launches have so few cells that it is at most 128 MiB,
-/// but at least one block of them.
+/// Scratch memory of kernels, the same amount for each cell of a launch. It limits the cells of a launch such
+/// that it takes about 128 MiB, but at least one block of cells.
 class launch_room {
  public:
-  /// `cells`: those of all launches. `of_cell`: numbers that a cell needs; 0: none.
+  /// `cells`: ranges of cells of all launches. `of_cell`: how many numbers a cell needs, possibly 0.
   launch_room(const memory_space& memory, std::span<const cell_range> cells, std::size_t of_cell) {
     constexpr std::size_t most = 1 << 24;
     for (const cell_range& some : cells) cells_ = std::max(cells_, some.end - some.begin);
@@ -28,7 +28,7 @@ class launch_room {
   static constexpr int cells_of_block = 16;
 
   double* data() { return numbers_.data(); }  ///< the memory
-  /// Calls launch(first, last) for parts of a range of cells that have room together.
+  /// Calls launch(first, last) for parts of a range of cells for which the memory suffices.
   template <class Launch>
   void for_parts(const cell_range& of, const Launch& launch) const {
     for (int first = of.begin; first < of.end; first += cells_)

@@ -7,10 +7,10 @@
 
 namespace apsis {
 
-/// Lanes of a block whose lanes know nothing of each other.
+/// Lanes of a block in kernels with independent lanes.
 inline constexpr int independent_lanes = 128;
 
-/// Returns the size of a launch in which each of so many numbers is the turn of some lane.
+/// Returns the size of a launch of independent lanes that together process so many numbers.
 inline launch_size launch_for(std::size_t numbers) {
   constexpr std::size_t most_blocks = 1 << 16;
   const std::size_t blocks = (numbers + independent_lanes - 1) / independent_lanes;

@@ -30,7 +30,7 @@ surface_rows::surface_rows(device& on, const model& equation, std::shared_ptr<do
     first_at_surface_.push_back(ends_);
     ends_ += one.own;
   }
-  space_->exchange(mirror_);  // so that rows of other processes have their places
+  space_->exchange(mirror_);  // so that rows of other processes have their addresses
   number_sent_rows();
   list_inside_rows();
   list_entries();
@@ -42,7 +42,8 @@ surface_rows::surface_rows(device& on, const model& equation, std::shared_ptr<do
   memory.clear(at_ends_.data(), at_ends_.size());
 }
 
-/// Rows beyond ends are rows of the mirror, or rows elsewhere on the host: these are sent.
+/// Numbers the rows to send. A row beyond an end is a row of the mirror or lies elsewhere on the host; the
+/// latter are sent.
 void surface_rows::number_sent_rows() {
   std::vector<const double*> rows;
   for (int direction = 0; direction < space_->mesh().dimensions(); ++direction) {
@@ -59,7 +60,7 @@ void surface_rows::number_sent_rows() {
   }
 }
 
-/// Other processes need the rows next to borders with them.
+/// Lists the rows next to borders with other processes, which need them.
 void surface_rows::list_rows_of_others() {
   const grid& mesh = space_->mesh();
   for (int direction = 0; direction < mesh.dimensions(); ++direction) {
@@ -72,7 +73,7 @@ void surface_rows::list_rows_of_others() {
   }
 }
 
-/// Boundaries read as many rows inside as there are beyond, and three at least.
+/// Lists the rows that boundaries read: as many as there are ghost rows, and at least three.
 void surface_rows::list_inside_rows() {
   list_rows_of_others();
   constexpr int least = 3;

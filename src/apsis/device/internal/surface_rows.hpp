@@ -14,21 +14,21 @@
 
 namespace apsis {
 
-/// The surfaces of a domain whose state is on a device. Rows of cells next to surfaces come to the host,
-/// where boundaries compute ghost rows; after a sweep the upwind values at the surfaces come, and what enters
-/// goes back.
+/// The surfaces of a domain whose state is on a device. Before a sweep the host receives the rows next to
+/// surfaces, and its boundaries compute the ghost rows. After a sweep it receives the upwind values at
+/// surfaces, and returns the incoming components.
 class surface_rows {
  public:
   /// `ghosts`: rows beyond each end that a sweep reads.
   surface_rows(device& on, const model& equation, std::shared_ptr<domain> space, int ghosts);
 
-  /// Returns the number of a row beyond an end of a segment, as sweeps on the device find it (row_beyond):
-  /// `distance` cells beyond, 0 the next one.
+  /// Returns the number by which sweeps on the device find a row beyond an end of a segment (row_beyond).
+  /// `distance` counts cells from the end; 0 is the nearest.
   int row_beyond_end(int direction, int segment, bool upper, int distance) const;
-  /// Returns the number of the row that takes the upwind values at an end of a segment; −1 if it ends at no
-  /// surface.
+  /// Returns the number of the row that takes the upwind values at an end of a segment; −1 without a
+  /// surface there.
   int row_at_end(int direction, int segment, bool upper) const;
-  /// Returns the number of cells beyond an end that fluxes see; `halo` at most.
+  /// Returns the number of cells beyond an end on which fluxes depend, at most `halo`.
   int seen_beyond(int direction, int segment, bool upper, int halo) const;
 
   /// Computes the rows beyond all ends for a state on the device.
@@ -37,23 +37,24 @@ class surface_rows {
   const double* sent() const { return sent_.data(); }
   /// Returns the rows that sweeps set, on the device.
   double* at_ends() const { return at_ends_.data(); }
-  /// Adds what enters to the targets, after all sweeps.
+  /// Adds the incoming components to the targets; after all sweeps.
   void complete(double t, std::span<const target<field, double>> targets);
 
-  /// As face_fluxes::observe(), for complete().
+  /// Calls face_fluxes::observe(), for complete().
   void observe(bool wanted) { faces_.observe(wanted); }
   /// Returns face_fluxes::observed().
   const std::vector<double>& observed() const { return faces_.observed(); }
-  /// As face_fluxes::set_inside(), after complete().
+  /// Calls face_fluxes::set_inside(), after complete().
   void set_inside(std::span<const double> given) { faces_.set_inside(given); }
   /// Returns face_fluxes::rates().
   std::span<const double> rates() const { return faces_.rates(); }
 
  private:
-  /// Ends of segments at which components enter: those of a direction and side, no two at a cell.
+  /// Ends of segments at which components enter, for one direction and side; no two of them are at the
+  /// same cell.
   struct entries {
     double spacing = 1.0;
-    std::vector<std::array<int, 3>> ends;  ///< as kernels::enter has them
+    std::vector<std::array<int, 3>> ends;  ///< in the layout of kernels::enter
     device_array<std::array<int, 3>> on_device;
   };
 
@@ -73,7 +74,7 @@ class surface_rows {
   device_array<int> inside_on_device_;
   std::unordered_map<const double*, int> sent_numbers_;
   std::vector<const double*> sent_from_;  ///< rows beyond ends on the host
-  std::vector<int> first_at_surface_;     ///< of the rows at the ends of each surface
+  std::vector<int> first_at_surface_;     ///< first row at the ends of each surface
   int ends_ = 0;
   std::vector<entries> entries_;
   std::vector<double> staged_;

@@ -5,14 +5,14 @@
 
 namespace apsis::kernels {
 
-/// Some cells of a segment, which one block of lanes sweeps along.
+/// Consecutive cells of a segment, which one block of lanes sweeps along.
 struct piece_of_segment {
   int segment,  ///< number of the segment
-      begin,    ///< its first cell of the piece
+      begin,    ///< first cell of the piece, counted in the segment
       end;      ///< one past the last one
 };
 
-/// A segment of cells, as a sweep sees it.
+/// A segment of cells with the data that a sweep needs.
 struct swept_segment {
   int first,    ///< the first cell
       cells,    ///< number of cells
@@ -20,17 +20,17 @@ struct swept_segment {
       rows[2];  ///< numbers of the rows that take the upwind values at either end, or −1
 };
 
-/// A row beyond the ends of a segment is a row of u, or one of the rows that the host has sent.
+/// Number of a row beyond the ends of a segment that is neither a row of u nor one of `sent`.
 struct row_beyond {
   static constexpr int nothing = -2147483647 - 1;  ///< a row of zeros
 };
 
-/// acc ← (fresh ? 0 : acc) + α u + β T; α u with the first direction alone.
+/// acc ← (fresh ? 0 : acc) + α u + β T. Only the sweep along the first direction adds α u.
 struct swept_target {
   double* acc;   ///< rows like those of u
   double alpha,  ///< factor of u
       beta;      ///< factor of T
-  int fresh;     ///< whether the old content of acc counts nothing
+  int fresh;     ///< whether the old content of acc is ignored
 };
 
 /// Arguments of a sweep along one direction.
@@ -40,25 +40,25 @@ struct sweep_arguments {
   const double* u;                 ///< rows of all cells
   const double* sent;              ///< rows that the host has sent
   double* at_ends;                 ///< rows that take the upwind values at the ends of segments
-  const double *per_cell,          ///< of every component: |v|/Δx
-      *forward,                    ///< 1 if it moves forward, else 0
+  const double *per_cell,          ///< |v|/Δx of every component
+      *forward,                    ///< 1 if the component moves forward, else 0
       *inverse_cfl;                ///< 1/C of limited fluxes
-  const swept_segment* segments;   ///< of the direction
+  const swept_segment* segments;   ///< segments of the direction
   const piece_of_segment* pieces;  ///< one for each block
-  const int* beyond;  ///< [segment][end][distance − 1], `ghosts` of each: rows beyond the ends; ≥ 0 of u, −1
-                      ///< − n of those sent, or row_beyond::nothing
+  const int* beyond;  ///< [segment][end][distance], distance < ghosts: rows beyond the ends: n ≥ 0 is a row
+                      ///< of u, −1 − n row n of `sent`; or row_beyond::nothing
   long stride;        ///< numbers of a row with its padding
   int ghosts,         ///< rows beyond each end
-      apart,          ///< cells from one of a segment to the next
-      columns,        ///< blocks that share a piece, each with as many components as it has lanes
+      apart,          ///< distance of consecutive cells of a segment
+      columns,        ///< blocks that share a piece; each lane sweeps one component
       limited,        ///< whether fluxes are limited
       targets;        ///< number of targets
   swept_target target[most_targets];  ///< targets
 };
 
-/// T along one direction: semidiscrete/block_sweep.hpp for one component on each lane, with the edges of
-/// `Scheme`. Scheme::edge(a, b, c, d, e) is the outflow edge of the cell c of five, seen in the direction of
-/// motion.
+/// T along one direction, as in semidiscrete/block_sweep.hpp, with one component on each lane.
+/// Scheme::edge(a, b, c, d, e) is the downstream edge value of the cell c; a … e are five cells in the
+/// direction of motion.
 template <class Scheme>
 struct sweep {
   using arguments = sweep_arguments;  ///< arguments
@@ -77,7 +77,7 @@ struct sweep {
   }
 
  private:
-  /// The way of a component along a piece. Cell j of the way is the j-th in the direction of motion.
+  /// The way of a component along a piece. Cell j of the way is the j-th cell in the direction of motion.
   struct way {
     const arguments& of;
     const swept_segment& segment;
@@ -108,7 +108,7 @@ struct sweep {
       if (row >= 0) return of.u[row * of.stride + k];
       return row == row_beyond::nothing ? 0.0 : of.sent[(-1l - row) * of.stride + k];
     }
-    /// Whether fluxes see a cell; the others are vacuum.
+    /// Whether fluxes depend on a cell. They treat all other cells as vacuum.
     APSIS_FORMULA bool sees(int j) const {
       const int cell = start + step * j;
       return cell >= -segment.seen[0] && cell < segment.cells + segment.seen[1];
@@ -122,8 +122,8 @@ struct sweep {
             to.beta, [] { return 0.0; });
       }
     }
-    /// Keeps the value that flows through the border of cell j in the direction of motion, or against it, if
-    /// the segment ends there.
+    /// Stores the upwind value at a border of cell j, if the segment ends there. The border lies ahead in the
+    /// direction of motion, or behind.
     APSIS_FORMULA void keep(int j, bool ahead, double value) const {
       const int cell = start + step * j;
       const bool upper = ahead == (step > 0);
@@ -132,7 +132,7 @@ struct sweep {
       if (row >= 0) of.at_ends[row * of.stride + k] = value;
     }
 
-    /// Five values in the direction of motion; the middle one is that of a cell.
+    /// Five values in the direction of motion, centred at a cell.
     struct window {
       double a, b, c, d, e;
       APSIS_FORMULA void advance(double next) {

@@ -10,7 +10,7 @@ namespace apsis {
 swept_segments::swept_segments(device& on, const domain& space, const surface_rows& surfaces, int direction,
                                int halo, int ghosts)
     : device_(on), apart_(space.mesh().stride(direction)), ghosts_(ghosts) {
-  // A piece repeats the edges of a few cells; short ones keep more multiprocessors busy.
+  // Each piece recomputes the edges of a few cells. Short pieces keep more multiprocessors busy.
   constexpr int longest = 32;
   std::vector<kernels::swept_segment> segments;
   std::vector<kernels::piece_of_segment> pieces;
@@ -23,7 +23,7 @@ swept_segments::swept_segments(device& on, const domain& space, const surface_ro
       const std::size_t side = upper ? 1 : 0;
       made.seen[side] = surfaces.seen_beyond(direction, number, upper, halo);
       made.rows[side] = surfaces.row_at_end(direction, number, upper);
-      // Beyond a surface that prescribes what enters, fluxes see vacuum.
+      // Beyond a surface that prescribes incoming components, fluxes see vacuum.
       for (int distance = 0; distance < ghosts; ++distance)
         beyond.push_back(distance < made.seen[side] + ghosts - halo
                              ? surfaces.row_beyond_end(direction, number, upper, distance)
@@ -55,7 +55,7 @@ void swept_segments::sweep(const std::string& kernel, kernels::sweep_arguments a
   arguments.beyond = beyond_.data();
   arguments.ghosts = ghosts_;
   arguments.apart = apart_;
-  // Whole groups of 32 lanes, as processors run them.
+  // Processors run lanes in groups of 32.
   constexpr long group = 32;
   const int lanes =
       static_cast<int>(std::min<long>(independent_lanes, (arguments.stride + group - 1) / group * group));

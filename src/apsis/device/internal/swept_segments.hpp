@@ -14,13 +14,15 @@ namespace apsis {
 /// The segments of one direction on a device, and the speeds along it.
 class swept_segments {
  public:
-  /// `halo`: cells beyond a piece whose edges fluxes need; `ghosts`: rows beyond each end.
+  /// `halo`: how many cells beyond a piece fluxes need the edges of; `ghosts`: how many rows there are beyond
+  /// each end.
   swept_segments(device& on, const domain& space, const surface_rows& surfaces, int direction, int halo,
                  int ghosts);
 
   /// Sets the speeds of the components.
   void set_speeds(const line_speeds& of);
-  /// Starts the sweep `kernel`; the arguments have the states and targets.
+  /// Starts the sweep `kernel`. The caller sets the states and targets in `arguments`; this function sets
+  /// the rest.
   void sweep(const std::string& kernel, kernels::sweep_arguments arguments) const;
 
  private:

@@ -7,7 +7,7 @@
 
 namespace apsis::kernels {
 
-/// Whether polynomials times a base of this variance may be targets of a cell, as in conservative_target().
+/// Whether targets of a cell may have a base of this variance, as in conservative_target().
 template <int Dimensions>
 APSIS_FORMULA bool is_wide_enough(const gas_rows& rows, const fluid_state& state, double variance) {
   double widest = 0.0;
@@ -22,13 +22,13 @@ APSIS_FORMULA bool is_wide_enough(const gas_rows& rows, const fluid_state& state
   return variance >= scalar::narrowest_target * (widest * widest);
 }
 
-/// The lines of a product as the base of a target.
+/// A product of functions along lines as the base of a target.
 template <int Dimensions>
 struct product_base {
   const grid_equilibrium<Dimensions>& m;  ///< the product
 
   APSIS_FORMULA double others() const { return m.others; }  ///< h/g
-  /// Calls put(line, g) for every last line with the values g(j) at its points.
+  /// Calls put(line, g) for every line along the last direction; g(j) is the value at point j.
   template <class Put>
   APSIS_FORMULA void for_each_line(const Put& put) const {
     const double* values = m.along.g[Dimensions - 1];
@@ -40,12 +40,12 @@ struct product_base {
 
 /// A row in memory as the base of a target.
 struct stored_base {
-  int n, lines;         ///< points of a line, lines
+  int n, lines;         ///< points of a line, number of lines
   const double* g;      ///< the row
   double others_per_g;  ///< h/g
 
   APSIS_FORMULA double others() const { return others_per_g; }  ///< h/g
-  /// As that of a product.
+  /// Calls put(line, g) as product_base does.
   template <class Put>
   APSIS_FORMULA void for_each_line(const Put& put) const {
     for (int line = 0; line < lines; ++line) {
@@ -55,11 +55,12 @@ struct stored_base {
   }
 };
 
-/// The target of a cell, its base times polynomials for g and h. `Cubic`: they have terms of third degree.
+/// The target of a cell: the base times a polynomial for g, and one for h. `Cubic`: these have terms of
+/// third degree.
 template <int Dimensions, bool Cubic, class Base>
 struct target_of_cell {
-  const gas_rows& rows;               ///< of the gas
-  const Base& base;                   ///< what the polynomials are times
+  const gas_rows& rows;               ///< rows of the gas
+  const Base& base;                   ///< factor of the polynomials
   const scalar::target_shape& shape;  ///< polynomials
   const double* u;                    ///< bulk velocity
 
@@ -85,8 +86,8 @@ struct target_of_cell {
   }
 };
 
-/// Solves the stage of a cell with this target, if it is `known`, and leaves the cell to the host otherwise,
-/// or where a tail would have to be cut off.
+/// Solves the stage of a cell with this target. Leaves the cell to the host if the target is not `known`, or
+/// if a tail would have to be cut off.
 template <class Group, class Target>
 APSIS_FORMULA void finish_stage(const Group& group, const collision_stage& stage, int cell,
                                 const fluid_state& state, bool cuts_tails, bool known, const Target& target,

@@ -5,10 +5,10 @@
 
 namespace apsis::kernels {
 
-/// Outflow edge of a cell by a WENO scheme with these weights (scheme/formulas/weno5.hpp).
+/// Downstream edge value of a cell by a WENO scheme with these weights (scheme/formulas/weno5.hpp).
 template <class Weights>
 struct weno_edge {
-  /// Returns the edge of c downstream, of five cells in the direction of motion.
+  /// Returns the downstream edge value of the cell c; a … e are five cells in the direction of motion.
   static APSIS_FORMULA double edge(double a, double b, double c, double d, double e) {
     using namespace scalar::weno5;
     const window<Weights, double> u(a, b, c, d, e);

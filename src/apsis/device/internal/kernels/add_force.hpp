@@ -5,13 +5,13 @@
 
 namespace apsis::kernels {
 
-/// acc ← acc + β (−a·∇_v u), as force::add(); eight lanes for each cell. Each of them walks along its own
-/// lines.
+/// acc ← acc + β (−a·∇_v u), as force::add(), with eight lanes for each cell. Each lane walks along its
+/// own lines.
 struct add_force {
-  static constexpr const char* name = "add_force";  ///< of the kernel
+  static constexpr const char* name = "add_force";  ///< name of the kernel
   static constexpr int most_targets = 8;            ///< largest number of targets
-  static constexpr int lanes = 128;                 ///< of a block
-  static constexpr int cells = lanes / 8;           ///< of a block
+  static constexpr int lanes = 128;                 ///< lanes of a block
+  static constexpr int cells = lanes / 8;           ///< cells of a block
 
   /// The rows along a direction of the lattice (lattice_rows::layout).
   struct direction {
@@ -20,35 +20,38 @@ struct add_force {
   };
   /// A target.
   struct target {
-    double* acc;  ///< rows
-    double beta;  ///< factor
+    double* acc;  ///< rows of all cells
+    double beta;  ///< factor of T
   };
 
   /// Arguments.
   struct arguments {
     const double *u,           ///< rows of all cells
-        *a,                    ///< three components of every cell
-        *weights;              ///< of all velocities
+        *a,                    ///< three components of the acceleration in every cell
+        *weights;              ///< weights of all velocities
     double *room,              ///< numbers_of_room() for each cell of a launch
-        *sums;                 ///< of every cell: invariants given, those of u, mass into the last points
-    gas_rows rows;             ///< of the gas
+        *sums;                 ///< sums of every cell: invariants given, invariants of u, mass into the
+                               ///< last points
+    gas_rows rows;             ///< rows of the gas
     direction along[3];        ///< directions of the velocities
     long stride;               ///< numbers of a row
-    double inverse_cfl;        ///< of limited fluxes
-    int first, last,           ///< cells
-        components,            ///< of a row
-        most_lines,            ///< of a direction
+    double inverse_cfl;        ///< 1/C of limited fluxes
+    int first, last,           ///< cells first … last − 1
+        components,            ///< components of a row
+        most_lines,            ///< most lines of a direction
         fifth_order, limited,  ///< rule of fluxes
-        targets;               ///< how many
+        targets;               ///< number of targets
     target to[most_targets];   ///< targets
   };
 
-  /// Numbers of `room` that a cell needs: the change of a row, and fluxes into the last points of lines.
+  /// Returns how many numbers of `room` a cell needs: the change of a row, and fluxes into the last points
+  /// of lines.
   static constexpr APSIS_FORMULA long numbers_of_room(int components, int most_lines) {
     return static_cast<long>(components) + most_lines;
   }
 
-  /// Adds to a cell together with seven other lanes. The memory of the block has most_totals for each lane.
+  /// Adds the force in a cell, together with seven other lanes. The block has shared memory for most_totals
+  /// numbers per lane.
   template <class Lane>
   static APSIS_FORMULA void run(const Lane& lane, const arguments& of) {
     with_dimensions(of.rows.dimensions,
@@ -106,8 +109,8 @@ struct add_force {
     APSIS_FORMULA double operator()(int j) const { return j < 0 || j >= points ? 0.0 : first[j * step]; }
   };
 
-  /// Adds the differences of fluxes along a line to the change of its row. Returns the flux into the last
-  /// point.
+  /// Adds the differences of fluxes along a line to the change of the row. Returns the flux into the
+  /// last point.
   static APSIS_FORMULA double walk(const arguments& of, const direction& along, int line, bool forward,
                                    double rate, bool fresh, const double* row, double* change) {
     const long at = static_cast<long>(line / along.apart) * along.points * along.apart + line % along.apart +
@@ -127,7 +130,7 @@ struct add_force {
                                : add_fluxes<false, false>(values, along.points, of.inverse_cfl, put);
   }
 
-  /// As force::mass_into_ends().
+  /// Returns the mass that enters the last points, as force::mass_into_ends() does.
   static APSIS_FORMULA double mass_into_ends(const arguments& of, const direction& along, bool forward,
                                              const double* into_last) {
     const int block_size = along.points * along.apart, last = forward ? block_size - along.apart : 0;

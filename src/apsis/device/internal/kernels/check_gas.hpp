@@ -5,30 +5,30 @@
 
 namespace apsis::kernels {
 
-/// The checks of the rows of a gas: extremes, moments and entropy of every cell, by eight lanes.
+/// Checks the rows of a gas: computes extremes, moments and entropy of every cell, with eight lanes for each.
 struct check_gas {
-  static constexpr const char* name = "check_gas";  ///< of the kernel
-  static constexpr int lanes = 128;                 ///< of a block
-  static constexpr int cells = lanes / 8;           ///< of a block
+  static constexpr const char* name = "check_gas";  ///< name of the kernel
+  static constexpr int lanes = 128;                 ///< lanes of a block
+  static constexpr int cells = lanes / 8;           ///< cells of a block
 
   /// Numbers of a cell.
   enum number {
     lowest,    ///< minimum; NaN if some number is not finite
-    negative,  ///< how many are negative
-    unclear,   ///< 1 if the minimum is a zero of both signs: the host then decides
-    entropy,   ///< without the weight of the sums
+    negative,  ///< how many numbers are negative
+    unclear,   ///< 1 if the minimum is 0 and the row has zeros of both signs: the host then decides
+    entropy,   ///< entropy of the row
     density    ///< ρ, ρu, 𝓔
   };
-  /// How many numbers a cell has.
+  /// Returns how many numbers a cell has.
   static constexpr int numbers(int dimensions) { return density + dimensions + 2; }
 
   /// Arguments.
   struct arguments {
     const double* u;  ///< rows of all cells
     double* checks;   ///< numbers of all cells
-    gas_rows rows;    ///< of the gas
+    gas_rows rows;    ///< rows of the gas
     long stride;      ///< numbers of a row
-    int first, last;  ///< cells
+    int first, last;  ///< cells first … last − 1
   };
 
   /// Checks the row of a cell together with seven other lanes.
@@ -36,7 +36,7 @@ struct check_gas {
   static APSIS_FORMULA void run(const Lane& lane, const arguments& of) {
     const lane_group<Lane> group{lane, lane.shared()};
     const int place = of.first + lane.block() * cells + group.group();
-    // Lanes behind the last cell take part in the sums.
+    // Lanes beyond the last cell take part in the sums.
     const int cell = place < of.last ? place : of.last - 1;
     const bool stores = place < of.last && group.place() == 0;
     const double* u = of.u + cell * of.stride;
@@ -74,7 +74,7 @@ struct check_gas {
     to[unclear] = least == 0.0 && all_zeros > 0.0 && all_minus_zeros > 0.0 ? 1.0 : 0.0;
   }
 
-  /// The smallest number of a group.
+  /// Returns the smallest number of a group.
   template <class Lane>
   static APSIS_FORMULA double lowest_of(const Lane& lane, const lane_group<Lane>& group, double mine) {
     group.shared[lane.index()] = mine;

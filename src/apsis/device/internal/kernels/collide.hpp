@@ -5,20 +5,20 @@
 
 namespace apsis::kernels {
 
-/// Stages of the BGK model whose velocities are a line, or the product of two or three lines; eight lanes for
-/// each cell, which share the equilibrium along each direction.
+/// Solves stages of the BGK model on a velocity line, or on the product of two or three lines. Eight lanes
+/// for each cell share the equilibrium along each direction.
 struct collide {
-  static constexpr const char* name = "collide";  ///< of the kernel
+  static constexpr const char* name = "collide";  ///< name of the kernel
 
   /// Arguments.
   struct arguments {
-    collision_stage stage;              ///< of all cells
-    gas_rows rows;                      ///< of the gas
+    collision_stage stage;              ///< stage of all cells
+    gas_rows rows;                      ///< rows of the gas
     equilibrium_formulas closed_forms;  ///< which equilibria are formulas
   };
 
-  /// Solves the stage of a cell together with seven other lanes. The memory of the block has
-  /// most_totals for each lane, and gas_rows::points for each cell.
+  /// Solves the stage of a cell together with seven other lanes. The block has shared memory for most_totals
+  /// numbers per lane and gas_rows::points numbers per cell.
   template <class Lane>
   static APSIS_FORMULA void run(const Lane& lane, const arguments& of) {
     with_dimensions(of.rows.dimensions,

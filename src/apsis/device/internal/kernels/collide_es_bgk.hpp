@@ -8,32 +8,33 @@
 
 namespace apsis::kernels {
 
-/// Stages of the ellipsoidal model, as `collide`. The target is a Gaussian whose components depend on each
-/// other, times a quadratic, whose moments are restored by those of the Gaussian.
+/// Solves stages of the ellipsoidal model, as `collide` does. The target is a Gaussian with correlated
+/// components times a quadratic polynomial. Moments of the Gaussian determine the polynomial, so that the
+/// target has its required moments.
 ///
-/// Cells are left to the host where the restoration does not converge, and where tails are cut off.
+/// The host solves cells where this correction fails, or where tails are cut off.
 struct collide_es_bgk {
-  static constexpr const char* name = "collide_es_bgk";  ///< of the kernel
-  static constexpr int degree = 4;                       ///< of the central sums
+  static constexpr const char* name = "collide_es_bgk";  ///< name of the kernel
+  static constexpr int degree = 4;                       ///< degree of the central sums
 
   /// Arguments.
   struct arguments {
-    collision_stage stage;            ///< of all cells
-    gas_rows rows;                    ///< of the gas
-    scalar::ellipsoidal_model model;  ///< its parameter
+    collision_stage stage;            ///< stage of all cells
+    gas_rows rows;                    ///< rows of the gas
+    scalar::ellipsoidal_model model;  ///< parameter of the model
     double* room;                     ///< numbers_of_room() for each cell of a launch
-    int cuts_tails;                   ///< whether tails are cut off that would make a solution negative
+    int cuts_tails;                   ///< whether to cut off tails that would make a solution negative
   };
 
-  /// Numbers of `room` that a cell needs: the Gaussian, the tables that it is made of, planes of central
-  /// sums.
+  /// Returns how many numbers of `room` a cell needs: for the Gaussian, its tables, and planes of
+  /// central sums.
   static constexpr APSIS_FORMULA long numbers_of_room(const gas_rows& rows) {
     return rows.size + correlated_rows<3>::numbers_of_tables(rows) +
            memory_of_central_sums::planes_of(rows, degree);
   }
 
-  /// Solves the stage of a cell together with seven other lanes. The memory of the block has
-  /// most_totals for each lane, and memory_of_central_sums::powers_of() for each cell.
+  /// Solves the stage of a cell together with seven other lanes. The block has shared memory for most_totals
+  /// numbers per lane and memory_of_central_sums::powers_of() numbers per cell.
   template <class Lane>
   static APSIS_FORMULA void run(const Lane& lane, const arguments& of) {
     with_dimensions(of.rows.dimensions,
@@ -81,7 +82,7 @@ struct collide_es_bgk {
     finish_stage(group, of.stage, cell, state, of.cuts_tails != 0, known, values, u);
   }
 
-  /// Θ_kl − T δ_kl for k ≤ l at the end of the stage.
+  /// to ← Θ_kl − T δ_kl for k ≤ l at the end of the stage.
   template <int Dimensions, class Sums>
   static APSIS_FORMULA void find_deviations(const Sums& g, const fluid_state& state, double decay,
                                             double* to) {

@@ -8,32 +8,32 @@
 
 namespace apsis::kernels {
 
-/// Stages of Shakhov's model, as `collide`. The target is the equilibrium times a polynomial, whose moments
-/// are restored by those of the equilibrium.
+/// Solves stages of the Shakhov model, as `collide` does. The target is the equilibrium times a polynomial.
+/// Moments of the equilibrium correct the polynomial, so that the target has its required moments.
 ///
-/// Cells are left to the host where they are unknown, where the restoration does not converge, and where
-/// tails are cut off.
+/// The host solves cells where these moments are unknown, where the correction fails, or where tails are
+/// cut off.
 struct collide_shakhov {
-  static constexpr const char* name = "collide_shakhov";  ///< of the kernel
-  static constexpr int degree = 3;                        ///< of the central sums
+  static constexpr const char* name = "collide_shakhov";  ///< name of the kernel
+  static constexpr int degree = 3;                        ///< degree of the central sums
 
   /// Arguments.
   struct arguments {
-    collision_stage stage;              ///< of all cells
-    gas_rows rows;                      ///< of the gas
-    scalar::shakhov_target target;      ///< of the model
+    collision_stage stage;              ///< stage of all cells
+    gas_rows rows;                      ///< rows of the gas
+    scalar::shakhov_target target;      ///< target of the model
     double* room;                       ///< numbers_of_room() for each cell of a launch
     equilibrium_formulas closed_forms;  ///< which equilibria are formulas
-    int cuts_tails;                     ///< whether tails are cut off that would make a solution negative
+    int cuts_tails;                     ///< whether to cut off tails that would make a solution negative
   };
 
-  /// Numbers of `room` that a cell needs: planes of central sums.
+  /// Returns how many numbers of `room` a cell needs, for planes of central sums.
   static constexpr APSIS_FORMULA long numbers_of_room(const gas_rows& rows) {
     return memory_of_central_sums::planes_of(rows, degree);
   }
 
-  /// Solves the stage of a cell together with seven other lanes. The memory of the block has
-  /// most_totals for each lane, and for each cell gas_rows::points and memory_of_central_sums::powers_of().
+  /// Solves the stage of a cell together with seven other lanes. The block has shared memory for most_totals
+  /// numbers per lane, and for gas_rows::points and memory_of_central_sums::powers_of() numbers per cell.
   template <class Lane>
   static APSIS_FORMULA void run(const Lane& lane, const arguments& of) {
     with_dimensions(of.rows.dimensions,
@@ -70,7 +70,7 @@ struct collide_shakhov {
     finish_stage(group, of.stage, cell, state, of.cuts_tails != 0, known, target, u);
   }
 
-  /// The heat flux of a row, as compute_central_moments().
+  /// heat ← the heat flux of a row, as compute_central_moments().
   template <int Dimensions, class Group>
   static APSIS_FORMULA void find_heat(const Group& group, const gas_rows& rows, const fluid_state& state,
                                       const double* row, const memory_of_central_sums& memory, double* heat) {

@@ -6,7 +6,7 @@ namespace apsis::kernels {
 
 /// acc ← (fresh ? 0 : acc) + Σ_k α_k u_k for all numbers of arrays, added in the order of k.
 struct combine {
-  static constexpr const char* name = "combine";  ///< of the kernel
+  static constexpr const char* name = "combine";  ///< name of the kernel
   static constexpr int most = 8;                  ///< largest number of terms
 
   /// Arguments.
@@ -14,12 +14,12 @@ struct combine {
     double* acc;            ///< the sum
     long size;              ///< how many numbers
     int terms;              ///< how many arrays, at most `most`
-    int fresh;              ///< whether the old content of acc counts nothing
+    int fresh;              ///< whether the old content of acc is ignored
     double alpha[most];     ///< factors
     const double* u[most];  ///< arrays; acc may be one of them
   };
 
-  /// Adds at every number that is the turn of this lane.
+  /// Computes the numbers of this lane.
   template <class Lane>
   static APSIS_FORMULA void run(const Lane& lane, const arguments& of) {
     const long apart = static_cast<long>(lane.blocks()) * lane.count();

@@ -4,9 +4,9 @@
 
 namespace apsis::kernels {
 
-/// Gathers rows: row n of `to` ← row cells[n] of u, one row after the other.
+/// Gathers rows: row n of `to` ← row cells[n] of u.
 struct copy_rows {
-  static constexpr const char* name = "copy_rows";  ///< of the kernel
+  static constexpr const char* name = "copy_rows";  ///< name of the kernel
 
   /// Arguments.
   struct arguments {
@@ -17,7 +17,7 @@ struct copy_rows {
     long rows;         ///< how many rows
   };
 
-  /// Copies the numbers that are the turn of this lane.
+  /// Copies the numbers of this lane.
   template <class Lane>
   static APSIS_FORMULA void run(const Lane& lane, const arguments& of) {
     const long apart = static_cast<long>(lane.blocks()) * lane.count(), all = of.rows * of.stride;

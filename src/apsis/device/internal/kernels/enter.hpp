@@ -5,10 +5,10 @@
 
 namespace apsis::kernels {
 
-/// acc ← acc + β (v·n/Δx) value for the components that enter through surfaces, at the cells in front of
-/// them. No cell has two of the surfaces of a launch.
+/// acc ← acc + β (v·n/Δx) value for the components that enter through surfaces, in the cells at the surfaces.
+/// A launch has at most one surface for each cell.
 struct enter {
-  static constexpr const char* name = "enter";  ///< of the kernel
+  static constexpr const char* name = "enter";  ///< name of the kernel
 
   /// Arguments.
   struct arguments {
@@ -22,7 +22,7 @@ struct enter {
         spacing;           ///< Δx
   };
 
-  /// Adds the numbers that are the turn of this lane.
+  /// Adds the numbers of this lane.
   template <class Lane>
   static APSIS_FORMULA void run(const Lane& lane, const arguments& of) {
     const long apart = static_cast<long>(lane.blocks()) * lane.count(), all = of.count * of.stride;

@@ -4,20 +4,21 @@
 
 namespace apsis::kernels {
 
-/// Multiply–adds on numbers in registers, in independent chains: a ceiling of the speed of kernels.
+/// Executes multiply–adds on numbers in registers, in independent chains. Their rate is a ceiling
+/// for kernels.
 struct multiply_adds {
-  static constexpr const char* name = "multiply_adds";  ///< of the kernel
-  static constexpr int chains = 8;                      ///< of a lane
+  static constexpr const char* name = "multiply_adds";  ///< name of the kernel
+  static constexpr int chains = 8;                      ///< chains of a lane
 
   /// Arguments.
   struct arguments {
-    double* sums;   ///< of each lane, so that no chain can be left out
+    double* sums;   ///< sum of each lane, so that the compiler cannot remove a chain
     long rounds;    ///< multiply–adds of a chain
-    double factor,  ///< of each of them
-        addend;     ///< of each of them
+    double factor,  ///< factor of each multiply–add
+        addend;     ///< addend of each multiply–add
   };
 
-  /// The sum of the chains of a lane, by its number in all blocks.
+  /// Returns the sum of the chains of a lane; `number` counts the lanes of all blocks.
   static APSIS_FORMULA double sum_of(long number, const arguments& of) {
     double x[chains];
     for (int k = 0; k < chains; ++k) x[k] = static_cast<double>(number % 1024) + 0.1 * k;

@@ -8,7 +8,7 @@ namespace apsis::kernels {
 
 /// Sweep with the edges of teno5.
 struct sweep_teno5 : sweep<weno_edge<scalar::weights_teno>> {
-  static constexpr const char* name = "sweep_teno5";  ///< of the kernel
+  static constexpr const char* name = "sweep_teno5";  ///< name of the kernel
 };
 
 }  // namespace apsis::kernels

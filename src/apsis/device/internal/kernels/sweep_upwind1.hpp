@@ -7,7 +7,7 @@ namespace apsis::kernels {
 
 /// Edges of upwind1.
 struct upwind1_scheme {
-  /// Returns the edge of c downstream, of five cells in the direction of motion.
+  /// Returns the downstream edge value of the cell c; a … e are five cells in the direction of motion.
   static APSIS_FORMULA double edge(double, double, double c, double, double) {
     return scalar::upwind1_edge(c);
   }
@@ -15,7 +15,7 @@ struct upwind1_scheme {
 
 /// Sweep with the edges of upwind1.
 struct sweep_upwind1 : sweep<upwind1_scheme> {
-  static constexpr const char* name = "sweep_upwind1";  ///< of the kernel
+  static constexpr const char* name = "sweep_upwind1";  ///< name of the kernel
 };
 
 }  // namespace apsis::kernels

@@ -8,7 +8,7 @@ namespace apsis::kernels {
 
 /// Sweep with the edges of weno5-js.
 struct sweep_weno5_js : sweep<weno_edge<scalar::weights_js>> {
-  static constexpr const char* name = "sweep_weno5_js";  ///< of the kernel
+  static constexpr const char* name = "sweep_weno5_js";  ///< name of the kernel
 };
 
 }  // namespace apsis::kernels

@@ -8,7 +8,7 @@ namespace apsis::kernels {
 
 /// Sweep with the edges of weno5-z.
 struct sweep_weno5_z : sweep<weno_edge<scalar::weights_z>> {
-  static constexpr const char* name = "sweep_weno5_z";  ///< of the kernel
+  static constexpr const char* name = "sweep_weno5_z";  ///< name of the kernel
 };
 
 }  // namespace apsis::kernels

@@ -4,15 +4,15 @@
 /// are dimensionless. docs/linking.md has an example, and states what later versions preserve.
 ///
 /// Functions that return an int return one of apsis_status, and never end the program. Errors are negative;
-/// apsis_error_message() describes the last one of the calling thread. There is no global state: threads may
-/// use different handles simultaneously, and the same method, but not the same integrator.
+/// apsis_error_message() describes the last error of the calling thread. There is no global state: threads
+/// may use different handles simultaneously. They may share a method, but not an integrator.
 #ifndef APSIS_APSIS_H
 #define APSIS_APSIS_H
 
 #include <stddef.h>
 
 /// Version of the binary interface, part of the name of the library file. It changes with every change that a
-/// compiled program could notice; additions leave it as it is.
+/// compiled program could notice; additions do not change it.
 #define APSIS_ABI_VERSION 1
 
 #ifdef __cplusplus
@@ -21,7 +21,7 @@ extern "C" {
 
 /// Results of functions. Errors are negative.
 enum apsis_status {
-  APSIS_OK = 0,                ///< success; of apsis_integrate(): the requested time is reached
+  APSIS_OK = 0,                ///< success; apsis_integrate() has reached the requested time
   APSIS_STOPPED = 1,           ///< the observer ended the integration
   APSIS_EVENT = 2,             ///< an event ended the integration
   APSIS_INPUT_ERROR = -1,      ///< an invalid argument, name, file or combination of settings
@@ -46,7 +46,7 @@ int apsis_store_error(int status, const char* message);
 
 // Methods ---------------------------------------------------------------------------------------------------
 
-/// A certified time integrator. Its functions are thread-safe, also on the same method.
+/// A certified time integrator. Functions of methods are thread-safe, even on the same method.
 typedef struct apsis_method apsis_method;
 
 /// Returns the number of methods of the catalogue. Members of families, such as "md-imex-chain-5-2", are
@@ -56,8 +56,8 @@ size_t apsis_catalogue_size(void);
 /// program.
 const char* apsis_catalogue_name(size_t index);
 
-/// Sets *method to the method called `name`, which apsis_free_method() releases: a method of the catalogue, a
-/// member of a family, a formula such as "imex-bdf-3", or a method file given by its path, FILE.toml. Methods
+/// Sets *method to the method called `name`: a method of the catalogue, a member of a family, a formula such
+/// as "imex-bdf-3", or a method file given by its path, FILE.toml. apsis_free_method() releases it. Methods
 /// are certified when they are loaded. Errors: APSIS_INPUT_ERROR with the nearest name, APSIS_FILE_ERROR, or
 /// APSIS_CLAIM_ERROR if a claim of a file does not hold; *method is then NULL.
 int apsis_find_method(const char* name, apsis_method** method);
@@ -66,18 +66,18 @@ void apsis_free_method(apsis_method* method);
 
 /// Returns the name of a method; "" for NULL. Valid as long as the method.
 const char* apsis_method_name(const apsis_method* method);
-/// Returns its title, one line; "" for NULL. Valid as long as the method.
+/// Returns the title of a method, one line; "" for NULL. Valid as long as the method.
 const char* apsis_method_title(const apsis_method* method);
-/// Returns its kind, "runge-kutta", "exponential", "two-step" or "imex-bdf"; "" for NULL.
+/// Returns the kind of a method, "runge-kutta", "exponential", "two-step" or "imex-bdf"; "" for NULL.
 const char* apsis_method_kind(const apsis_method* method);
-/// Returns its order p; 0 for NULL.
+/// Returns the order p of a method; 0 for NULL.
 int apsis_method_order(const apsis_method* method);
-/// Returns the number k of steps: u^{n+1} depends on u^{n+1−k}, …, u^n; 0 for NULL.
+/// Returns the number k of steps of a method: u^{n+1} depends on u^{n+1−k}, …, u^n; 0 for NULL.
 int apsis_method_steps(const apsis_method* method);
-/// Returns its number s of stages; 0 for NULL.
+/// Returns the number s of stages of a method; 0 for NULL.
 size_t apsis_method_stages(const apsis_method* method);
-/// Returns its SSP coefficient r: steps Δt ≤ r Δt_FE preserve what forward Euler steps of T preserve. 0 if
-/// there is no such step, and for NULL.
+/// Returns the SSP coefficient r of a method: steps Δt ≤ r Δt_FE preserve what forward Euler steps of T
+/// preserve. 0 if there is no such step, and for NULL.
 double apsis_method_ssp_coefficient(const apsis_method* method);
 
 /// Requirements of a method.
@@ -101,9 +101,9 @@ enum apsis_coefficients {
   APSIS_BUTCHER_A = 6,       ///< a_ij of Q, s × s
   APSIS_BUTCHER_A_DOT = 7    ///< ȧ_ij of Q̇, s × s
 };
-/// Writes coefficients, one of apsis_coefficients, to `values`, correctly rounded: those of the Butcher form
-/// are computed in 60 digits. Error: APSIS_INPUT_ERROR for a formula (kind "imex-bdf"), and for the Butcher
-/// form of a method of two steps.
+/// Writes the coefficients `which`, one of apsis_coefficients, to `values`, correctly rounded. Those of the
+/// Butcher form are computed with 60 digits. Error: APSIS_INPUT_ERROR for a formula (kind "imex-bdf"), and
+/// for the Butcher form of a method of two steps.
 int apsis_method_coefficients(const apsis_method* method, int which, double* values);
 /// Sets *text to the method file with exact coefficients. Valid as long as the method. Error:
 /// APSIS_INPUT_ERROR for a formula and for a method of two steps.
@@ -117,10 +117,10 @@ int apsis_method_fact(const apsis_method* method, const char* key, double* value
 
 // Callbacks -------------------------------------------------------------------------------------------------
 
-/// Callbacks return 0 on success. A positive number rejects the state, as if it were NaN: steps controlled by
-/// a tolerance are repeated with a smaller length, and others end the integration with APSIS_NUMERICAL_ERROR.
-/// A negative number ends it with APSIS_CALLBACK_ERROR. `data` is the pointer given to apsis_set_data(), `n`
-/// the number of unknowns in `u`. Outputs have undefined contents before the call.
+/// Callbacks return 0 on success. A positive number rejects the state, as if it were NaN: a step controlled
+/// by a tolerance is repeated with a smaller length; any other step ends the integration with
+/// APSIS_NUMERICAL_ERROR. A negative number ends it with APSIS_CALLBACK_ERROR. `data` is the pointer given to
+/// apsis_set_data(), and `n` the number of unknowns in `u`. Outputs have undefined contents before the call.
 
 /// out ← T(t, u).
 typedef int apsis_transport_function(double t, size_t n, const double* u, double* out, void* data);
@@ -142,8 +142,8 @@ typedef int apsis_curvature_function(size_t block, size_t n, const double* u, co
                                      const double* x, double* hx, void* data);
 /// *result ← a positive time: Δt_FE, or the smallest relaxation time ε/C of the state.
 typedef int apsis_time_function(double t, size_t n, const double* u, double* result, void* data);
-/// *result ← 1 if u, a block, is admissible, such as positive, and 0 if it is not. A stage that is not ends
-/// the step with an error; a step to a tolerance is shortened until its stages and its result are.
+/// *result ← 1 if the block u is admissible (for example positive), otherwise 0. An inadmissible stage ends
+/// the step with an error. A step to a tolerance is shortened until its stages and its result are admissible.
 typedef int apsis_admissible_function(size_t block, size_t n, const double* u, int* result, void* data);
 /// Observes u after a step of length dt that ended at t; `step` counts from 1 since apsis_start(). A positive
 /// number ends the integration with APSIS_STOPPED.
@@ -160,15 +160,15 @@ typedef int apsis_event_observer_function(size_t k, double t, size_t n, const do
 /// A problem, a method, and a state that advances in time.
 typedef struct apsis_integrator apsis_integrator;
 
-/// Sets *integrator to a new integrator for n unknowns, which apsis_free_integrator() releases. Error:
+/// Sets *integrator to a new integrator for n unknowns; apsis_free_integrator() releases it. Error:
 /// APSIS_INPUT_ERROR for n = 0; *integrator is then NULL.
 int apsis_new_integrator(const apsis_method* method, size_t n, apsis_integrator** integrator);
 /// Releases an integrator. NULL is ignored.
 void apsis_free_integrator(apsis_integrator* integrator);
 
 /// Every setting may be changed between two calls of apsis_integrate(); NULL removes a callback. Settings
-/// other than data and observers begin the control of step lengths anew. In callbacks, settings are errors
-/// (APSIS_INPUT_ERROR), and so are apsis_start() and apsis_integrate().
+/// other than data and observers restart the control of step lengths. In callbacks, all settings,
+/// apsis_start() and apsis_integrate() return APSIS_INPUT_ERROR.
 
 /// Sets the last argument of all callbacks, initially NULL.
 int apsis_set_data(apsis_integrator* integrator, void* data);
@@ -176,12 +176,12 @@ int apsis_set_data(apsis_integrator* integrator, void* data);
 int apsis_set_transport(apsis_integrator* integrator, apsis_transport_function* transport);
 
 /// The collision is given in one of two ways: by apsis_set_stage(), or by apsis_set_rate() with one of
-/// apsis_set_jacobian() and apsis_set_product(), where Newton's method solves the stages. Without a
+/// apsis_set_jacobian() and apsis_set_product(). With a rate, Newton's method solves the stages. Without a
 /// collision, Q = 0.
 
 /// Sets the solver of stages.
 int apsis_set_stage(apsis_integrator* integrator, apsis_stage_function* stage);
-/// Sets Q. Explicit methods need it, and Newton's method.
+/// Sets Q, which explicit methods and Newton's method need.
 int apsis_set_rate(apsis_integrator* integrator, apsis_rate_function* rate);
 /// Sets the Jacobian of Q as a matrix.
 int apsis_set_jacobian(apsis_integrator* integrator, apsis_jacobian_function* jacobian);
@@ -191,21 +191,22 @@ int apsis_set_product(apsis_integrator* integrator, apsis_product_function* prod
 int apsis_set_curvature(apsis_integrator* integrator, apsis_curvature_function* curvature);
 /// Sets the exact solution of the collision, for methods of kind "exponential".
 int apsis_set_flow(apsis_integrator* integrator, apsis_flow_function* flow);
-/// Sets the number of consecutive unknowns that Q couples: u is a sequence of such blocks, as the cells of a
-/// mesh, and rate, derivatives and `admissible` get one block. Initially n. Error: APSIS_INPUT_ERROR unless
-/// it divides n.
+/// Sets the number of consecutive unknowns that Q couples, initially n: u is a sequence of such blocks, for
+/// example the cells of a mesh. The rate, its derivatives and `admissible` receive one block. Error:
+/// APSIS_INPUT_ERROR unless the size divides n.
 int apsis_set_block_size(apsis_integrator* integrator, size_t size);
-/// Sets the largest block, initially 96 unknowns, whose linear systems in Newton's method are dense. Larger
-/// ones are solved by GMRES without preconditioner, which is for Q that is not stiff.
+/// Sets the largest block, initially 96 unknowns, whose linear systems in Newton's method are dense. GMRES
+/// without a preconditioner solves larger ones, which is only suitable if Q is not stiff.
 int apsis_set_dense_limit(apsis_integrator* integrator, size_t unknowns);
-/// Sets the states that every stage must belong to. Newton's method does not leave them.
+/// Sets the condition that every stage must satisfy. Newton's method does not leave the admissible states.
 int apsis_set_admissible(apsis_integrator* integrator, apsis_admissible_function* admissible);
-/// Sets the relaxation time of a collision with a stage solver. Error estimates then weigh components off the
-/// equilibrium less where they relax within a step.
+/// Sets the relaxation time of a collision with a stage solver. Error estimates then give less weight to
+/// deviations from equilibrium that relax within a step.
 int apsis_set_relaxation_time(apsis_integrator* integrator, apsis_time_function* relaxation_time);
 
-/// Steps have the length dt, or satisfy Δt ≤ safety · r · Δt_FE; a tolerance shortens them further where the
-/// estimated error requires it. One of the three must be given, and no two of dt and Δt_FE.
+/// Steps have the length dt, or satisfy Δt ≤ safety · r · Δt_FE; a tolerance shortens them further where
+/// the estimated error requires it. At least one of dt, Δt_FE and a tolerance must be given, but not both
+/// dt and Δt_FE.
 
 /// Sets the length of steps; it is reduced until it divides the interval of apsis_integrate(). With a
 /// tolerance it is the largest length. 0 removes it.
@@ -216,38 +217,38 @@ int apsis_set_forward_euler_step(apsis_integrator* integrator, apsis_time_functi
 int apsis_set_safety(apsis_integrator* integrator, double safety);
 /// Controls the estimated error e of a step: |e_i| ≤ absolute + relative |u_i| for every i. relative ≥ 0, and
 /// absolute > 0; both 0 removes the control. Methods without an embedded solution take each step twice, as
-/// one and as two halves. Newton's method for a single block ends where its error is a thousandth of this,
-/// and stages of methods without second derivatives then share a derivative of Q in a step.
+/// one step and as two halves. For a single block, Newton's method ends when its error is a thousandth of
+/// this bound. Stages of methods without second derivatives then share one derivative of Q per step.
 int apsis_set_tolerance(apsis_integrator* integrator, double relative, double absolute);
-/// The same with an absolute tolerance of each unknown, n positive numbers, which are copied.
+/// Does the same with an absolute tolerance for each unknown: n positive numbers, which are copied.
 int apsis_set_tolerances(apsis_integrator* integrator, double relative, const double* absolute);
-/// Sets the law by which, with a tolerance, the next step follows from the errors of the last ones: a name of
-/// `apsis list controllers`, such as "pi" or "pid", initially "predictive". Error: APSIS_INPUT_ERROR with the
-/// nearest name.
+/// Sets the law of step control, which determines the next step from the errors of the last ones. `name` is
+/// one of `apsis list controllers`, such as "pi" or "pid", initially "predictive". Error: APSIS_INPUT_ERROR
+/// with the nearest name.
 int apsis_set_controller(apsis_integrator* integrator, const char* name);
 /// Divides the first step after apsis_start() into graded steps that resolve the initial layer, for data out
 /// of equilibrium (docs/plateaus.md). `growth`, from 2 to 64, is the ratio of their successive times; 0
-/// removes them. Needs a relaxation time.
+/// removes the graded steps. A relaxation time is required.
 int apsis_set_graded_start(apsis_integrator* integrator, int growth);
 /// Sets the function that observes every step.
 int apsis_set_observer(apsis_integrator* integrator, apsis_observer_function* observer);
 
-/// Sets `count` functions whose zeros are events: changes of their signs from one step to the next, located
-/// to rounding in the dense output of apsis_state_at(). A function that is 0 at the start has no event until
-/// it has another sign, and two zeros inside one step are missed. `directions` are 1 for increasing g_k, −1
-/// for decreasing, and 0 for both; NULL: both for all. `ends` are 1 if an event of g_k ends the integration
-/// there, with APSIS_EVENT, and 0 if it does not; NULL: all end it. Both lists are copied. count = 0 removes
-/// the events.
+/// Sets `count` functions whose zeros are events. An event is a change of sign from one step to the next,
+/// located to rounding in the dense output of apsis_state_at(). A function that is 0 at the start has no
+/// event until it has another sign. Two zeros inside one step are missed. `directions` are 1 for increasing
+/// g_k, −1 for decreasing, and 0 for both; NULL means both for all. `ends` are 1 if an event of g_k ends the
+/// integration with APSIS_EVENT, otherwise 0; NULL means that all do. Both lists are copied. count = 0
+/// removes the events.
 int apsis_set_events(apsis_integrator* integrator, size_t count, apsis_event_function* events,
                      const int* directions, const int* ends);
 /// Sets the function that observes events in the order of time, before the observer of the step.
 int apsis_set_event_observer(apsis_integrator* integrator, apsis_event_observer_function* observer);
 /// Sets times at which steps end exactly, such as discontinuities of T: `count` increasing numbers, which are
-/// copied. Methods that need equal steps begin anew at each. count = 0 removes them.
+/// copied. Methods that need equal steps restart at each. count = 0 removes them.
 int apsis_set_stop_times(apsis_integrator* integrator, size_t count, const double* times);
 
-/// Sets time and state, n numbers, which are copied, and all counters to 0. Errors: APSIS_INPUT_ERROR if one
-/// is not finite.
+/// Sets the time, the state, n numbers that are copied, and all counters to 0. Error: APSIS_INPUT_ERROR if a
+/// number is not finite.
 int apsis_start(apsis_integrator* integrator, double t0, const double* u0);
 /// Integrates from the time reached to t1 and ends exactly there. After an error the state is that of the
 /// last accepted step; the integration may be continued with other settings. Methods that need equal steps
@@ -256,18 +257,18 @@ int apsis_integrate(apsis_integrator* integrator, double t1);
 
 /// Returns the time reached; NaN for NULL and before apsis_start().
 double apsis_time(const apsis_integrator* integrator);
-/// Returns the n numbers of the state; NULL for NULL and before apsis_start(). Valid until the next call of
-/// apsis_start(), apsis_integrate() or apsis_free_integrator().
+/// Returns the n numbers of the state; NULL without an integrator and before apsis_start(). Valid until the
+/// next call of apsis_start(), apsis_integrate() or apsis_free_integrator().
 const double* apsis_state(const apsis_integrator* integrator);
 
-/// Writes the n numbers of the solution at a time of the last step to `u`, from its begin to apsis_time():
-/// dense output, also for observers. It takes a step from the begin to t, at the cost of a step, and so has
-/// the order of the method and its positivity, bounds and limit ε → 0. Methods that need equal steps take one
-/// of their starter. After a change of settings only apsis_time() is left. Errors: APSIS_INPUT_ERROR for
-/// other times, and those of a step.
+/// Writes the n numbers of the solution at a time t of the last step to `u`: dense output, also for
+/// observers. It takes a step from the beginning of the last step to t, and costs as much as a step. The
+/// result therefore has the order of the method, its positivity, its bounds and its limit ε → 0. Methods that
+/// need equal steps use their starter. After a change of settings only t = apsis_time() is valid. Errors:
+/// APSIS_INPUT_ERROR for other times, and those of a step.
 int apsis_state_at(apsis_integrator* integrator, double t, double* u);
-/// Sets *k and *t to the function and the time of an event since apsis_start(), number `index` from 0 in the
-/// order of time. Error: APSIS_INPUT_ERROR beyond the last, whose number is apsis_count() − 1.
+/// Sets *k and *t to the function and the time of an event since apsis_start(); `index` counts events from 0
+/// in the order of time. Error: APSIS_INPUT_ERROR unless index < apsis_count(integrator, APSIS_EVENTS).
 int apsis_found_event(const apsis_integrator* integrator, size_t index, size_t* k, double* t);
 
 /// Counters since apsis_start().
@@ -287,8 +288,8 @@ enum apsis_counter {
 long long apsis_count(const apsis_integrator* integrator, int counter);
 
 /// Sets *of_u = 1/(1 + μ) and *of_e = μ/(1 + μ), μ = a k + |b| k², accurate to rounding for every k = C/ε
-/// from 0 to infinity: the stage v of a relaxation Q(u) = k (E(u) − u) that conserves what E and k depend on
-/// is v = *of_u · u + *of_e · E.
+/// from 0 to infinity. A relaxation Q(u) = k (E(u) − u) that conserves the arguments of E and k has the stage
+/// v = *of_u · u + *of_e · E.
 void apsis_relaxation_weights(double a, double b, double k, double* of_u, double* of_e);
 
 #ifdef __cplusplus

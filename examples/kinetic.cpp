@@ -1,5 +1,5 @@
-// A gas on a mesh without a case file: f_t + v f_x = (M[f] − f)/ε(x) on [0, 2], a wave in density and
-// temperature.
+// Computes a gas on a mesh without a case file: f_t + v f_x = (M[f] − f)/ε(x) on [0, 2]. The initial data are
+// a wave in density and temperature.
 #include <apsis/integrate/integrate.hpp>
 #include <apsis/model/model_registry.hpp>
 #include <apsis/scheme/reconstruction_registry.hpp>

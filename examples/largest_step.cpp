@@ -1,6 +1,6 @@
-// How large a step may be before a property is lost, on a problem of one's own: particles of speed ±1 that
-// turn round at rate 1/(2ε),  f±_t ± f±_x = (ρ/2 − f±)/ε, ρ = f₊ + f₋, on a ring of length 1, first-order
-// upwind. The state holds f₊ of all cells, then f₋.
+// Finds the largest steps that preserve a property, for a problem of your own. Particles of speed ±1 on a
+// ring of length 1 turn round at rate 1/(2ε):  f±_t ± f±_x = (ρ/2 − f±)/ε,  ρ = f₊ + f₋,  by first-order
+// upwind differences. The state contains f₊ of all cells, then f₋.
 #include <apsis/integrate/relaxation_problem.hpp>
 #include <apsis/verify/strong_stability.hpp>
 
@@ -31,7 +31,7 @@ int main() {
       [](const state&) { return 1.0; }, 1e-3);
   problem.with_forward_euler_step([](double, const state&) { return dx; });
 
-  // The worse the data, the sharper the answer: a spike, and a step.
+  // Rough data give sharp limits: a spike, and a step.
   std::vector<state> data(2, state(2 * n, 0.0));
   data[0][3] = 1;
   std::fill_n(data[1].begin(), n / 2, 1.0);

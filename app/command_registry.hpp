@@ -18,18 +18,18 @@ struct command_entry {
   int place = 1000;     ///< position in the help, lowest first; by name among equals
   /// Words that complete an argument, as bash expands them in double quotes; "": file names only.
   std::string completion{};
-  bool shares_work = false;  ///< whether several processes that mpirun starts do the work together
+  bool shares_work = false;  ///< whether several processes that mpirun starts share the work
   /// Adds options and arguments, and returns the action of the command.
   action (*define)(CLI::App& command) = nullptr;
 };
 
-/// Every command, sorted by file name (generated).
+/// Returns every command, sorted by file name (generated).
 std::vector<const command_entry*> command_entries();
 
-/// Every command in the order of the help.
+/// Returns every command in the order of the help.
 std::vector<const command_entry*> commands_in_order();
 
-/// The completion of arguments that are names listed by `apsis list WHAT`.
+/// Returns the completion of arguments that are names listed by `apsis list WHAT`.
 std::string completed_from_list(const std::string& what);
 
 }  // namespace apsis::app

@@ -30,7 +30,7 @@ embedded_task task_of(const embedded_options& given, const method& m) {
 }
 
 std::string text_of(const embedded_attempt& tried, double least_coverage) {
-  if (tried.residual < 1e-15)  // the row of u^{n+1} is always a solution
+  if (tried.residual < 1e-15)  // the row of u^{n+1} always satisfies the conditions
     return fmt::format("order {}{}: coverage {:.2g} of the error, at least {:.2g} needed", tried.order,
                        tried.convex ? "" : ", not convex", tried.coverage < 1e-12 ? 0.0 : tried.coverage,
                        least_coverage);

@@ -17,7 +17,7 @@
 #include <unistd.h>
 
 namespace apsis::embedded {
-/// Every module of python/apsis (generated), used by the program for drawing.
+/// Returns every module of python/apsis, with which the program draws (generated).
 std::vector<embedded_text> scripts();
 }  // namespace apsis::embedded
 
@@ -26,10 +26,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Which child output is suppressed.
+/// The output of a child process that is suppressed.
 enum class dropped { nothing, output, everything };
 
-/// Termination status of a child process, reported to the interrupt handler.
+/// Waits for a child process and returns its termination status. Meanwhile interrupts are forwarded to it.
 int status_of(pid_t child) {
   {
     const forwarded_interrupts forwarding(child);
@@ -44,8 +44,8 @@ int status_of(pid_t child) {
   return status;
 }
 
-/// Exit status of a program; −1 if it cannot run. Throws interruption, after the program has ended, if a
-/// signal arrived.
+/// Runs a program and returns its exit status; −1 if it cannot run. If a signal arrives, throws interruption
+/// after the program has ended.
 int execute(const std::vector<std::string>& words, dropped drop) {
   std::vector<char*> arguments;
   arguments.reserve(words.size() + 1);
@@ -57,7 +57,7 @@ int execute(const std::vector<std::string>& words, dropped drop) {
     posix_spawn_file_actions_addopen(&files, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
   if (drop == dropped::everything)
     posix_spawn_file_actions_addopen(&files, STDERR_FILENO, "/dev/null", O_WRONLY, 0);
-  // A separate process group: a terminal sends Ctrl-C to this program alone, which forwards it.
+  // A separate process group, so that a terminal sends Ctrl-C only to this program, which forwards it.
   posix_spawnattr_t attributes;
   posix_spawnattr_init(&attributes);
   posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
@@ -96,7 +96,8 @@ fs::path new_folder() {
 
 drawing::drawing() : python_(find_python()), folder_(new_folder()) {
   add("apsis/__init__.py", "");
-  // The subpackages need no compiled module; modules next to them belong to the Python package alone.
+  // Only subpackages are copied, because they need no compiled module; the other modules belong to the
+  // Python package.
   for (const auto& script : embedded::scripts())
     if (script.name.find('/') != std::string_view::npos)
       add(fmt::format("apsis/{}.py", script.name), std::string(script.text));
@@ -116,7 +117,7 @@ std::string drawing::add(const std::string& name, const std::string& text) const
 }
 
 int drawing::run(const std::string& module, const std::vector<std::string>& arguments, bool quiet) const {
-  // A script next to the package finds it, regardless of the working directory.
+  // The script lies next to the package, so that it finds the package from any working directory.
   const std::string script = add(
       module + ".py", fmt::format("from apsis.{}.__main__ import main\nraise SystemExit(main())\n", module));
   std::vector<std::string> words = {python_, "-B", script};

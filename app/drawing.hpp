@@ -6,12 +6,12 @@
 
 namespace apsis::app {
 
-/// The Python modules apsis.plot and apsis.report, which are embedded in the program, as files during the
-/// lifetime of this object.
+/// The embedded Python modules apsis.plot and apsis.report, which exist as files during the lifetime of
+/// this object.
 class drawing {
  public:
-  /// Throws io_error if no Python with matplotlib is found (the variable APSIS_PYTHON names one), or the
-  /// files cannot be written.
+  /// Throws io_error if no Python with matplotlib, numpy and h5py is found, or if the files cannot be
+  /// written. The environment variable APSIS_PYTHON names a Python.
   drawing();
   ~drawing();
   drawing(const drawing&) = delete;
@@ -20,8 +20,8 @@ class drawing {
   /// Writes one more file next to the modules and returns its path.
   std::string add(const std::string& name, const std::string& text) const;
 
-  /// Exit status of `python -m apsis.MODULE ARGUMENTS`; −1 if it cannot run. If `quiet`, its standard output
-  /// is suppressed; messages go to our standard error.
+  /// Runs `python -m apsis.MODULE ARGUMENTS` and returns its exit status; −1 if it cannot run. If `quiet`,
+  /// its standard output is suppressed. Its messages go to the standard error of this program.
   int run(const std::string& module, const std::vector<std::string>& arguments, bool quiet) const;
 
  private:
@@ -29,7 +29,8 @@ class drawing {
   std::filesystem::path folder_;
 };
 
-/// Draws during a computation without output on standard output. Throws io_error if that fails.
+/// Draws without output on standard output, for commands that print results there. Throws io_error if
+/// that fails.
 void draw(const std::string& module, const std::vector<std::string>& arguments);
 
 }  // namespace apsis::app

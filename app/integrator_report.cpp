@@ -16,7 +16,7 @@ namespace {
 
 using json = nlohmann::ordered_json;
 
-/// "/a/b" of the key "a.b".
+/// Returns the JSON pointer "/a/b" of the key "a.b".
 json::json_pointer place_of(std::string key) {
   std::replace(key.begin(), key.end(), '.', '/');
   return json::json_pointer("/" + key);

@@ -8,8 +8,8 @@
 
 namespace apsis::app {
 
-/// Returns the certificate of an integrator as JSON: check_json() of a method of one step, otherwise the
-/// facts of its kind, with the same keys where they apply.
+/// Returns the certificate of an integrator as JSON. For a method of one step this is check_json(). Other
+/// kinds have their own facts, with the same keys where they apply.
 nlohmann::ordered_json integrator_json(const time_integrator& m);
 
 /// Returns the certificate of an integrator as text.

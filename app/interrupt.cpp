@@ -15,7 +15,7 @@ volatile std::sig_atomic_t stop_requested = 0;
 volatile pid_t child_process = 0;
 const char* awaited_text = nullptr;
 
-/// write() is async-signal-safe; a failure is ignored.
+/// Writes a text in a signal handler by write(), which is async-signal-safe. Ignores a failure.
 void write_now(const char* text) {
   if (write(STDERR_FILENO, text, std::strlen(text)) < 0) return;
 }
@@ -45,7 +45,7 @@ void handle_signals(void (*handler)(int)) {
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
     struct sigaction before = {};
     sigaction(signal, &action, &before);
-    // Ignored under nohup, and in some shells for background commands.
+    // The signal stays ignored under nohup, and for background commands of some shells.
     if (before.sa_handler == SIG_IGN) sigaction(signal, &before, nullptr);
   }
 }

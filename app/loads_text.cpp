@@ -11,7 +11,7 @@
 namespace apsis::app {
 namespace {
 
-/// The largest of some fluxes, and where it is.
+/// The largest of some fluxes, and the face of this flux.
 struct largest_flux {
   double value = 0.0;
   std::string face = {};
@@ -24,7 +24,7 @@ struct largest_flux {
   }
 };
 
-/// Whether a momentum is that along the normal of a face, which has the pressure.
+/// Whether a momentum is the component normal to a face, whose flux contains the pressure.
 bool is_normal(const std::string& momentum, const std::string& where) {
   for (std::size_t k = 0; k < face_names.size(); ++k)
     if (face_names[k] == where) return momentum == "momentum" || momentum.back() == "xyz"[k / 2];

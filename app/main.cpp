@@ -38,7 +38,7 @@ std::vector<std::string> option_names(const CLI::App& command) {
   return names;
 }
 
-// CLI11 reports what it did not understand; the suggestion is added here.
+// Adds a suggestion to the message in which CLI11 reports what it did not understand.
 [[noreturn]] void usage_error(const CLI::App& program, const CLI::ParseError& problem) {
   const auto chosen = program.get_subcommands();
   const CLI::App& place = chosen.empty() ? program : *chosen.front();
@@ -66,7 +66,7 @@ int run_program(int argc, char** argv) {
   action chosen;
   for (const command_entry* command : commands_in_order()) {
     CLI::App* added = program.add_subcommand(command->name, command->summary);
-    // Only recorded during parsing, so that nothing runs before the whole line is valid.
+    // The action is only recorded during parsing, so that nothing runs before the whole line is valid.
     added->callback([&chosen, command, run = command->define(*added)] {
       chosen = [command, run] {
         if (!command->shares_work) refuse_several_processes(command->name.c_str());
@@ -90,16 +90,17 @@ int run_program(int argc, char** argv) {
   return chosen();
 }
 
-/// Reopens descriptors 0 to 2 if the caller closed them: otherwise the next file, perhaps one of results,
-/// would get their number and receive every message. Writing to them fails, as to a closed one.
+/// Reopens descriptors 0 to 2 if the caller closed them. Otherwise the next file, perhaps one of results,
+/// would get their number and receive every message. Writing to the reopened descriptors fails, as to
+/// closed ones.
 void occupy_standard_descriptors() {
   for (const int id : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
     if (fcntl(id, F_GETFD) < 0) static_cast<void>(open("/dev/null", O_RDONLY));
 }
 
 int fail(exit_code code, const std::string& message) {
-  // Of several processes, which end with the same error, one reports it. If standard error cannot be written,
-  // only the exit code reports the error.
+  // Several processes end with the same error, and one of them reports it. If standard error cannot be
+  // written, only the exit code reports the error.
   if (reports_errors()) std::fputs(fmt::format("error: {}\n", printable(message)).c_str(), stderr);
   return static_cast<int>(code);
 }
@@ -134,7 +135,8 @@ int main(int argc, char** argv) {
   // A file that exceeds its limit (ulimit -f) is an output error and must not kill the process.
   std::signal(SIGXFSZ, SIG_IGN);
   const int code = apsis::app::run_and_report_errors(argc, argv);
-  // Processes that arrive here end alike. Only the one that reports returns the code: a launcher kills all
-  // others as soon as one returns a code other than 0, perhaps before the error is reported.
+  // All processes that arrive here end in the same way. Only the process that reports errors returns the
+  // code. A launcher kills all others as soon as one returns a code other than 0, perhaps before the error
+  // is reported.
   return apsis::app::reports_errors() ? code : 0;
 }

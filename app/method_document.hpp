@@ -6,7 +6,7 @@
 
 namespace apsis::app {
 
-/// Coefficients and claims; `format` is "text", "json", "latex" or "toml".
+/// Returns the coefficients and claims of a method; `format` is "text", "json", "latex" or "toml".
 std::string method_document(const method& m, const std::string& format);
 
 }  // namespace apsis::app

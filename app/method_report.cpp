@@ -21,14 +21,14 @@ namespace {
 
 using json = nlohmann::ordered_json;
 
-// Named methods are certified once; a file of the user is certified on request.
+// Returns the certificate of a method: the stored one of a named method, a new one of a method file.
 certificate certificate_of(const method& m) {
   const family_entry* family = try_find_family(m.name);
   const bool named = family == nullptr ? is_method_name(m.name) : missing_member(*family, m.name).empty();
   return named && &find_method(m.name) == &m ? find_certificate(m.name) : certify(m);
 }
 
-/// The embedded solution and its cost per step; null without one.
+/// Returns the embedded solution and its cost per step; null without an embedded solution.
 json embedded_json(const method& m, const certificate& c) {
   if (!c.embedded) return nullptr;
   const schedule steps(m.with_embedded_row().coefficients<double>(), true);
@@ -45,7 +45,8 @@ json embedded_json(const method& m, const certificate& c) {
           {"buffers", steps.buffers()}};
 }
 
-/// Of a file as well, whose weight is that of the certificate.
+/// Returns the error estimate of a method. For a method file, which has no stored weight, the certificate
+/// has it.
 step_estimate estimate_of(const method& m, const certificate& c) {
   step_estimate how = apsis::estimate_of(m);
   if (!how.doubles && c.embedded) how.weight = c.embedded->weight;
@@ -59,7 +60,7 @@ json estimate_json(const method& m, const certificate& c) {
           {"weight", how.weight}};
 }
 
-/// How the error of a step is estimated, with what it costs.
+/// Describes how the error of a step is estimated, with the cost.
 std::string estimate_text(const method& m, const certificate& c) {
   const step_estimate how = estimate_of(m, c);
   if (!how.doubles)
@@ -90,7 +91,8 @@ std::string embedded_term_text(const json& e) {
                      e["last"].get<double>());
 }
 
-/// Null if the method has stages that the analysis does not cover, or the term is infinite.
+/// Returns the terms of size ε; null if the method has stages that the analysis does not cover. An infinite
+/// term is null.
 json regime_json(const certificate& c) {
   if (!c.regime.applies) return nullptr;
   const auto& terms = c.regime;
@@ -113,7 +115,7 @@ json regime_json(const certificate& c) {
           {"band", {{"error", c.band.error}, {"at", c.band.at}}}};
 }
 
-/// The three terms of size ε relative to the exact ones, so that 1 is exact.
+/// Describes the three terms of size ε relative to the exact ones, so that 1 is exact.
 std::string regime_text(const certificate& c) {
   if (!c.regime.applies) return "not covered (a stage is neither relaxed nor u^n)";
   return fmt::format(
@@ -122,7 +124,7 @@ std::string regime_text(const certificate& c) {
       c.regime.layer.convert_to<double>());
 }
 
-/// Consequence of these terms for the error as dt is refined.
+/// Describes the consequence of these terms for the error as dt is refined.
 std::string verdict_text(const certificate& c) {
   const std::string parts = "in parts of the exact terms of size epsilon, so 1 is right: ";
   if (!c.keeps_slow_terms) return parts + "the error stalls at a multiple of epsilon";
@@ -130,12 +132,12 @@ std::string verdict_text(const certificate& c) {
                                 : "no error of size epsilon is left if the data start near equilibrium");
 }
 
-/// α with two decimals, rounded down: no more than was proved.
+/// Returns α with two decimals, rounded down so that it does not exceed the proved angle.
 std::string angle_text(double angle) {
   return fmt::format("A({:.2f} degrees)", std::floor(angle * 100.0 + 1e-6) / 100.0);
 }
 
-/// r/n_F: the step that positivity allows per transport evaluation; null without such a limit.
+/// Returns r/n_F, the step that positivity allows per transport evaluation; null without such a limit.
 json figure_of_merit(const certificate& c) {
   if (!c.bounded || c.explicit_evaluations == 0) return nullptr;
   return c.ssp_coefficient.convert_to<double>() / c.explicit_evaluations;

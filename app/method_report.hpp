@@ -10,16 +10,16 @@
 
 namespace apsis::app {
 
-/// The linear stability limits of cfl_limits() by reconstruction; null where any step is stable.
+/// Returns the linear stability limits of cfl_limits() by reconstruction; null where any step is stable.
 nlohmann::ordered_json cfl_json(const std::vector<std::pair<std::string, double>>& limits);
 
-/// The certificate of a method as `apsis check --json` prints it.
+/// Returns the certificate of a method as `apsis check --json` prints it.
 nlohmann::ordered_json check_json(const method& m);
 
-/// The certificate in words, with the failing conditions if a claim does not hold.
+/// Returns the certificate as text, with the failing conditions if a claim does not hold.
 std::string check_text(const method& m);
 
-/// The first condition that does not hold; "" if all hold.
+/// Returns the first condition that does not hold; "" if all hold.
 std::string first_failure(const method& m);
 
 }  // namespace apsis::app

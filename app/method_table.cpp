@@ -13,14 +13,14 @@ namespace {
 
 using json = nlohmann::ordered_json;
 
-/// "any", "cons.", "any m", … of "any data", "consistent data", "any data (moments only)", …
+/// Returns "any", "cons.", "any m", … for "any data", "consistent data", "any data (moments only)", …
 std::string short_data(const std::string& data) {
   if (data.empty() || data == "none") return "-";
   const std::string first = data.starts_with("any") ? "any" : "cons.";
   return data.ends_with("(moments only)") ? first + " m" : first;
 }
 
-/// A number of the table, "-" without one.
+/// Returns a number as text; `none` for null.
 std::string entry(const json& number, const std::string& none = "-") {
   return number.is_null() ? none : fmt::format("{:.4g}", number.get<double>());
 }

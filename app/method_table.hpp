@@ -6,7 +6,7 @@
 
 namespace apsis::app {
 
-/// Table of `apsis list methods` from an array of objects of check_json.
+/// Returns the table of `apsis list methods` from an array of results of check_json().
 std::string method_table(const nlohmann::ordered_json& all);
 
 }  // namespace apsis::app

@@ -8,7 +8,7 @@
 
 namespace apsis::app {
 
-/// The method file of a command, which always has the best method so far.
+/// The method file of a command, which always contains the best method so far.
 class method_writer {
  public:
   /// Throws input_error unless the path ends in .toml, its stem can be the name of a new method, and its
@@ -18,7 +18,7 @@ class method_writer {
   std::string name() const { return path_.stem().string(); }
   std::string path() const { return path_.string(); }
 
-  /// Throws io_error; the previous file is then unchanged.
+  /// Replaces the file. Throws io_error; the previous file is then unchanged.
   void write(const method& m);
 
  private:

@@ -15,7 +15,8 @@ namespace {
 
 enum class value_type { text, number, integer, unsigned_integer };
 
-/// CLI11 identifies the type of a variable by this name only; the names of validators follow after a colon.
+/// Returns the type of an option. CLI11 identifies it only by a name; the names of validators follow after
+/// a colon.
 value_type type_of(const CLI::Option& option) {
   const std::string full = option.get_type_name();
   const std::string name = full.substr(0, full.find(':'));
@@ -46,7 +47,8 @@ std::string checked_number(const std::string& option, const std::string& given) 
   return given;
 }
 
-/// Reads an integer in decimal digits: CLI11 would read "010" as octal and wrap "-1" to an unsigned value.
+/// Reads an integer in decimal digits, because CLI11 would read "010" as octal and wrap "-1" to an
+/// unsigned value.
 std::string checked_integer(const std::string& option, const std::string& given, bool sign) {
   if (const auto value = parse<long long>(given)) {
     if (!sign && *value < 0)

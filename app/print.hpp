@@ -4,7 +4,7 @@
 
 namespace apsis::app {
 
-/// Writes results to standard output, as printable() text, which in JSON and TOML stands for the same
+/// Writes results to standard output. printable() escapes them, which in JSON and TOML stands for the same
 /// characters. Throws io_error if that fails.
 void print(const std::string& text);
 

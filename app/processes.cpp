@@ -18,9 +18,9 @@
 namespace apsis::app {
 namespace {
 
-bool joined = false;  // the other processes, which need not be told an error again
+bool joined = false;  // whether on_all_processes() has started, which shares all later errors
 
-/// Reports an error that other processes do not learn, and ends all with its exit code.
+/// Reports an error that cannot reach the other processes, and ends all processes with its exit code.
 void abort_all(const communicator& processes, const std::exception_ptr& mine) {
   exit_code code = exit_code::internal;
   std::string message = "an exception without a message";

@@ -14,13 +14,13 @@ namespace {
 
 constexpr const char* erase_line = "\r\033[K";
 
-/// Errors of writing to a closed terminal are ignored; they must not end a run.
+/// Writes to standard error. Ignores errors of a closed terminal, which must not end a run.
 void say(const std::string& text) {
   std::fputs(text.c_str(), stderr);
   std::fflush(stderr);
 }
 
-/// "[=====>    ]  42 %"
+/// Returns "[=====>    ]  42 %".
 std::string bar(double fraction) {
   constexpr int width = 24;
   const auto full = static_cast<std::size_t>(fraction * width);
@@ -30,7 +30,7 @@ std::string bar(double fraction) {
   return fmt::format("[{}] {:3.0f} %", text, 100.0 * fraction);
 }
 
-/// "12:34:56", "0:05"; "--" if unknown.
+/// Returns "12:34:56" or "0:05"; "--" if unknown.
 std::string time_left(double seconds) {
   if (!std::isfinite(seconds) || seconds >= 3.6e6) return "--";
   const long s = std::lround(seconds);
@@ -38,7 +38,7 @@ std::string time_left(double seconds) {
                    : fmt::format("{}:{:02}", s / 60, s % 60);
 }
 
-/// The line truncated to the terminal width: a wrapped line could not be erased.
+/// Returns the line truncated to the terminal width, because a wrapped line could not be erased.
 std::string fitted(const std::string& line) {
   winsize size = {};
   if (ioctl(STDERR_FILENO, TIOCGWINSZ, &size) != 0 || size.ws_col < 2) return line;

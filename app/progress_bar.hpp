@@ -15,8 +15,9 @@ class progress_bar {
 
   /// Whether update() would draw now: at most ten times a second, and never without a terminal.
   bool due() const;
-  /// Draws the bar at `fraction` in [0, 1], followed by `text`, truncated to the terminal width, if it is
-  /// due(). The remaining time is extrapolated from the time since the bar was created.
+  /// Draws the bar at `fraction` in [0, 1], followed by the remaining time and `text`, if due(). The line
+  /// is truncated to the terminal width. The remaining time is extrapolated from the time since the bar
+  /// was created.
   void update(double fraction, const std::string& text);
   /// Erases the bar, so that messages start on a fresh line.
   void finish();

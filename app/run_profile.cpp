@@ -34,7 +34,7 @@ double in_kernels(const run_profile& profile) {
 
 run_profile finish_profile(double wall_seconds, std::size_t numbers) {
   profile::stop();
-  // Long enough that a sweep exceeds the resolution of the clock.
+  // The arrays are so long that the time of a sweep exceeds the resolution of the clock.
   const std::size_t count = std::max<std::size_t>(numbers, 4096);
   return {profile::read(), wall_seconds * threads(), multiply_adds_per_second(),
           triad_bytes_per_second(count)};

@@ -19,7 +19,7 @@ namespace apsis::app {
 
 namespace {
 
-/// Returns what a gas needed of its velocities.
+/// Describes how well the velocity grid supports the gas.
 std::string velocities_text(const run_summary& s, const case_config& c) {
   std::string text =
       fmt::format("at most {:.2g} of the mass of a Maxwellian beyond their ends", s.velocity_beyond);

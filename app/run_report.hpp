@@ -6,7 +6,7 @@
 
 namespace apsis::app {
 
-/// Summary of a run in a few lines of text.
+/// Returns a summary of a run in some lines of text.
 std::string summary_text(const simulation& run, run_end end, const run_records& records);
 
 }  // namespace apsis::app

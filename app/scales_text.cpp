@@ -9,7 +9,7 @@ namespace apsis::app {
 std::string scales_text(const gas_scales& scales) {
   std::string out = fmt::format("{:<22}{}\n", "gas", scales.gas().name.empty() ? "own" : scales.gas().name);
   for (const auto& one : scales.quantities()) {
-    if (one.name == "epsilon") break;  // the rest is knudsen_text()
+    if (one.name == "epsilon") break;  // knudsen_text() has the rest
     out += fmt::format("{:<22}{:.6g}{}\n", one.name, one.value,
                        one.dimension == dimensions::none ? "" : " " + unit_of(one.dimension));
   }

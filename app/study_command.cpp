@@ -24,7 +24,7 @@ void draw_into(const result_folder& folder) {
   try {
     draw("plot", {folder.path().string(), "--out", folder.path().string()});
   } catch (const io_error& problem) {
-    log::warning(problem.what());  // the picture can be drawn from picture.json at any time
+    log::warning(problem.what());  // `apsis plot` can draw picture.json later
   } catch (const interruption&) {
     return;
   }

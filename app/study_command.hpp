@@ -24,24 +24,24 @@ struct study_options {
   bool json = false;
 };
 
-/// Adds CASE, key=value, --out, --json and --threads. `name`: of the files; `row`: what a row of the table
-/// describes, "run"; `of_threads`: the help of --threads.
+/// Adds CASE, key=value, --out, --json and --threads. `name`: name of the files; `row`: the subject of a row
+/// of the table, such as "run"; `of_threads`: the help of --threads.
 void add_study_options(CLI::App& command, study_options& given, const std::string& name,
                        const std::string& row, const std::string& of_threads);
 
 /// The results of a study.
 struct study_results {
-  std::string name;             ///< of its files: "converge"
+  std::string name;             ///< name of its files: "converge"
   std::string csv;              ///< the table
   nlohmann::ordered_json rows,  ///< the table as an array of objects
-      subject;                  ///< the entries of the manifest that say what was run
+      subject;                  ///< the entries of the manifest that describe what was run
   picture drawn;
   bool complete = true;  ///< false after an interruption
   long failures = 0;     ///< rows without a result
 };
 
-/// Writes NAME.csv, NAME.json, picture.json, manifest.json and NAME.png. Without Python a warning takes the
-/// place of the picture file. Throws io_error.
+/// Writes NAME.csv, NAME.json, picture.json, manifest.json and NAME.png. Without Python it warns instead of
+/// writing the picture. Throws io_error.
 void write_study(result_folder& folder, const study_results& results);
 
 /// Prints the rows as JSON, or `text`.

@@ -6,7 +6,7 @@
 
 namespace apsis::app {
 
-/// A table of text. Columns are as wide as their longest cell, two blanks apart.
+/// A table of text. Columns are as wide as their longest cell, and two blanks apart.
 class text_table {
  public:
   /// `left`: whether each column is aligned to the left; numbers are aligned to the right.
@@ -23,7 +23,7 @@ class text_table {
  private:
   std::vector<bool> left_;
   std::vector<std::size_t> widths_;
-  std::vector<std::vector<std::string>> rows_;  ///< of one cell: a line
+  std::vector<std::vector<std::string>> rows_;  ///< a row of one cell is a line across all columns
 };
 
 }  // namespace apsis::app

@@ -28,7 +28,7 @@ namespace apsis::app {
 namespace check_command {
 namespace {
 
-/// A case in place of a method is worth a message of its own.
+/// Throws input_error with a message of its own if the text is a case instead of a method.
 void refuse_case(const std::string& text, const std::string& path) {
   std::istringstream lines(text);
   std::string line;

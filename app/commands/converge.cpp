@@ -46,7 +46,7 @@ study_results results_of(const options& given, const convergence_table& table) {
           to_picture(table), table.complete, table.failures()};
 }
 
-/// Returns false if it was interrupted.
+/// Runs the study; returns false if it was interrupted.
 bool run_all_of(convergence& study) {
   progress_bar bar;
   try {

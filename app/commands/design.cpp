@@ -59,8 +59,8 @@ json summary(const design_task& task, const design_options& given, const design_
       {"found", found.best.has_value()}};
 }
 
-/// Removes stages from the initial method until it has the requested number, and writes each method on the
-/// way; returns false if it was stopped before.
+/// Removes stages from the initial method until the requested number is left, and writes each method on the
+/// way. Returns false if it was stopped before.
 bool take_stages_out(design_task& task, method_writer& file, const std::function<bool()>& stop) {
   while (task.from && task.from->stages() > task.stages) {
     const std::size_t stages = task.from->stages();

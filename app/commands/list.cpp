@@ -128,7 +128,7 @@ json schemes() {
   return all;
 }
 
-/// The choices of time.controller.
+/// Lists the choices of time.controller.
 json controllers() {
   json all = json::array();
   for (const step_law& law : step_laws())
@@ -141,7 +141,7 @@ json controllers() {
   return all;
 }
 
-/// The choices of space.formulation.
+/// Lists the choices of space.formulation.
 json formulations() {
   json all = json::array();
   for (const discretization_entry* d : discretization_entries()) {
@@ -224,7 +224,7 @@ json keys() {
   return all;
 }
 
-/// The table by which time.method = "auto" is chosen.
+/// Lists the table from which time.method = "auto" chooses.
 json choices() {
   json all = json::array();
   for (const choice_row& row : choice_table()) {
@@ -310,7 +310,7 @@ std::vector<std::string> list_names() {
   return names;
 }
 
-/// Prints only names; methods are not certified.
+/// Returns only the names, without certifying methods.
 std::string names_text(const std::string& what) {
   if (what == "methods") return fmt::format("{}\n", fmt::join(method_names(), "\n"));
   std::string out;

@@ -15,8 +15,8 @@ namespace apsis::app {
 namespace manual_command {
 namespace {
 
-/// Escapes a text for a manual page, where a backslash, and a dot or quote at the beginning of a line, have
-/// a meaning.
+/// Escapes a text for a manual page, where backslashes, hyphens, and dots or quotes at the beginning of a
+/// line have a special meaning.
 std::string roff(const std::string& text) {
   std::string out;
   for (const char c : text) {
@@ -40,7 +40,7 @@ std::vector<const CLI::Option*> options_of(const CLI::App& command) {
   return command.get_options([](const CLI::Option*) { return true; });
 }
 
-/// "--out TEXT", "CASE".
+/// Returns the usage of an option, such as "--out TEXT" or "CASE".
 std::string usage_of(const CLI::Option& option) {
   if (option.get_positional()) return option.get_single_name();
   const std::string value = option.get_items_expected_max() > 0 ? " " + option.get_type_name() : "";
@@ -91,7 +91,7 @@ std::string document(const CLI::App& program) {
          "\n";
 }
 
-/// Long options of a command.
+/// Returns the long options of a command.
 std::string words_of(const CLI::App& command) {
   std::vector<std::string> words;
   for (const auto* option : options_of(command))

@@ -24,7 +24,7 @@ struct options {
   bool frames = false;
 };
 
-/// Writes a method as the file from which the pictures are drawn.
+/// Writes a method to a file from which its pictures are drawn; returns the path.
 std::string described(const drawing& pictures, std::size_t place, const method& m) {
   return pictures.add(fmt::format("method-{}.json", place), method_document(m, "json"));
 }

@@ -41,7 +41,7 @@ struct options {
   bool json = false, resume = false;
 };
 
-/// One reproduction, whose claims are written to disk as they are checked.
+/// A reproduction, which writes its claims to disk as they are checked.
 class reproduction {
  public:
   explicit reproduction(const options& given)
@@ -49,7 +49,7 @@ class reproduction {
     if (given.resume) load();
   }
 
-  /// Returns false if it was interrupted.
+  /// Checks the claims that are not known yet; returns false if it was interrupted.
   bool run() {
     progress_bar bar;
     for (std::size_t k = 0; k < chosen_.size(); ++k) {
@@ -75,7 +75,7 @@ class reproduction {
     return true;
   }
 
-  /// The requested claims, in the order of the registry.
+  /// Returns the results of the requested claims, in the order of the registry.
   json document() const {
     json claims = json::array();
     for (const claim_entry* claim : chosen_)
@@ -108,7 +108,8 @@ class reproduction {
 
   void save() { folder_.publish_text(document_name, json_text(document()) + "\n"); }
 
-  /// Results of an earlier run of the same version.
+  /// Loads the claims that hold from an earlier run of the same version. Throws input_error for
+  /// another version.
   void load() {
     std::ifstream in(folder_.path() / document_name, std::ios::binary);
     if (!in) return;

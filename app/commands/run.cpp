@@ -44,7 +44,7 @@ struct run_options {
   bool json = false, profile = false, explain = false;
 };
 
-/// "step 1234/2900  t = 0.21  min 1.20e-31"
+/// Returns the progress, such as "step 1234/2900  t = 0.21  min 1.20e-31".
 std::string step_text(const simulation& now) {
   if (now.config().steady_state.tolerance)
     return fmt::format("iteration {}  residual {:.2e}  change {:.2e}{}", now.step(),
@@ -53,7 +53,8 @@ std::string step_text(const simulation& now) {
                      now.last().min_value);
 }
 
-/// The share of the work that is done; of an iteration, the digits of its residual.
+/// Returns the share of the work that is done. In an iteration the work is the number of digits of
+/// the residual.
 double share_done(const simulation& now) {
   const auto& tolerance = now.config().steady_state.tolerance;
   if (!tolerance) return now.t() / now.config().time.end;
@@ -65,7 +66,7 @@ int code_of(run_end end) {
   return static_cast<int>(end == run_end::complete ? exit_code::success : exit_code::interrupted);
 }
 
-/// A process that waits for another one this many seconds after a signal gives up; writing takes shorter.
+/// Seconds after a signal for which a process waits for another one; writing takes less time.
 constexpr double longest_wait = 60.0;
 
 int run_on(const std::shared_ptr<communicator>& processes, run_options options) {
@@ -115,7 +116,7 @@ int run_on(const std::shared_ptr<communicator>& processes, run_options options) 
 }
 
 int run(const run_options& options) {
-  // Before anything else: an interrupt before the first step has the same effect as a later one.
+  // This comes first, so that an interrupt before the first step has the same effect as a later one.
   watch_for_interrupts(reports_errors() ? "the current step, and a checkpoint if there is a folder (--out)"
                                         : nullptr);
   return on_all_processes(

@@ -41,7 +41,7 @@ struct options {
   bool json = false;
 };
 
-/// One value for parameters of the user.
+/// Computes one value for parameters of the user.
 int compute_one(const options& given, const quantity_entry& quantity,
                 const std::vector<std::string>& settings) {
   const warning_record warnings;
@@ -72,7 +72,8 @@ std::string line(const compared_value& one) {
                      one.reference->tolerance);
 }
 
-/// A comparison with all reference values of some quantities, which are written to disk as they are computed.
+/// A comparison of some quantities with all their reference values. It writes the values to disk as they
+/// are computed.
 class comparison {
  public:
   comparison(const options& given, std::vector<const quantity_entry*> chosen)
@@ -80,7 +81,7 @@ class comparison {
     for (const quantity_entry* quantity : chosen_) expected_ += quantity->references.size();
   }
 
-  /// Returns false if it was interrupted.
+  /// Computes all values; returns false if it was interrupted.
   bool run() {
     progress_bar bar;
     for (const quantity_entry* quantity : chosen_)
@@ -103,7 +104,7 @@ class comparison {
     return true;
   }
 
-  /// The values computed so far, by quantity.
+  /// Returns the values computed so far, by quantity.
   json document() const {
     json quantities = json::array();
     double wall = 0.0;

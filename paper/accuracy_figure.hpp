@@ -9,24 +9,25 @@
 
 namespace apsis::paper {
 
-/// Results of a study that varies time.method, model.epsilon and then the mesh or the step, as in the figures
-/// of the paper: one panel per method, one curve per epsilon, error against Δt.
+/// Returns a picture of a study that varies time.method, model.epsilon and then the mesh or the step, as in
+/// the figures of the paper: one panel per method, one curve per epsilon, error against Δt.
 picture accuracy_picture(const convergence_table& table, const std::string& name, const std::string& title,
                          const std::string& caption);
 
-/// Errors and slopes: one row per method and epsilon, one column per refinement.
+/// Returns a table of errors and slopes: one row per method and epsilon, one column per refinement.
 report_table accuracy_table(const convergence_table& table, const std::string& title);
 
-/// The rows of one method and one epsilon, both as given to the study. Throws input_error.
+/// Returns the rows of one method and one epsilon, both as given to the study. Throws input_error if there
+/// are no such rows.
 const std::vector<convergence_row>& rows_of(const convergence_table& table, const std::string& method,
                                             const std::string& epsilon);
 
-/// Whether the last `count` slopes are all within `tolerance` of `order`; the value is the slope
-/// farthest away.
+/// Returns the finding that the last `count` slopes are all within `tolerance` of `order`. Its value is the
+/// slope farthest away.
 finding slopes_near(const std::string& what, const std::vector<convergence_row>& rows, std::size_t count,
                     double order, double tolerance);
 
-/// The number of numerical failures in a study, as a finding that requires zero.
+/// Returns the number of numerical failures in a study, as a finding that requires zero.
 finding no_failures(const convergence_table& table);
 
 }  // namespace apsis::paper

@@ -18,22 +18,23 @@ double characteristic_speed(double u, family wave) {
   return 0.5 * (u + wave * std::sqrt(2.0 - u * u));
 }
 
-/// ln ρ along a rarefaction, up to a constant.
+/// Returns ln ρ along a rarefaction, up to a constant.
 double rarefaction_log(double u, family wave) {
   const double theta = std::asin(u / std::numbers::sqrt2);
   return wave * theta - std::log(std::cos(theta) - wave * std::sin(theta));
 }
 
-/// Behind a shock into (ρ₀, u₀) with velocity u the density is ρ₀(1 + (u − u₀)x) and the speed u + 1/x, where
-/// (1 − u²)x² − (3u − u₀)x − 2 = 0 and x has the sign of the family. Weak shocks do not cancel.
+/// Returns the root x of (1 − u²)x² − (3u − u₀)x − 2 = 0 that has the sign of the family. Behind a shock into
+/// (ρ₀, u₀) with velocity u the density is ρ₀(1 + (u − u₀)x), and the shock has the speed u + 1/x. The
+/// formula avoids cancellation for weak shocks.
 double shock_root(double u0, double u, family wave) {
   const double a = 1.0 - u * u, b = 3.0 * u - u0;
   const double root = std::sqrt(b * b + 8.0 * a);
   return wave * b > 0.0 ? (b + wave * root) / (2.0 * a) : -4.0 / (b - wave * root);
 }
 
-/// Density where the velocity is u, behind a wave of the family into (ρ₀, u₀): the slow wave is a shock if u
-/// < u₀, the fast one if u > u₀.
+/// Returns the density where the velocity is u, behind a wave of the family into (ρ₀, u₀). The slow wave is a
+/// shock if u < u₀, the fast one if u > u₀.
 double density_behind(double rho0, double u0, double u, family wave) {
   if (wave * (u - u0) > 0.0) return rho0 * (1.0 + (u - u0) * shock_root(u0, u, wave));
   return rho0 * std::exp(rarefaction_log(u, wave) - rarefaction_log(u0, wave));

@@ -6,10 +6,10 @@ namespace apsis::paper {
 
 /// Exact solution of the Riemann problem of the Broadwell limit system (paper, eq. broadlimit)
 ///     ρ_t + m_x = 0,   m_t + ((ρ² + m²)/(2ρ))_x = 0,   (ρ, m) = left for x < 0, right for x > 0.
-/// With u = m/ρ the characteristic speeds are λ∓ = (u ∓ √(2 − u²))/2. Through a rarefaction dm/dρ = λ, so
-/// with u = √2 sin θ the slow wave keeps ln ρ + θ + ln(cos θ + sin θ), the fast one ln ρ − θ + ln(cos θ − sin
-/// θ). A shock obeys s[ρ] = [m] and s[m] = [(ρ² + m²)/(2ρ)], a quadratic equation for the ratio of the
-/// densities. The state between the two waves is found by bisection on u. Dimensionless.
+/// With u = m/ρ the characteristic speeds are λ∓ = (u ∓ √(2 − u²))/2. Through a rarefaction dm/dρ = λ. With u
+/// = √2 sin θ, ln ρ + θ + ln(cos θ + sin θ) is therefore constant in the slow wave, and ln ρ − θ + ln(cos θ −
+/// sin θ) in the fast one. A shock obeys s[ρ] = [m] and s[m] = [(ρ² + m²)/(2ρ)], a quadratic equation for the
+/// ratio of the densities. Bisection on u finds the state between the two waves. Dimensionless.
 class broadwell_riemann {
  public:
   /// The unknowns at one point.
@@ -20,13 +20,13 @@ class broadwell_riemann {
   /// Throws input_error unless ρ > 0 and |m| < ρ on both sides.
   broadwell_riemann(state left, state right);
 
-  /// The solution on the ray x/t = speed.
+  /// Returns the solution on the ray x/t = speed.
   state at(double speed) const;
-  /// The state between the two waves.
+  /// Returns the state between the two waves.
   state middle() const;
-  /// Speeds of the two edges of the slow wave, in increasing order; equal for a shock.
+  /// Returns the speeds of the two edges of the slow wave, in increasing order; equal for a shock.
   std::array<double, 2> slow_wave() const;
-  /// Speeds of the two edges of the fast wave, in increasing order; equal for a shock.
+  /// Returns the speeds of the two edges of the fast wave, in increasing order; equal for a shock.
   std::array<double, 2> fast_wave() const;
 
  private:

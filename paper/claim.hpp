@@ -12,25 +12,25 @@ namespace apsis::paper {
 /// One measured figure and its required value.
 struct finding {
   std::string what;       ///< "slope between dt = 1/512 and 1/1024, eps = 1"
-  double value = 0.0;     ///< as measured
+  double value = 0.0;     ///< measured value
   std::string condition;  ///< "at least 2.85", "3 ± 0.15", "at most 1e-13"
   bool holds = false;     ///< whether the value satisfies the condition
 };
 
-/// value ≤ bound. As with the other builders of findings, a value that is not a number never holds.
+/// Returns the finding value ≤ bound. Here and in the following functions NaN never satisfies the condition.
 finding at_most(std::string what, double value, double bound);
-/// value ≥ bound.
+/// Returns the finding value ≥ bound.
 finding at_least(std::string what, double value, double bound);
-/// |value − target| ≤ tolerance.
+/// Returns the finding |value − target| ≤ tolerance.
 finding close_to(std::string what, double value, double target, double tolerance);
-/// value = wanted.
+/// Returns the finding value = wanted.
 finding exactly(std::string what, long value, long wanted);
-/// A statement that is true or false; a figure of 1 or 0.
+/// Returns the finding that a statement is true; its value is 1 or 0.
 finding is_true(std::string what, bool value);
 
 /// Result of checking a claim.
 struct claim_result {
-  std::vector<finding> findings;     ///< short tables show the first, or the first that does not hold
+  std::vector<finding> findings;     ///< short tables show the first that does not hold, otherwise the first
   std::vector<report_table> tables;  ///< details, below the findings
   std::vector<picture> pictures;     ///< drawn by the report
   std::vector<std::string> remarks;  ///< corrections to the paper, deviations and their reasons
@@ -38,12 +38,12 @@ struct claim_result {
   bool all_hold() const;  ///< whether all findings hold, and there is at least one
 };
 
-/// One claim of the paper: a file of paper/claims/ defines `extern const claim_entry claim_<file>`.
+/// A claim of the paper: a file of paper/claims/ defines `extern const claim_entry claim_<file>`.
 struct claim_entry {
   std::string id;                               ///< "C7"
-  std::string section;                          ///< of the paper
+  std::string section;                          ///< section of the paper
   std::string statement;                        ///< statement of the paper, or about the paper
-  std::string how;                              ///< how it is verified
+  std::string how;                              ///< how the claim is verified
   claim_result (*check)(const study_control&);  ///< computes findings, tables and pictures
   bool slow = false;                            ///< more than about 20 s on two cores
 };

@@ -21,7 +21,7 @@ std::pair<double, double> compare_with_print(const std::vector<rooted_tree>& tre
                                       [&](const rooted_tree& tree) { return tree.name == row.tree; });
       if (found == trees.end()) return {std::numeric_limits<double>::quiet_NaN(), right};
       const double value = weights[static_cast<std::size_t>(found - trees.begin())];
-      // Sums of at most some hundred products of numbers below 6.
+      // Each value is a sum of at most some hundred products of numbers below 6.
       left = maximum(left, std::abs(value - row.left) / std::max(1.0, std::abs(row.left)));
       right = maximum(right, std::abs(1.0 / found->density - row.right));
     }

@@ -65,7 +65,7 @@ std::vector<convergence_series> all_series(const std::vector<smooth_problem>& pr
   return series;
 }
 
-/// The largest runs first for load balance.
+/// Computes all errors, the largest runs first for load balance.
 void run_series(const std::vector<smooth_problem>& problems, std::vector<convergence_series>& series,
                 const study_control& control) {
   std::vector<fourier_solution> exact;
@@ -168,8 +168,8 @@ void add_riemann_problems(const std::string& id, const study_control& control, c
     curves.push_back({"m", run.x, run.m, curve_style::markers, 1});
     curves.push_back({"exact", run.x, run.rho_exact, curve_style::line, -2});
     curves.push_back({"", run.x, run.m_exact, curve_style::line, -2});
-    // First order at a jump; single halvings vary with the position of the shock inside its cell, so two
-    // are combined.
+    // The order is one at a jump. Single halvings vary with the position of the shock inside its cell, so
+    // that two are combined.
     result.findings.push_back(
         at_least(fmt::format("Riemann problem, {}: order in L1 from {} to {} cells, ε = 0", titles[k],
                              cells[2], cells[0]),

@@ -19,7 +19,8 @@ limit_equations broadwell() {
           {}};
 }
 
-/// The equation u_t + F(u)_x = 0; empty for a flux given as a formula, which is its own description.
+/// Returns the equation u_t + F(u)_x = 0; nothing if a formula gives the flux, because it is its
+/// own description.
 std::optional<limit_equations> conservation_law(const case_config& config) {
   const std::string& flux = config.model.options.at("flux");
   if (flux == "burgers")
@@ -43,7 +44,8 @@ std::optional<limit_equations> conservation_law(const case_config& config) {
   return std::nullopt;
 }
 
-/// d velocity dimensions: a gas with d degrees of freedom, γ = (d + 2)/d.
+/// Returns the Euler equations of a gas with d velocity dimensions, which has d degrees of freedom: γ = (d
+/// + 2)/d.
 limit_equations euler(int d) {
   return {"compressible Euler equations",
           d + 2,

@@ -8,7 +8,7 @@
 
 namespace apsis::paper {
 
-/// A limit system written out by hand, ω_t + F(ω)_x = S(ω), as in the paper's summary of the models:
+/// A limit system written out by hand, ω_t + F(ω)_x = S(ω), as in the paper's summary of the models. It is
 /// independent of moments, equilibrium and transport of the model.
 struct limit_equations {
   std::string name;  ///< "compressible Euler equations"
@@ -19,7 +19,7 @@ struct limit_equations {
   std::function<void(const double* omega, double* source)> source;
 };
 
-/// The limit system of the case's model; nothing for a model whose limit is not written here.
+/// Returns the limit system of the case's model; nothing for a model whose limit is not written here.
 ///  - ode: u1' = sin u1
 ///  - relaxation (paper, eq. hr): u1_t + F(u1)_x = 0, F linear, of Burgers or of Buckley and Leverett
 ///  - broadwell (paper, eq. broadlimit): ρ_t + m_x = 0, m_t + ((ρ² + m²)/(2ρ))_x = 0

@@ -19,7 +19,7 @@ const initial_data& data_of(const case_config& config, const model& equation) {
   const auto found = std::find_if(all.begin(), all.end(), [&](const auto& data) {
     return config.model.initial.empty() || data.name == config.model.initial;
   });
-  return *found;  // the case was validated, so the model exists
+  return *found;  // the case was validated, so the data exist
 }
 
 outcome compute_limit(case_config config, const study_control& control) {
@@ -97,7 +97,7 @@ riemann_comparison compare_with_riemann_solution(const case_config& config, cons
     double omega[2];
     relaxation_of(setup).moments(f, omega);
     broadwell_riemann::state mean{0.0, 0.0};
-    constexpr int points = 50;  // midpoints: their error at a shock is 1/100 of that of the cell
+    constexpr int points = 50;  // midpoints: their error at a shock is 1/100 of that of one cell
     for (int q = 0; q < points; ++q) {
       const double x = result.x[static_cast<std::size_t>(i)] + run.cell_volume * ((q + 0.5) / points - 0.5);
       const auto there = exact.at((x - data.jumps[0]) / config.time.end);

@@ -8,13 +8,13 @@
 
 namespace apsis::paper {
 
-/// The solution of the written-out limit system (limit_equations) for the initial data of a case, at its end;
-/// the data must be smooth, and stay so until then. Throws input_error for a model whose limit is
+/// Returns the solution of the written-out limit system (limit_equations) for the initial data of a case,
+/// at its end time. The solution must be smooth until then. Throws input_error for a model whose limit is
 /// not written.
 fourier_solution limit_solution(const case_config& config, int points = 129, int steps = 1000);
 
-/// Relative L2 distance of ω from that solution (averages or point values, as in the case) after a run of the
-/// production code with ε = 0: the sum of the componentwise means over ω.
+/// Returns the relative L2 distance of ω from that solution after a run of the production code with ε = 0,
+/// summed over the components of ω. It compares averages or point values, as in the case.
 double distance_from_limit_solution(const case_config& config, const fourier_solution& solution,
                                     const study_control& control = {});
 
@@ -28,8 +28,8 @@ struct riemann_comparison {
   double error = 0.0;             ///< L1 norm of both differences, over the L1 norm of both exact
 };
 
-/// The states are those at the ends of the domain, the jump is that of the initial data. Throws input_error
-/// for another model, or data without exactly one jump.
+/// Compares a run with the exact solution. Its states are those at the ends of the domain, and its jump is
+/// that of the initial data. Throws input_error for another model, or for data without exactly one jump.
 riemann_comparison compare_with_riemann_solution(const case_config& config,
                                                  const study_control& control = {});
 

@@ -7,7 +7,7 @@
 
 namespace apsis::paper {
 
-/// The solution at t = 1 with `steps` equal steps of a method of the catalogue.
+/// Returns the solution at t = 1 by `steps` equal steps of a method of the catalogue.
 template <class Real>
 ode_state<Real> ode_solution(const method& m, Real epsilon, long steps,
                              ode_data data = ode_data::inconsistent) {
@@ -18,7 +18,7 @@ ode_state<Real> ode_solution(const method& m, Real epsilon, long steps,
   return u;
 }
 
-/// Slope of log2 of values at steps Δt, Δt/2, Δt/4, … over log2 Δt, by least squares.
+/// Returns the slope of log2 of values at steps Δt, Δt/2, Δt/4, … over log2 Δt, by least squares.
 double halving_slope(const std::vector<double>& values);
 
 }  // namespace apsis::paper

@@ -21,7 +21,8 @@ void add_order_maps(const std::string& id, const study_control& control, claim_r
                      {"model", "method", "design order", "reduced", "plateau", "not measurable"},
                      {}};
   for (const auto& model : relaxation_model_names()) {
-    // First-order upwinding is linear; WENO weights that switch where data are flat reduce the order in time.
+    // First-order upwinding is linear. WENO weights would switch where data are flat, and reduce the order
+    // in time.
     std::vector<std::string> overrides = {"time.end=1"};
     if (model != "ode") overrides = {"space.reconstruction=upwind1"};
     if (model == "bgk") overrides.emplace_back("velocity.points=36");  // sufficient for a test of time steps
@@ -44,7 +45,7 @@ void add_order_maps(const std::string& id, const study_control& control, claim_r
       const std::string name = model + ", " + m.method;
       result.findings.push_back(
           close_to(name + ": order at eps = 1, smallest steps", m.fine_slope(0), m.order, 0.15));
-      // Down to the plateau, which is at most ε.
+      // The slope is taken down to the plateau, which is at most ε.
       const std::size_t last = m.epsilon.size() - 1;
       result.findings.push_back(close_to(name + ": order at eps = 1e-8 above the plateau",
                                          m.coarse_slope(last, 3 * m.epsilon[last]), m.order, 0.25));

@@ -41,7 +41,7 @@ struct abscissae {
   numbers e, c, c_hat, c_dot, b, b_hat, b_dot;
 };
 
-/// Entries of column a_4j = a_5j, … of the fourth-order method: each value occurs in several rows.
+/// Returns the entries of the fourth-order method, whose values mostly occur in several rows of a column.
 std::vector<printed_entry> fourth_order_entries(const std::array<double, 9>& x) {
   const auto& [x11, x41, x22, x32, x42, x33, x43, x44, x55] = x;
   return {{1, 1, x11}, {2, 1, x11}, {3, 1, x11}, {4, 1, x41}, {5, 1, x41},
@@ -51,7 +51,7 @@ std::vector<printed_entry> fourth_order_entries(const std::array<double, 9>& x) 
 
 std::vector<printed_tableau> make_tableaux() {
   return {{"imdrk-2-3", {}, {{2, 2, 1.0}}, {{1, 1, -1.0 / 6}, {2, 1, -1.0 / 6}, {2, 2, -1.0 / 3}}},
-          // The page has the two indices of each entry off the diagonal swapped.
+          // The paper prints the two indices of each entry off the diagonal in the wrong order.
           {"imdrk-5-4",
            {},
            fourth_order_entries({0.660949255604937, 0.060653001401867, 0.242201390400848, 0.221847558352979,
@@ -180,8 +180,8 @@ double distance_to_print(const std::string& method) {
 }
 
 butcher_form<double> random_tableau(std::size_t stages, std::uint64_t seed) {
-  std::uint64_t state = seed * 2654435761U + 88172645463325252U;  // xorshift: the standard's engines are not
-  const auto draw = [&state] {                                    // mapped to numbers in one way only
+  std::uint64_t state = seed * 2654435761U + 88172645463325252U;  // xorshift: the standard does not fix how
+  const auto draw = [&state] {                                    // its engines are mapped to numbers
     state ^= state << 13;
     state ^= state >> 7;
     state ^= state << 17;

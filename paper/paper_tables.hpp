@@ -16,34 +16,37 @@ struct printed_condition {
       right;         ///< right-hand side as printed
 };
 
-/// The table of order conditions of two-derivative implicit methods up to order 4, typed from the page in its
-/// b, c notation (paper, section "Formulating the order conditions").
+/// Returns the table of order conditions of two-derivative implicit methods up to order 4, typed from the
+/// paper in its b, c notation (section "Formulating the order conditions").
 std::vector<printed_condition> printed_implicit_conditions(const butcher_form<double>& t);
-/// The table of multi-derivative IMEX methods up to order 3 (paper, section "Formulating order conditions").
+/// Returns the table of multi-derivative IMEX methods up to order 3 (paper, section "Formulating
+/// order conditions").
 std::vector<printed_condition> printed_imex_conditions(const butcher_form<double>& t);
 
 /// An entry of a matrix, counted from 1 as in the paper.
 struct printed_entry {
   std::size_t row,  ///< counted from 1
       column;       ///< counted from 1
-  double value;     ///< with all printed digits
+  double value;     ///< value with all printed digits
 };
 
 /// The Butcher matrices that the paper prints for one of its methods; entries that are not listed are 0.
 struct printed_tableau {
-  std::string method;                ///< its name in the catalogue
+  std::string method;                ///< name of the method in the catalogue
   std::vector<printed_entry> A_hat,  ///< entries of Â; empty for implicit methods
       A,                             ///< entries of A
       A_dot;                         ///< entries of Ȧ
 };
 
-/// Of imdrk-2-3, imdrk-5-4 (with corrected indices), md-imex-3-2, md-imex-6-3.
+/// Returns the printed matrices of imdrk-2-3, imdrk-5-4 (with corrected indices), md-imex-3-2 or md-imex-6-3.
+/// Throws input_error for other methods.
 const printed_tableau& printed_butcher_form(const std::string& method);
 
-/// Largest distance of an entry of the method's Butcher form from the printed one.
+/// Returns the largest distance of an entry of the method's Butcher form from the printed one.
 double distance_to_print(const std::string& method);
 
-/// A strictly lower triangular tableau with random entries in (−1, 1); the same on every machine.
+/// Returns a lower triangular tableau, strictly in Â, with random entries in [−1, 1); the same on
+/// every machine.
 butcher_form<double> random_tableau(std::size_t stages, std::uint64_t seed);
 
 }  // namespace apsis::paper

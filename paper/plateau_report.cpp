@@ -18,7 +18,7 @@ struct model_case {
   const char* name;
   std::vector<std::string> overrides;
 };
-/// Steps well inside the stability limit, at ε = 1e-6 far above ε.
+/// Cases whose steps are well inside the stability limit, and far above ε = 1e-6.
 const model_case cases[] = {
     {"paper/ode", {}},
     {"paper/relaxation", {"space.cells=20"}},
@@ -33,7 +33,7 @@ intermediate_regime<double> predicted(const std::string& name) {
   return analyse_intermediate_regime(find_method(name).coefficients<double>());
 }
 
-/// |measured − predicted| over 1 + |predicted|.
+/// Returns |measured − predicted| over 1 + |predicted|.
 double miss(double measured, double of_method) {
   return std::abs(measured - of_method) / (1 + std::abs(of_method));
 }
@@ -103,7 +103,7 @@ constexpr start starts[] = {{"inconsistent data", start_data::given, first_step:
                             {"consistent data", start_data::equilibrium, first_step::plain},
                             {"inconsistent data, layer resolved", start_data::given, first_step::resolved}};
 
-/// Errors for Δt = 1/4 … 1/4096 at ε = 1e-4 from three starts.
+/// Adds the errors for Δt = 1/4 … 1/4096 at ε = 1e-4 from three starts.
 void add_starts(const std::string& id, const study_control& control, claim_result& result) {
   constexpr double epsilon = 1e-4;
   constexpr int coarsest = 2, levels = 11;
@@ -157,7 +157,7 @@ void add_starts(const std::string& id, const study_control& control, claim_resul
     }
     starts_picture.panels.push_back(std::move(p));
   }
-  // Over the steps between Δt² and ε: 1/64 … 1/512.
+  // The minimum is over the steps 1/64 … 1/512, for which ε ≪ Δt and Δt² is at most about ε.
   const auto smallest = [&](std::size_t m, std::size_t from) {
     return *std::min_element(errors[m][from].begin() + 4, errors[m][from].begin() + 8) / epsilon;
   };

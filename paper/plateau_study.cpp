@@ -20,7 +20,7 @@ numbers difference(numbers a, const numbers& b) {
   return a;
 }
 
-/// The multiple of b that is nearest to a.
+/// Returns the factor of b for which the product is nearest to a.
 double multiple(const numbers& a, const numbers& b) {
   return std::inner_product(a.begin(), a.end(), b.begin(), 0.0) /
          std::inner_product(b.begin(), b.end(), b.begin(), 0.0);

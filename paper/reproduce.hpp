@@ -5,9 +5,9 @@
 
 namespace apsis::paper {
 
-/// Checks one claim: id, section, statement, how, holds, findings, tables, pictures, remarks, error (""
-/// unless the check itself could not be carried out; then the claim does not hold), wall_s. Throws
-/// study_interrupted.
+/// Checks one claim. Returns id, section, statement, how, holds, error, findings, tables, pictures, remarks
+/// and wall_s. If the check itself fails, `error` has its message, and the claim does not hold; otherwise
+/// `error` is "". Throws study_interrupted.
 nlohmann::ordered_json check_claim(const claim_entry& claim, const study_control& control);
 
 }  // namespace apsis::paper

@@ -14,7 +14,7 @@ namespace {
 
 constexpr auto square = [](const auto& u, auto& out) { out[0] = -10 * u[0] * u[0]; };
 
-/// The problem with every stage observed as it is solved.
+/// The problem, which records the smallest stage as the stages are solved.
 struct watched_decay : newton_problem<no_transport, decltype(square)> {
   watched_decay() : newton_problem(no_transport{}, square) {}
   void solve_collision(double t, double a, double b, std::vector<double>& u) {

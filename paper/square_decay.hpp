@@ -8,13 +8,13 @@
 
 namespace apsis::paper {
 
-/// Names of the methods of the catalogue whose certificate satisfies a condition.
+/// Returns the names of the methods of the catalogue whose certificate satisfies a condition.
 std::vector<std::string> methods_where(const std::function<bool(const certificate&)>& condition);
 
-/// Implicit methods that are strong stability preserving for every step.
+/// Returns the implicit methods that are strong stability preserving for every step.
 std::vector<std::string> unconditional_methods();
 
-/// u' = −10u², u(0) = 10 (paper, numerical tests of the implicit methods), dimensionless.
+/// A run of u' = −10u², u(0) = 10 (paper, numerical tests of the implicit methods). Dimensionless.
 struct decay_run {
   std::vector<double> t,   ///< times of u
       u;                   ///< all steps until a stage equation has no root, including the initial state
@@ -26,14 +26,14 @@ struct decay_run {
   bool qualitatively_right() const { return solvable && positive && decreasing; }
 };
 
-/// `steps` steps of length dt by the method, through the production stepper; a stage is solved by Newton's
-/// method and may be negative.
+/// Takes `steps` steps of length dt by the production stepper. Newton's method solves the stages, which may
+/// be negative.
 decay_run square_decay(const std::string& method, double dt, int steps);
 
-/// The exact solution 1/(1/10 + 10 t).
+/// Returns the exact solution 1/(1/10 + 10 t).
 double square_decay_exact(double t);
 
-/// |u(2) − 1/20.1| after `steps` equal steps in long double, which orders above three require.
+/// Returns |u(2) − 1/20.1| after `steps` equal steps in long double, which orders above three require.
 double square_decay_error(const std::string& method, long steps);
 
 }  // namespace apsis::paper

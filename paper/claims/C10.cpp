@@ -21,7 +21,8 @@ namespace {
 
 using row = std::vector<double>;
 
-/// Largest relative growth of a functional in a step, in units of the admissible rounding: ≤ 1 is decay.
+/// Returns the largest relative growth of a functional in a step, in units of the admissible rounding. A
+/// value ≤ 1 counts as decay.
 template <class G>
 double growth(const std::string& method, const G& g, const std::function<double(const row&)>& functional,
               double dt, double rounding, row u) {
@@ -37,7 +38,8 @@ double growth(const std::string& method, const G& g, const std::function<double(
   return worst;
 }
 
-/// G = −c u^p: u decays and keeps its sign; infinity otherwise.
+/// Returns the growth of u for G = −c u^p, for which u decays and keeps its sign; infinity if the
+/// sign changes.
 double power_decay(const std::string& method, random_source& random) {
   const int p = random.integer(1, 6);
   const double c = random.magnitude(-4, 4), dt = random.magnitude(-8, 8);
@@ -45,16 +47,17 @@ double power_decay(const std::string& method, random_source& random) {
     out[0] = -c * u[0];
     for (int k = 1; k < p; ++k) out[0] *= u[0];
   };
-  // A decay below the rounding of u is not resolved: the convex combination of stages is accurate to an ulp
-  // or two. Linear decay soon underflows to 0.
+  // A decay below the rounding of u is not resolved, because the convex combination of stages is accurate to
+  // an ulp or two. Linear decay soon underflows to 0.
   const auto functional = [p](const row& u) {
     return u[0] > 0.0 || (p == 1 && u[0] == 0.0) ? u[0] : std::numeric_limits<double>::infinity();
   };
   return growth(method, g, functional, dt, 1e-15, {random.magnitude(-3, 3)});
 }
 
-/// G(u) = S g(Sᵀu), g_i(w) = −c_i w − e_i w³, S an orthogonal reflection: forward Euler with a small step and
-/// u − τ²Ġ, Ġ_i = (c_i + e_i w²)(c_i + 3 e_i w²) w_i, both shorten every w_i, hence the Euclidean norm.
+/// Returns the growth of the Euclidean norm for G(u) = S g(Sᵀu), g_i(w) = −c_i w − e_i w³, S an orthogonal
+/// reflection. Forward Euler with a small step, and u − τ²Ġ with Ġ_i = (c_i + e_i w²)(c_i + 3 e_i w²) w_i,
+/// both shorten every w_i. They therefore reduce the norm.
 double reflected_cubic_decay(const std::string& method, random_source& random) {
   const auto n = static_cast<std::size_t>(random.integer(1, 6));
   row c(n), e(n), u(n), normal(n);
@@ -89,9 +92,9 @@ double reflected_cubic_decay(const std::string& method, random_source& random) {
   return growth(method, g, norm, k / fastest, 1e-14 * (1 + k * k), u);
 }
 
-/// G(u) = C (mean(u) − u) with C depending on the mean: Ġ = −C G. Forward Euler and u − τ²Ġ are averages of
-/// permutations of u, so every convex functional that is symmetric decreases: here Σ_i h(u_i), h the maximum
-/// of random affine functions.
+/// Returns the growth of a functional for G(u) = C (mean(u) − u) with C depending on the mean, so that Ġ = −C
+/// G. Forward Euler and u − τ²Ġ are averages of permutations of u. Every symmetric convex functional
+/// therefore decreases: here Σ_i h(u_i), h the maximum of random affine functions.
 double averaging(const std::string& method, random_source& random) {
   constexpr std::size_t pieces = 4;
   row u(static_cast<std::size_t>(random.integer(2, 8))), slope(pieces), offset(pieces);
@@ -115,8 +118,8 @@ double averaging(const std::string& method, random_source& random) {
     }
     return sum;
   };
-  // The rounding of mean(u) shifts all components alike and enters Ġ times (Δt C)², C ≤ 10 rate: a general G
-  // does not conserve the mean better than that (relaxation_problem does).
+  // The rounding of mean(u) shifts all components equally and enters Ġ times (Δt C)², C ≤ 10 rate. A general
+  // G does not conserve the mean better than that; relaxation_problem does.
   const double rounding = 1e-14 * (1 + std::pow(10 * rate * dt, 2));
   return growth(method, g, functional, dt, rounding, u);
 }

@@ -5,7 +5,7 @@ namespace apsis::paper {
 namespace C11_claim {
 namespace {
 
-/// The largest step, by bisection, for which 20 steps keep every stage positive.
+/// Returns the largest step for which every stage of 20 steps is positive, by bisection.
 double positivity_limit(const std::string& method) {
   double keeps = 1e-3, loses = 0.1;
   for (int n = 0; n < 60; ++n) {
@@ -18,7 +18,7 @@ double positivity_limit(const std::string& method) {
 
 claim_result check(const study_control&) {
   claim_result result;
-  // A stage vanishes there, and rounding decides its sign: 1e-12 is generous.
+  // At the limit a stage vanishes, and rounding decides its sign: 1e-12 is generous.
   result.findings = {close_to("largest step of dirk-2-2 that keeps every stage positive",
                               positivity_limit("dirk-2-2"), 1.0 / 50, 1e-12),
                      close_to("largest step of dirk-4-3 that keeps every stage positive",

@@ -20,7 +20,7 @@ struct pair_of_methods {
 constexpr pair_of_methods pairs[] = {{"second order", "dirk-2-2", "imdrk-1-2"},
                                      {"third order", "dirk-4-3", "imdrk-2-3"}};
 
-/// Draws the run; it ends in a marker if its stage equation has no root.
+/// Draws a run. Its curve ends in a marker if a stage equation has no root.
 void draw(const decay_run& run, const std::string& label, curve_style style, int colour, panel& into) {
   if (run.u.size() > 1) into.curves.push_back({label, run.t, run.u, style, colour});
   if (!run.solvable)
@@ -51,7 +51,7 @@ panel draw_pair(const pair_of_methods& methods, claim_result& result) {
   const std::string steps = fmt::format("of {} steps 1/4 … 1/{}", total, finest);
   result.findings.push_back(
       exactly(fmt::format("{}: positive and decreasing for how many {}", methods.ssp, steps), right, total));
-  // 1/64 < 1/50: the only step at which the second-order DIRK method is harmless.
+  // Only for the step 1/64 < 1/50 the second-order DIRK method is harmless.
   const int harmless = std::string(methods.dirk) == "dirk-2-2" ? 1 : 0;
   result.findings.push_back(
       exactly(fmt::format("{}: not so for how many {}", methods.dirk, steps), wrong, total - harmless));

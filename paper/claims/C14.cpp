@@ -12,8 +12,8 @@ namespace apsis::paper {
 namespace C14_claim {
 namespace {
 
-/// One of the model's initial data at a random position, disturbed by up to 90 % in every component;
-/// nonnegative if negative components are unphysical (some published data are negative nevertheless).
+/// Returns one of the model's initial data at a random position, disturbed by up to 90 % in every component.
+/// It is nonnegative if negative components are unphysical, although some published data are negative.
 std::vector<double> disturbed_data(const model& m, random_source& random) {
   std::vector<double> u(static_cast<std::size_t>(m.components()));
   const int data = random.integer(0, static_cast<int>(m.initial().size()));
@@ -40,7 +40,8 @@ claim_result check(const study_control& control) {
     const auto add = [&](const char* what, double value, double bound) {
       result.findings.push_back(at_most(fmt::format("{}: {}", m.entry->name, what), value, bound));
     };
-    // Sums of up to a hundred terms, each with its rounding; differences divide it by their step of 1e-2.
+    // The bounds allow for the rounding of sums of up to a hundred terms. Differences divide it by their step
+    // of 1e-2.
     add("conservation, |R Q| / (1 + |R u|)", worst.conservation, 1e-13);
     add("equilibrium, |Q(E)| / |E| and |R E - w| / (1 + |w|)", worst.equilibrium, 1e-13);
     add("dissipation, |Q'Q + C Q| / ((1 + C)(1 + |u| + |Q|))", worst.derivative, 1e-11);

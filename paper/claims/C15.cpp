@@ -12,8 +12,8 @@ namespace apsis::paper {
 namespace C15_claim {
 namespace {
 
-/// Nonnegative: the model's initial data at a random position, disturbed over eight decades, a fifth
-/// exactly 0.
+/// Returns the absolute values of the model's initial data at a random position, disturbed over eight
+/// decades. A fifth of them are exactly 0.
 std::vector<double> nonnegative_data(const model& m, random_source& random) {
   std::vector<double> u(static_cast<std::size_t>(m.components()));
   const int data = random.integer(0, static_cast<int>(m.initial().size()));
@@ -26,7 +26,8 @@ struct tally {
   long values = 0, zeros = 0, negative = 0, refused = 0;
 };
 
-/// For λ = 1e-12 … 1e12; states without equilibrium are counted separately.
+/// Counts negative values after backward Euler steps λ = 1e-12 … 1e12. States without equilibrium are
+/// counted separately.
 void count(const model& m, const std::vector<double>& u, tally& sum) {
   for (int power = -12; power <= 12; ++power) {
     try {

@@ -23,7 +23,7 @@ constexpr int samples = 1000;
 
 using populations = std::array<double, 3>;  ///< f₊, f₀, f₋
 
-/// ρ, m, z of populations, and of their rates of change: they are linear.
+/// The moments ρ, m, z of populations, or of their rates of change, because they are linear.
 struct moments3 {
   double rho, m, z;
 };
@@ -42,7 +42,7 @@ struct broadwell {
   const relaxation_model& equation = *owner->as_relaxation();
 };
 
-/// Largest defects of the moment form in the production operators.
+/// The largest defects of the moment form in the production operators.
 struct moment_form_defects {
   double conservation = 0.0, relaxation = 0.0, transport = 0.0, projection = 0.0;
 };
@@ -68,8 +68,8 @@ void collide_randomly(const broadwell& b, random_source& random, moment_form_def
       maximum(worst.projection, std::abs(limit.z - (w.rho * w.rho + w.m * w.m) / (2.0 * w.rho)) / w.rho);
 }
 
-/// T of populations that are linear in x, which every reconstruction reproduces: away from the ends of the
-/// mesh ρ_t + m_x, m_t + z_x and z_t + m_x are rounding.
+/// Records the defects of T for populations that are linear in x, which every reconstruction reproduces. Away
+/// from the ends of the mesh, ρ_t + m_x, m_t + z_x and z_t + m_x vanish up to rounding.
 void transport_randomly(const broadwell& b, const std::string& scheme, random_source& random,
                         moment_form_defects& worst) {
   constexpr int cells = 15;
@@ -88,7 +88,7 @@ void transport_randomly(const broadwell& b, const std::string& scheme, random_so
                              std::abs(rate.z + x.m) / size});
 }
 
-/// The limit system: E, its fluxes and its characteristic speeds.
+/// The largest defects of the limit system: E, its fluxes and its characteristic speeds.
 struct limit_defects {
   double equilibrium = 0.0, moments = 0.0, fluxes = 0.0, speeds = 0.0, fastest = 0.0;
 };
@@ -114,8 +114,8 @@ void compare_limit(const broadwell& b, const limit_equations& system, random_sou
     worst.moments = maximum(worst.moments, std::abs(back[k] - omega[k]) / rho);
     worst.fluxes = maximum(worst.fluxes, std::abs(by_transport[k] - by_hand[k]) / rho);
   }
-  // λ is an eigenvalue of F' when F'(1, λ) = λ(1, λ): the derivative of F along (1, λ), by
-  // central differences.
+  // λ is an eigenvalue of F' if F'(1, λ) = λ(1, λ), the derivative of F along (1, λ). Central differences
+  // compute it.
   for (const double sign : {-1.0, 1.0}) {
     const double lambda = 0.5 * (u + sign * std::sqrt(2.0 - u * u)), h = 1e-5 * rho;
     const std::array<double, 2> ahead = {rho + h, m + lambda * h}, behind = {rho - h, m - lambda * h};
@@ -142,7 +142,8 @@ claim_result check(const study_control&) {
     for (const auto* scheme : reconstruction_entries()) transport_randomly(b, scheme->name, random, form);
     compare_limit(b, *system, random, limit);
   }
-  // Sums of a few products of numbers of the size of the denominators; edge values of WENO sum ten such.
+  // Rounding of sums of a few products of the size of the denominators; edge values of WENO sum ten
+  // such products.
   constexpr double rounding = 1e-14;
   claim_result result;
   result.findings = {
@@ -153,7 +154,7 @@ claim_result check(const study_control&) {
       at_most("E(ρ, m) is ((ρ + m)², ρ² − m², (ρ − m)²)/(4ρ), over ρ", limit.equilibrium, rounding),
       at_most("moments of E(ρ, m) are (ρ, m), over ρ", limit.moments, rounding),
       at_most("fluxes of the equilibrium are (m, (ρ² + m²)/(2ρ)), over ρ", limit.fluxes, rounding),
-      // Central differences: h² F'''/6 and rounding over h, both near 1e-10.
+      // Central differences have errors h² F'''/6 and rounding over h, both near 1e-10.
       at_most("characteristic speeds of the limit are (u ± √(2 − u²))/2, u = m/ρ", limit.speeds, 1e-8),
       at_most("and lie within those of the particles (subcharacteristic condition)", limit.fastest, 1.0)};
   result.remarks = {fmt::format(

@@ -17,7 +17,7 @@ namespace apsis::paper {
 namespace C17_claim {
 namespace {
 
-/// Two programs that sum in different order, a few steps, values of order one.
+/// Bound of rounding: two programs sum in different order, over a few steps, values of order one.
 constexpr double round_off = 1e-13;
 
 const char* const papers_methods[] = {"md-imex-3-2", "md-imex-6-3"};
@@ -26,7 +26,7 @@ bool of_the_paper(const std::string& method) {
   return std::find(std::begin(papers_methods), std::end(papers_methods), method) != std::end(papers_methods);
 }
 
-/// IMEX methods of the catalogue whose certificate satisfies a condition.
+/// Returns the IMEX methods of the catalogue whose certificate satisfies a condition.
 template <class Condition>
 std::vector<std::string> imex_methods(Condition wanted) {
   std::vector<std::string> names;
@@ -40,7 +40,8 @@ std::vector<std::string> imex_methods(Condition wanted) {
 constexpr double limit_row::* distances[] = {&limit_row::moments_first, &limit_row::moments_end,
                                              &limit_row::state_first, &limit_row::state_end};
 
-/// The smallest slope of the four distances; those that are rounding from the start have no slope.
+/// Returns the smallest slope of the four distances. Distances that are rounding from the start have
+/// no slope.
 double smallest_slope(const limit_table& table) {
   double smallest = INFINITY;
   for (const auto column : distances) smallest = minimum(smallest, table.slope(column).value_or(INFINITY));
@@ -73,7 +74,7 @@ std::vector<double> epsilons() {
   return values;
 }
 
-// Decrease of the distance: every model, every discretization, every method that promises it.
+// Decrease of the distance, for every model, every discretization and every method that promises it.
 
 struct distance_job {
   std::string model, discretization, method;
@@ -144,7 +145,7 @@ picture draw_distances(const std::vector<distance_job>& jobs) {
   return p;
 }
 
-/// Cases with pointwise equilibrium, so that consistent data are exactly consistent.
+/// Returns a case with pointwise equilibrium, so that consistent data are exactly consistent.
 case_config pointwise_case(const std::string& model, const std::string& method, double step) {
   std::vector<std::string> overrides = {"time.method=" + method};
   if (model != "ode") overrides.emplace_back(discretization_override("finite-difference"));
@@ -153,11 +154,11 @@ case_config pointwise_case(const std::string& model, const std::string& method, 
   return config;
 }
 
-// Rate: at least linear.
+// Rate of the decrease: at least linear.
 
-/// From data in equilibrium only stages without Q̇ retain an O(ε) distance from it. In md-imex-3-2 the one
-/// stage that feeds T after a transport has Q̇ alone, so its moments decrease like ε²; in md-imex-6-3 two
-/// such stages have Q alone.
+/// Checks the rate from data in equilibrium. Only stages without Q̇ then retain an O(ε) distance from
+/// equilibrium. In md-imex-3-2 the only stage that enters T after a transport has Q̇ alone, so that the
+/// distance of the moments decreases like ε². In md-imex-6-3 two such stages have Q alone.
 void judge_rates(claim_result& result) {
   constexpr std::pair<const char*, double> rates[] = {{"md-imex-3-2", 2.0}, {"md-imex-6-3", 1.0}};
   for (const auto& [method, rate] : rates) {
@@ -169,9 +170,9 @@ void judge_rates(claim_result& result) {
   }
 }
 
-// Failures: first stages that are not relaxed, last stages that are not.
+// Failures: methods whose first or last stage is not relaxed.
 
-/// Methods whose first stage is u^n itself.
+/// Shows the failure of a method whose first stage is u^n itself.
 void first_stage_failure(const std::string& model, const std::string& method, int colour, panel& into,
                          claim_result& result) {
   auto positive = epsilons();
@@ -197,7 +198,8 @@ void first_stage_failure(const std::string& model, const std::string& method, in
                                     consistent.floor(&limit_row::moments_end), round_off));
 }
 
-/// Methods whose last stage is not relaxed: the moments converge, the state is not projected.
+/// Shows the failure of a method whose last stage is not relaxed: the moments converge, but the state is
+/// not projected.
 void last_stage_failure(const std::string& model, const std::string& method, int colour, panel& into,
                         claim_result& result) {
   const auto table = limit_distance(pointwise_case(model, method, 1.0), epsilons());

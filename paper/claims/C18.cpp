@@ -39,7 +39,7 @@ case_config upwind_case(const combination& c, int cells) {
   return small_case(c.model, c.method, c.epsilon, cells, {"space.reconstruction=upwind1"});
 }
 
-/// Largest increase in a step, relative to 1 + |S|, as monitored in a run.
+/// Returns the largest increase in a step, relative to 1 + |S|, as monitored in a run.
 double increase_in_run(const combination& c, const study_control& control) {
   case_config config = upwind_case(c, 40);
   config.time.dt.reset();
@@ -54,7 +54,7 @@ double increase_in_run(const combination& c, const study_control& control) {
   return worst;
 }
 
-/// The same from extreme states, which do not occur in runs.
+/// Returns the largest such increase from extreme states, which do not occur in runs.
 double increase_from_hostile_data(const combination& c) {
   case_problem problem(upwind_case(c, 12));
   stepper march(problem.setup.integrator().starter(), *problem.equations);
@@ -73,7 +73,7 @@ double increase_from_hostile_data(const combination& c) {
   return worst;
 }
 
-/// Entropy and smallest value of the built-in case with a method, step by step.
+/// Entropy and smallest value of a built-in case with a method, step by step.
 struct entropy_history {
   curve entropy, change;
   double largest_increase = 0.0, smallest_value = 0.0, forward_euler_steps = 0.0;

@@ -14,7 +14,7 @@ namespace apsis::paper {
 namespace C19_claim {
 namespace {
 
-// Values like those of the paper's figures; the steps are 1/4 … 1/131072 = 7.6e-6.
+// These values resemble those of the paper's figures; the steps are 1/4 … 1/131072 = 7.6e-6.
 constexpr double epsilons[] = {1, 1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-8, 1e-10};
 constexpr int coarsest = 2, finest = 17, levels = finest - coarsest + 1;
 constexpr std::size_t epsilon_count = std::size(epsilons);
@@ -28,7 +28,7 @@ struct method_errors {
     const auto e = std::find(std::begin(epsilons), std::end(epsilons), epsilon) - std::begin(epsilons);
     return error[static_cast<std::size_t>(e)][static_cast<std::size_t>(level - coarsest)];
   }
-  /// Slope between Δt = 2^-from and 2^-to.
+  /// Returns the slope between Δt = 2^-from and 2^-to.
   double slope(double epsilon, int from, int to) const {
     std::vector<double> part;
     for (int level = from; level <= to; ++level) part.push_back(at(epsilon, level));
@@ -87,7 +87,7 @@ report_table slopes(const method_errors& m) {
   return t;
 }
 
-/// Change of the references with a tolerance ten times as large and one column fewer.
+/// Returns the change of the references with another tolerance and one column fewer.
 double doubt_of_references(const study_control& control) {
   std::vector<double> moved(epsilon_count);
   run_all(control, "uncertainty of the references", static_cast<int>(epsilon_count), [&](int e) {
@@ -100,7 +100,8 @@ double doubt_of_references(const study_control& control) {
 claim_result check(const study_control& control) {
   claim_result result;
   for (const auto& m : measure(control)) {
-    // The third-order method reaches its plateau, 0.3 ε, at ε = 1e-10 and Δt = 1/512, and rounding at ε = 1.
+    // The third-order method reaches its plateau, 0.3 ε, for ε = 1e-10 at Δt = 1/512. For ε = 1 it
+    // reaches rounding.
     const bool second = m.order == 2;
     result.findings.push_back(close_to(m.name + ": order at eps = 1",
                                        second ? m.slope(1, 7, 13) : m.slope(1, 6, 12), m.order, 0.1));
@@ -110,14 +111,14 @@ claim_result check(const study_control& control) {
       result.findings.push_back(
           at_most(fmt::format("{}: order from dt = 1/64 to 1/1024 at eps = {:g}", m.name, epsilon),
                   m.slope(epsilon, 6, 10), 1.0));
-    // ε ≪ Δt, and Δt^p far below ε.
+    // Here ε ≪ Δt, and Δt^p is far below ε.
     const double middle = m.at(1e-5, 11) / 1e-5, fine = m.at(1e-6, 13) / 1e-6;
     result.findings.push_back(
         close_to(m.name + ": error/eps on the plateau of 1e-5 over that of 1e-6", middle / fine, 1, 0.3));
     result.pictures.push_back(figure(m));
     result.tables.push_back(slopes(m));
   }
-  // The looser reference itself has errors up to 1e-13, see its test.
+  // The looser reference has errors up to 1e-13; see its test.
   result.findings.push_back(at_most("change of the reference with another order and tolerance",
                                     doubt_of_references(control), 2e-13));
   add_plateau_study("C19", control, result);

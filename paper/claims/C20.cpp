@@ -17,7 +17,8 @@ struct stage_of_paper {
   int order;
   int plateau;  ///< the error is flat from Δt = 2^-plateau on
   int from,
-      to;  ///< self-convergence is measured here, above rounding and above the O(ε/Δt) end of the plateau
+      to;  ///< levels at which self-convergence is measured, above rounding and the O(ε/Δt) end of
+           ///< the plateau
 };
 constexpr stage_of_paper methods[] = {{"md-imex-3-2", 2, 11, 6, 12}, {"md-imex-6-3", 3, 6, 4, 8}};
 

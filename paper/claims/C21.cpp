@@ -9,8 +9,8 @@ namespace apsis::paper {
 namespace C21_claim {
 namespace {
 
-/// The third-order method with the printed coefficients: 15 digits in double, whose rows sum to 1 only up to
-/// rounding, and the closed form of the stage.
+/// Returns the solution by the third-order method with the printed coefficients and the closed form of the
+/// stage. The coefficients have 15 digits, in double; their rows sum to 1 only up to rounding.
 ode_state<double> solve_as_printed(double epsilon, long steps) {
   using row = std::array<double, 6>;
   constexpr double r = 0.904402174130635;
@@ -74,8 +74,8 @@ claim_result check(const study_control& control) {
   claim_result result;
   result.findings = {
       at_least("as printed: error at dt = 2e-4 over that at 5e-5", at(printed, 5000) / at(printed, 20000), 4),
-      // In between, roundings of different sign may cancel; then the missing 1e-16 of the rows dominates,
-      // lost anew in every step, so that the error grows in proportion to the number of steps.
+      // In between, roundings of different sign may cancel. Then the missing 1e-16 of the rows dominates. It
+      // is lost again in every step, so that the error grows in proportion to the number of steps.
       at_least("as printed: error at dt = 1.25e-5 over that at 5e-5", at(printed, 80000) / at(printed, 20000),
                1.5),
       close_to("as printed: growth of the error from dt = 1.25e-5 to a quarter of it",
@@ -84,7 +84,7 @@ claim_result check(const study_control& control) {
               at(catalogue, 320000) / at(printed, 320000), 0.1),
       at_most("rows summing to 1, double: error at dt = 3.1e-6 over that at 5e-5",
               at(catalogue, 320000) / at(catalogue, 20000), 1),
-      // Beyond, the reference itself is not accurate enough.
+      // For smaller steps the reference itself is not accurate enough.
       close_to("long double: order between dt = 5e-5 and 1.25e-5",
                halving_slope({at(extended, 20000), at(extended, 40000), at(extended, 80000)}), 3, 0.1)};
   panel p{"", "Δt (dimensionless)", "|Δu1| + |Δu2| at t = 1 (dimensionless)", true, true, {}, {}, {3}};

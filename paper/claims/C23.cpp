@@ -24,7 +24,8 @@ claim_result check(const study_control& control) {
   const auto figure = converge(
       study({}, {"1", "1e-1", "1e-2", "1e-3", "1e-4", "1e-6", "1e-8"}, "space.cells=20..320", kind::next),
       control);
-  // On one mesh, so that the spatial error is the same in all runs and only the temporal error remains.
+  // These runs have one mesh, so that the spatial error is the same in all and only the temporal
+  // error remains.
   const auto in_time =
       converge(study({"space.cells=40"}, {"1", "1e-2", "1e-10"}, "time.cfl=1/8..1", kind::time), control);
   for (const char* epsilon : {"1", "1e-10"})
@@ -37,7 +38,7 @@ claim_result check(const study_control& control) {
     result.findings.push_back(slopes_near(
         fmt::format("slope of the second order on the finest meshes of the figure, ε = {}", epsilon),
         rows_of(figure, second, epsilon), 1, 2.0, 0.15));
-    // N = 160: on the next mesh the third order at 1e-6 has reached its plateau.
+    // N = 160 is chosen because the third order at 1e-6 reaches its plateau on the next mesh.
     const auto& a = rows_of(figure, second, epsilon).at(3);
     const auto& b = rows_of(figure, third, epsilon).at(3);
     result.findings.push_back(

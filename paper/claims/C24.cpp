@@ -18,7 +18,7 @@ void add_promises(claim_result& result, const std::string& name, const outcome& 
                                     run.summary.conservation_defect, 1e-12));
 }
 
-/// The axes of the paper's figure.
+/// Adds the findings that the fields lie within the axes of the paper's figure.
 void add_ranges(claim_result& result, const field_table& fields) {
   constexpr std::array<std::array<double, 2>, 3> axes = {{{0.70, 0.88}, {0.35, 0.55}, {1.1, 2.1}}};
   for (std::size_t k = 0; k < 3; ++k) {
@@ -63,14 +63,15 @@ claim_result check(const study_control& control) {
   add_promises(result, "third order", third);
   const conserved_fields a = conserved(second.fields), b = conserved(third.fields),
                          c = averaged_in_pairs(conserved(reference.fields));
-  // The error of WENO5 on 40 cells across the steep change of the Knudsen number.
+  // The bound is the error of WENO5 on 40 cells across the steep change of the Knudsen number.
   result.findings.push_back(
       at_most("difference of second order from the reference (density, momentum, energy)",
               largest_difference(a, c), 6e-3));
   result.findings.push_back(
       at_most("difference of third order from the reference (density, momentum, energy)",
               largest_difference(b, c), 6e-3));
-  // Ten times closer to each other: the spatial error dominates, as the paper's caption states.
+  // The orders are ten times closer to each other, because the spatial error dominates, as the paper's
+  // caption states.
   result.findings.push_back(
       at_most("difference between second and third order", largest_difference(a, b), 6e-4));
   add_ranges(result, third.fields);

@@ -13,14 +13,14 @@ namespace apsis::paper {
 namespace C25_claim {
 namespace {
 
-/// k_1 = 1/4, k_i = 1/(4(1 − k_{i−1})), which is s/(2(s+1)).
+/// Returns k_s from k_1 = 1/4, k_i = 1/(4(1 − k_{i−1})), which is s/(2(s+1)).
 double bound(std::size_t stages) {
   double k = 0.25;
   for (std::size_t i = 1; i < stages; ++i) k = 1.0 / (4.0 * (1.0 - k));
   return k;
 }
 
-/// An implicit method with P, D, Ḋ ≥ 0 and R e ≥ 0.
+/// Returns an implicit method of s stages whose coefficients are all 0.
 shu_osher_form<double> zero_form(std::size_t s) {
   return {matrix<double>(s, s), matrix<double>(s, s), matrix<double>(s, s), std::vector<double>(s, 0.0), 1.0};
 }
@@ -37,8 +37,8 @@ sums sums_of(const shu_osher_form<double>& m) {
   return {c.back(), (butcher.A * c).back(), (butcher.A_dot * e).back()};
 }
 
-/// Squares of free parameters, so that the signs hold: s(s−1)/2 weights and one of u^n per row, made to sum
-/// to 1, then D, then Ḋ.
+/// Returns a method with P, D, Ḋ ≥ 0 and R e ≥ 0. Its coefficients are squares of free parameters, so that
+/// the signs hold. They are s(s−1)/2 weights and one of u^n per row, scaled to sum to 1, then D, then Ḋ.
 shu_osher_form<double> form_of(std::size_t s, const std::vector<double>& parameters) {
   auto m = zero_form(s);
   std::size_t next = 0;
@@ -60,8 +60,8 @@ std::size_t parameter_count(std::size_t s) {
   return s * (s + 1) / 2 + 2 * s;
 }
 
-/// The largest value of a random search: steps of adapted length from the best point so far, from
-/// several starts.
+/// Returns the largest value of a random search with several starts. It takes steps of adapted length from
+/// the best point so far.
 double maximize_at_random(std::size_t s, random_source& random,
                           const std::function<double(const shu_osher_form<double>&)>& value) {
   double best = -1e300;
@@ -74,7 +74,7 @@ double maximize_at_random(std::size_t s, random_source& random,
       for (double& x : there)
         if (random.one_in(3)) x += length * random.uniform(-1, 1);
       const double found = value(form_of(s, there));
-      // One success in five retains the length.
+      // The length remains constant if about one step in five succeeds.
       length = std::clamp(length * (found > height ? 1.5 : 0.9), 1e-9, 1.0);
       if (found > height) {
         height = found;
@@ -86,19 +86,19 @@ double maximize_at_random(std::size_t s, random_source& random,
   return best;
 }
 
-/// b·e − b·c.
+/// Returns b·e − b·c.
 double difference(const shu_osher_form<double>& m) {
   const auto sum = sums_of(m);
   return sum.be - sum.bc;
 }
 
-/// The same in the time scale that maximizes it: D → τD gives τ b·e − τ² b·c.
+/// Returns b·e − b·c in the time scale that maximizes it: D → τD gives τ b·e − τ² b·c.
 double largest_difference(const shu_osher_form<double>& m) {
   const auto sum = sums_of(m);
   return sum.bc > 0.0 ? sum.be * sum.be / (4.0 * sum.bc) : 0.0;
 }
 
-/// −(b·c + ḃ·e − ½) of the method in the time scale in which b·e = 1: the residual of order two.
+/// Returns the negative residual of order two, −(b·c + ḃ·e − ½), in the time scale in which b·e = 1.
 double order_two_residual(const shu_osher_form<double>& m) {
   const auto sum = sums_of(m);
   if (!(sum.be > 0.0)) return -1e300;
@@ -118,7 +118,7 @@ double largest_over_random_tableaux(int samples) {
   return worst;
 }
 
-/// s backward Euler steps of 1/(s + 1).
+/// Returns the method of s backward Euler steps of 1/(s + 1).
 shu_osher_form<double> backward_euler_steps(std::size_t s) {
   auto m = zero_form(s);
   for (std::size_t i = 0; i < s; ++i) {
@@ -128,7 +128,7 @@ shu_osher_form<double> backward_euler_steps(std::size_t s) {
   return m;
 }
 
-/// Results for s = 1, 2, …, compared with the bounds.
+/// Adds the results for s = 1, 2, …, compared with the bounds.
 void add_searches(const std::vector<double>& reached, const std::vector<double>& residual,
                   claim_result& result) {
   report_table table{

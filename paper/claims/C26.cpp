@@ -18,8 +18,9 @@ namespace {
 constexpr const char* name = "imdrk-9-5";
 constexpr long double modulus = 0.8L, end = 4.0L;
 
-/// y' = (y₂y₃, −y₁y₃, −k²y₁y₂), y(0) = (0, 1, 1): y = (sn, cn, dn)(t, k), the free rigid body. A system, so
-/// that no two trees give the same differential. Maximum error at t = 4, in long double.
+/// Returns the maximum error at t = 4, in long double, for the free rigid body: y' = (y₂y₃, −y₁y₃,
+/// −k²y₁y₂), y(0) = (0, 1, 1), with the solution y = (sn, cn, dn)(t, k). In a system no two trees give the
+/// same differential.
 double rigid_body_error(long steps) {
   const auto body = [](const auto& y, auto& out) {
     out[0] = y[1] * y[2];
@@ -39,7 +40,7 @@ double rigid_body_error(long steps) {
 struct problem_of_order {
   const char* what;
   double (*error)(long);
-  int coarsest;  ///< 2^k steps
+  int coarsest;  ///< k of 2^k steps
 };
 constexpr problem_of_order problems[] = {
     {"free rigid body, t = 4", rigid_body_error, 3},

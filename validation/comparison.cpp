@@ -14,13 +14,13 @@ namespace {
 
 using json = nlohmann::ordered_json;
 
-/// Returns the value of a parameter in a comparison, its default if it is not set there.
+/// Returns the value of a parameter in a comparison; its default if the comparison does not set it.
 std::string value_of(const compared_value& one, const quantity_parameter& parameter) {
   const auto found = one.reference->at.find(parameter.name);
   return found == one.reference->at.end() ? parameter.value : found->second;
 }
 
-/// The settings other than the first parameter, as a label.
+/// Returns the settings other than the first parameter, as a label.
 std::string others(const compared_value& one) {
   quantity_values rest = one.reference->at;
   rest.erase(one.quantity->parameters.front().name);
@@ -97,7 +97,7 @@ picture quantity_picture(const quantity_entry& quantity, const std::vector<compa
               {}};
   if (abscissae.size() < 3) return out;
   shown.log_x = differences.log_x = *abscissae.begin() > 0.0;
-  // Several groups have names of their own; lines are computed values then, open markers references.
+  // Several groups have a name each. Lines are then computed values, and open markers references.
   const bool alone = groups.size() == 1;
   int colour = 0;
   for (const auto& [label, of] : groups) {

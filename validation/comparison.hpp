@@ -10,7 +10,7 @@
 
 namespace apsis::validation {
 
-/// A reference value and the one that was computed for it.
+/// A reference value and the value that was computed for it.
 struct compared_value {
   const quantity_entry* quantity = nullptr;
   const reference_value* reference = nullptr;
@@ -18,7 +18,7 @@ struct compared_value {
 
   /// Returns value/reference − 1.
   double difference() const;
-  /// Whether |difference| ≤ tolerance; a NaN does not hold.
+  /// Whether |difference| ≤ tolerance; false for NaN.
   bool holds() const;
 };
 
@@ -29,8 +29,9 @@ std::vector<std::string> settings_of(const quantity_values& values);
 compared_value compare_with_reference(const quantity_entry& quantity, const reference_value& reference,
                                       const std::function<bool(double)>& progress = {});
 
-/// Returns the values of one quantity over its first parameter, a curve for each set of the others, and the
-/// differences with their tolerances; without panels if the first parameter has fewer than three values.
+/// Returns a picture of the values of one quantity over its first parameter, with a curve for each set of the
+/// other parameters. A second panel has the differences with their tolerances. The picture has no panels if
+/// the first parameter has fewer than three values.
 picture quantity_picture(const quantity_entry& quantity, const std::vector<compared_value>& values);
 
 /// Returns name, description, source, values and pictures of one quantity.

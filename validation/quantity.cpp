@@ -29,7 +29,7 @@ std::size_t place_in(const std::vector<std::string>& names, const std::string& n
   return static_cast<std::size_t>(found - names.begin());
 }
 
-/// Returns the number that is all of a text, NaN without one.
+/// Returns the number that a whole text represents; NaN for other texts.
 double number_of(const std::string& text) {
   double value = 0.0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
@@ -37,15 +37,15 @@ double number_of(const std::string& text) {
                                                                   : std::numeric_limits<double>::quiet_NaN();
 }
 
-/// Returns the means of every n consecutive values at the centres of cells.
+/// Returns the means over lines of n cells, from consecutive values at their centres.
 std::vector<double> means_of_lines(const std::vector<double>& values, std::size_t n) {
   std::vector<double> means;
   for (std::size_t first = 0; first < values.size(); first += n) {
     const double* line = values.data() + first;
     double sum = 0.0;
     for (std::size_t i = 0; i < n; ++i) {
-      // The average of a cell is its centre + second difference/24; the end cells take that of their
-      // neighbours.
+      // The average over a cell is the value at its centre + second difference/24. End cells take the second
+      // difference of their neighbours.
       const std::size_t at = std::clamp<std::size_t>(i, 1, n - 2);
       sum += line[i] + (line[at - 1] - 2.0 * line[at] + line[at + 1]) / 24.0;
     }

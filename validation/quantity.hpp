@@ -24,7 +24,7 @@ using quantity_values = std::map<std::string, std::string>;
 enum class origin {
   published,  ///< printed in a paper
   theory,     ///< a formula, or the exact solution of a limit
-  computed    ///< by an independent solver of the tests
+  computed    ///< computed by an independent solver of the tests
 };
 /// Returns "published", "theory" or "computed".
 std::string to_string(origin from);
@@ -32,17 +32,17 @@ std::string to_string(origin from);
 /// A value with which the solver is compared.
 struct reference_value {
   quantity_values at;       ///< parameters that differ from their defaults
-  double value = 0.0;       ///< as printed
-  double tolerance = 1e-3;  ///< relative, including the digits that were printed
+  double value = 0.0;       ///< value as printed
+  double tolerance = 1e-3;  ///< relative; allows for the finite number of printed digits
   origin from = origin::published;
 };
 
-/// Returns a value of the literature.
+/// Returns a value from the literature.
 inline reference_value published(quantity_values at, double value, double tolerance = 1e-3) {
   return {std::move(at), value, tolerance, origin::published};
 }
-/// Returns a value with the digits that are printed, such as "0.6007". The tolerance is half a unit of the
-/// last one, and `accuracy` of the run, relative to the value.
+/// Returns a value with its printed digits, such as "0.6007". The tolerance relative to the value is half a
+/// unit of the last digit, plus `accuracy` for the run.
 reference_value printed(origin from, quantity_values at, const std::string& digits, double accuracy = 1e-5);
 /// Returns a value from a formula or an exact solution.
 inline reference_value theory(quantity_values at, double value, double tolerance = 1e-3) {
@@ -61,26 +61,27 @@ using quantity_run = std::function<simulation(const std::string& name, std::vect
 struct quantity_entry {
   std::string name;                            ///< "couette"
   std::string description;                     ///< one line: the value and its unit
-  std::string source;                          ///< of the reference values
-  std::vector<quantity_parameter> parameters;  ///< all of them, first the number over which values are drawn
+  std::string source;                          ///< source of the reference values
+  std::vector<quantity_parameter> parameters;  ///< all parameters, first the number over which values
+                                               ///< are drawn
   std::vector<reference_value> references;     ///< may be empty
-  /// Returns the value for given parameters, each with a value.
+  /// Returns the value of the quantity. `parameters` has a value for every parameter.
   double (*compute)(const quantity_values& parameters, const quantity_run& run) = nullptr;
 };
 
-/// Every quantity, sorted by file name (generated).
+/// Returns every quantity, sorted by file name (generated).
 std::vector<const quantity_entry*> quantity_entries();
 
-/// Returns the quantity of a name. Throws input_error with the nearest name for an unknown one.
+/// Returns the quantity with this name. Throws input_error with the nearest name for an unknown one.
 const quantity_entry& find_quantity(const std::string& name);
 
-/// Computes a quantity. `settings`: "parameter=value", or "key.of.the.case=value" for the run; `progress` is
-/// called with the fraction done and returns whether to stop. Throws input_error for an unknown parameter,
-/// and the errors of a run.
+/// Computes a quantity. `settings` are "parameter=value", or "key.of.the.case=value" for the run. `progress`
+/// is called with the fraction done and returns whether to stop. Throws input_error for an unknown parameter,
+/// quantity_interrupted after a stop, and the errors of a run.
 double compute_quantity(const quantity_entry& quantity, const std::vector<std::string>& settings,
                         const std::function<bool(double)>& progress = {});
 
-/// Thrown where `progress` stopped a computation.
+/// Thrown if `progress` stops a computation.
 struct quantity_interrupted {};
 
 /// Returns a parameter as a number > 0. Throws input_error for any other text.
@@ -89,15 +90,17 @@ double positive_number(const quantity_values& parameters, const std::string& nam
 /// Returns a parameter as a number in [low, high]. Throws input_error for any other text.
 double number_between(const quantity_values& parameters, const std::string& name, double low, double high);
 
-/// Returns a parameter that is one of the words. Throws input_error with the nearest for any other text.
+/// Returns a parameter that must be one of `words`. Throws input_error with the nearest word for any
+/// other text.
 const std::string& one_of(const quantity_values& parameters, const std::string& name,
                           const std::vector<std::string>& words);
 
-/// The key of runs that find a steady state (docs/steady.md).
+/// The setting of runs that find a steady state (docs/steady.md).
 inline const std::string steady_state = "steady.tolerance=1e-9";
 
 /// Returns the mean over the domain of a smooth function from its values at the cell centres, of fourth
-/// order. `shape`: number of cells along x, y, z, the last the fastest; at least 3 each.
+/// order. `shape`: number of cells along x, y, z, at least 3 each; the index of the last direction
+/// varies fastest.
 double mean_of_cells(std::vector<double> values, const std::vector<int>& shape);
 
 /// Returns the mean of a field over the domain from its values at the cell centres, of fourth order. Throws
@@ -107,7 +110,7 @@ double mean_of_field(const simulation& run, const std::string& name);
 /// Returns a field at the cell centres. Throws std::out_of_range for an unknown name.
 std::vector<double> field_values(const simulation& run, const std::string& name);
 
-/// Returns the flux of an invariant through a face of a run in its last step, into the gas. Throws
+/// Returns the flux of an invariant into the gas through a face, in the last step of a run. Throws
 /// std::out_of_range for unknown names.
 double last_flux(const simulation& run, const std::string& face, const std::string& invariant);
 

@@ -14,8 +14,8 @@ constexpr double lid_speed = 0.005;
 
 double compute(const quantity_values& parameters, const quantity_run& make) {
   const double delta = positive_number(parameters, "delta");
-  // The velocities of a rare gas jump where it sees the ends of the lid. The layers of a dense one are thin,
-  // and its bulk velocity jumps there.
+  // The distribution of a rare gas jumps at the velocities that come from the ends of the lid. The layers of
+  // a dense gas are thin, and its bulk velocity jumps at these ends.
   const bool rare = delta < 0.5, dense = delta > 2.0;
   const int cells = rare ? 24 : dense ? 96 : 48;
   const std::string points = dense ? "[16,22]" : "[32,44]";
@@ -23,7 +23,7 @@ double compute(const quantity_values& parameters, const quantity_run& make) {
       "gas/cavity", {"parameters.delta=" + parameters.at("delta"), fmt::format("parameters.U={}", lid_speed),
                      "model.name=" + parameters.at("model"), fmt::format("space.cells=[{0},{0}]", cells),
                      "velocity.set=[\"graded\",\"graded\"]", "velocity.points=" + points, steady_state});
-  // ρ U √(T/(2π)): momentum of the molecules that leave the lid.
+  // The molecules that leave the lid have the momentum ρ U √(T/(2π)).
   const double emitted = lid_speed / std::sqrt(2.0 * std::numbers::pi);
   return last_flux(run, "top", "momentum_x") / emitted;
 }

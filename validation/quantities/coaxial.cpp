@@ -18,11 +18,12 @@ namespace {
 /// second order are up to these numbers, relative to the value, and below the error of the mesh.
 constexpr double speed = 0.01, heat = 0.002;
 
-// ρ = T = 1: a mass √(1/2π) arrives per unit of time and area, and takes the velocity of the wall along, or
-// the energy 2 (heat).
+// For ρ = T = 1 a mass √(1/2π) arrives per unit of time and area. It leaves with the velocity of the wall, or
+// with the additional energy 2 heat.
 const double arriving = 2.0 * std::numbers::pi / std::sqrt(2.0 * std::numbers::pi);
 
-/// On a line of r, marching until transients have decayed: those of viscosity last 1/(π²ε).
+/// Computes the value on a line of r, up to a time when transients have decayed. Those of viscosity
+/// last 1/(π²ε).
 double compute_on_line(const quantity_values& parameters, const quantity_run& make, bool torque, int cells) {
   const double delta = positive_number(parameters, "delta");
   const simulation run = make(
@@ -46,7 +47,8 @@ double compute(const quantity_values& parameters, const quantity_run& make) {
         parameters.at("cells").substr(0, 60), 2 * std::lround(given / 2.0)));
   if (one_of(parameters, "geometry", {"plane", "axisymmetric"}) == "axisymmetric")
     return compute_on_line(parameters, make, torque, cells);
-  // A cell beyond the outer cylinder on each side. Heat has the symmetries of the axes: a quarter suffices.
+  // The mesh has one cell beyond the outer cylinder on each side. Heat is symmetric in both axes, so that a
+  // quarter suffices.
   const double end = 2.0 + 4.0 / cells;
   const int half = cells / 2 + 1;
   std::vector<std::string> overrides = {"parameters.delta=" + parameters.at("delta"), "velocity.points=20",

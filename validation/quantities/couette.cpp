@@ -9,7 +9,7 @@ namespace apsis::validation {
 namespace couette_quantity {
 namespace {
 
-/// The plates move with ±U, so slowly that the problem is linear: U² is below the accuracy.
+/// The plates move with ±U, so slowly that the problem is linear, because U² is below the accuracy.
 constexpr double plate_speed = 0.01;
 
 double compute(const quantity_values& parameters, const quantity_run& make) {
@@ -18,7 +18,7 @@ double compute(const quantity_values& parameters, const quantity_run& make) {
   deck.push_back(fmt::format("parameters.U={}", plate_speed));
   const simulation run = make("gas/couette", deck);
   const double stress = 0.5 * (last_flux(run, "right", "momentum_y") - last_flux(run, "left", "momentum_y"));
-  // ρ (2U) √(T/(2π)): half Maxwellians with the velocities of the plates.
+  // Half Maxwellians with the velocities of the plates have the stress ρ (2U) √(T/(2π)).
   const double free_molecular = 2.0 * plate_speed / std::sqrt(2.0 * std::numbers::pi);
   return stress / free_molecular;
 }

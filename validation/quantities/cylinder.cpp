@@ -21,7 +21,7 @@ namespace {
 // fluxes themselves.
 
 double compute(const quantity_values& parameters, const quantity_run& make) {
-  // Free molecules do not come back: the stream may begin close to the wall.
+  // Free molecules do not come back, so that the stream may begin close to the wall.
   return free_stream_coefficient(
       "gas/cylinder",
       {"space.cells=[32,16]", "space.domain=[[-1.3,1.3],[0,1.3]]", "velocity.points=32", "time.end=2.5"},

@@ -13,8 +13,8 @@ namespace apsis::validation {
 namespace duct_quantity {
 namespace {
 
-/// Mean over the cross-section of Σ w v_z (1 − v_⊥²/2) f, minus the heat along the duct that a force carries.
-/// By Onsager's relation it is the mass that a temperature gradient carries.
+/// Returns the mean over the cross-section of Σ w v_z (1 − v_⊥²/2) f, minus the heat along the duct that a
+/// force carries. By Onsager's relation it is the mass that a temperature gradient carries.
 double heat_moment(const simulation& run) {
   const velocity_set& velocities = run.setup().equation->velocities();
   const std::span<const double> v_x = velocities.speeds(0), v_y = velocities.speeds(1),
@@ -34,7 +34,7 @@ double compute(const quantity_values& parameters, const quantity_run& make) {
   const double delta = positive_number(parameters, "delta");
   const double aspect = number_between(parameters, "aspect", 1.0, 10.0);
   const std::string& value = one_of(parameters, "value", {"flow", "creep"});
-  // The Knudsen layers of a dense gas are thin. In a rare one slow molecules, which take 1/δ to become
+  // The Knudsen layers of a dense gas are thin. In a rare gas slow molecules, which take 1/δ to become
   // steady, carry much of the flow.
   const bool rare = delta < 0.5;
   const int cells = rare ? 32 : delta <= 2.0 ? 48 : 64;

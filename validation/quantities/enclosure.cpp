@@ -13,7 +13,8 @@ double compute(const quantity_values& parameters, const quantity_run& make) {
   const double delta = positive_number(parameters, "delta");
   const double hot = number_between(parameters, "hot", 1.0001, 4.0);
   const std::string& wall = one_of(parameters, "wall", {"bottom", "left", "top"});
-  // The velocities of a rare gas jump where it sees the ends of the top; the layers of a dense one are thin.
+  // The distribution of a rare gas jumps at the velocities that come from the ends of the top. The layers of
+  // a dense gas are thin.
   const bool rare = delta < 0.5, dense = delta > 2.0;
   const std::string cells = dense ? "[48,96]" : "[20,40]", points = rare    ? "[48,66]"
                                                                     : dense ? "[24,32]"
@@ -23,11 +24,11 @@ double compute(const quantity_values& parameters, const quantity_run& make) {
            {"parameters.delta=" + parameters.at("delta"), "parameters.hot=" + parameters.at("hot"),
             "model.name=" + parameters.at("model"), fmt::format("velocity.max={}", 6.0 * std::sqrt(hot)),
             steady_state, "space.cells=" + cells, "velocity.points=" + points});
-  // Free molecules arrive at and leave all walls at the same rate J: the density is J √(2π/T) of each wall,
-  // weighted by the angle at which it is seen, on the average a quarter of 2π. They carry 2 T J.
+  // Free molecules arrive at and leave all walls at the same rate J. Each wall contributes J √(2π/T) to the
+  // density, weighted by the angle that it subtends, on average a quarter of 2π. Its molecules carry 2 T J.
   const double rate = 1.0 / (std::sqrt(2.0 * std::numbers::pi) * (0.25 / std::sqrt(hot) + 0.75));
   const double emitted = 2.0 * (hot - 1.0) * rate;
-  // Bottom and top are cut in half by the plane of symmetry.
+  // The plane of symmetry cuts bottom and top in half.
   const double length = wall == "left" ? 1.0 : 0.5;
   const double received = last_flux(run, wall, "energy") / (-emitted * length);
   return wall == "top" ? 1.0 + received : received;

@@ -9,7 +9,7 @@ namespace apsis::validation {
 namespace heat_quantity {
 namespace {
 
-/// The temperatures of the plates are 1 ± this: its square is below the accuracy.
+/// The temperatures of the plates are 1 ± heat, whose square is below the accuracy.
 constexpr double heat = 0.001;
 
 double compute(const quantity_values& parameters, const quantity_run& make) {
@@ -18,7 +18,8 @@ double compute(const quantity_values& parameters, const quantity_run& make) {
   deck.push_back(fmt::format("parameters.heat={}", heat));
   const simulation run = make("gas/fourier", deck);
   const double flux = 0.5 * (last_flux(run, "left", "energy") - last_flux(run, "right", "energy"));
-  // Half Maxwellians of both temperatures that carry equal masses: ρ √(2T/π) for each unit of the difference.
+  // Half Maxwellians of both temperatures that carry equal masses have the flux ρ √(2T/π) per unit of
+  // the difference.
   const double free_molecular = 2.0 * heat * std::sqrt(2.0 / std::numbers::pi);
   return flux / free_molecular;
 }

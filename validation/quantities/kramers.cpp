@@ -9,7 +9,8 @@ namespace apsis::validation {
 namespace kramers_quantity {
 namespace {
 
-/// Values of a smooth function with the term y log y of a layer at y = 0, from its values at y_i.
+/// Returns the value at `at` of a smooth function with the term y log y of a layer at y = 0, from its values
+/// at y_i.
 double interpolated(const std::vector<double>& y, const std::vector<double>& values, double at) {
   const auto singular = [](double s) { return s > 0.0 ? s * std::log(s) : 0.0; };
   if (at < y[1]) {
@@ -40,8 +41,8 @@ double compute(const quantity_values& parameters, const quantity_run& make) {
   const auto& constants = run.config().constants;
   const double U = constants.at("U"), separation = constants.at("delta");
   const graded_plates cells(constants.at("thin"));
-  // Far from both plates u' = stress/μ with μ = ε, and u = 0 in the middle: the slip is where this line meets
-  // the plate. In units of U and μ v₀/p, v₀ = √2, the slope is √2 stress/U.
+  // Far from both plates u' = stress/μ with μ = ε, and u = 0 in the middle. Where this line reaches the
+  // velocity of the plate determines the slip. In units of U and μ v₀/p, v₀ = √2, the slope is √2 stress/U.
   const double stress = 0.5 * (last_flux(run, "right", "momentum_y") - last_flux(run, "left", "momentum_y"));
   const double slope = std::numbers::sqrt2 * stress / U;
   const double slip = 1.0 / slope - 0.5 * separation;

@@ -21,7 +21,7 @@ double compute(const quantity_values& parameters, const quantity_run& make) {
   std::vector<double> flow = field_values(run, "u_y");
   const std::vector<double> x = run.fields().x;
   for (std::size_t i = 0; i < x.size(); ++i) flow[i] *= plate_cells.slope(x[i]);
-  // In units of √(2RT) times the relative pressure gradient, which is √2 a.
+  // The unit is √(2RT) times the relative pressure gradient, which is √2 a.
   return 2.0 * mean_of_cells(flow, run.fields().shape) / (std::sqrt(2.0) * run.config().constants.at("a"));
 }
 
@@ -41,7 +41,7 @@ const quantity_entry quantity_poiseuille = {
                    printed(origin::published, {{"delta", "0.1"}}, "2.032714"),
                    printed(origin::published, {{"delta", "1"}}, "1.538678"),
                    printed(origin::published, {{"delta", "10"}}, "2.768644"),
-                   // Published as 17.691059, which is 1.3e-4 below both solvers.
+                   // The published value 17.691059 is 1.3e-4 below both solvers.
                    printed(origin::computed, {{"delta", "100"}}, "17.69329")},
     .compute = poiseuille_quantity::compute};
 

@@ -15,7 +15,8 @@ double field_at(const field_table& fields, const std::string& name, std::size_t 
   return fields.values[static_cast<std::size_t>(found - fields.names.begin())][cell];
 }
 
-/// In a gas between plates of different temperature, far from both: Pr = (5/2) μ (−T_x)/q with μ = ε T^s.
+/// Computes Pr = (5/2) μ (−T_x)/q with μ = ε T^s in a gas between plates of different temperature, far
+/// from both.
 double compute(const quantity_values& parameters, const quantity_run& make) {
   const double delta = positive_number(parameters, "delta");
   const simulation run = make(
@@ -24,7 +25,7 @@ double compute(const quantity_values& parameters, const quantity_run& make) {
   const field_table fields = run.fields();
   const std::size_t middle = fields.x.size() / 2;
   double slope = 0.0, heat = 0.0, T = 0.0;
-  // Two cells on either side of the middle.
+  // Slope and means are from two cells on either side of the middle.
   slope = (field_at(fields, "T", middle + 1) - field_at(fields, "T", middle - 2)) /
           (fields.x[middle + 1] - fields.x[middle - 2]);
   for (std::size_t cell = middle - 2; cell < middle + 2; ++cell) {

@@ -33,7 +33,7 @@ plateaus plateaus_of(const simulation& run) {
   const std::vector<double> x = run.fields().x, u = field_values(run, "u"), p = field_values(run, "p"),
                             rho = field_values(run, "rho");
   const double top = *std::max_element(u.begin(), u.end());
-  // Where the rarefaction ends and the shock stands.
+  // The rarefaction ends at `start`, and the shock is at `end`.
   double start = x.back(), end = x.front();
   for (std::size_t i = 0; i < x.size(); ++i) {
     if (u[i] > 0.98 * top) start = std::min(start, x[i]);

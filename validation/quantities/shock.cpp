@@ -11,8 +11,8 @@ namespace apsis::validation {
 namespace shock_quantity {
 namespace {
 
-/// Ratios of density and temperature of the states behind and before a shock of a monatomic gas at rest, and
-/// their velocities (Rankine, Hugoniot).
+/// Ratios of density and temperature behind and before a shock at rest in a monatomic gas, and the velocities
+/// there (Rankine, Hugoniot).
 struct end_states {
   explicit end_states(double mach)
       : density(4.0 * mach * mach / (mach * mach + 3.0)),
@@ -22,7 +22,7 @@ struct end_states {
   double density, temperature, before, behind;
 };
 
-/// Velocities that hold both states, and resolve the colder one.
+/// Returns keys for velocities that contain both states and resolve the colder one.
 std::vector<std::string> velocities(const end_states& states) {
   const double max =
       std::ceil(std::max(states.before + 6.0, states.behind + 6.0 * std::sqrt(states.temperature)));
@@ -37,7 +37,7 @@ simulation make_run(const std::string& name, const quantity_values& parameters, 
   return make(name, own);
 }
 
-/// The density behind a shock that runs out from a wall, between the wall and the shock but clear of both.
+/// Returns the density behind a shock that moves away from a wall, at a distance from both.
 double density_behind(const quantity_values& parameters, const end_states& states, double width,
                       const quantity_run& make) {
   const double length = 3.3 * width;
@@ -57,7 +57,7 @@ double density_behind(const quantity_values& parameters, const end_states& state
   return std::accumulate(rho.begin() + first, rho.begin() + last, 0.0) / static_cast<double>(last - first);
 }
 
-/// The smallest value over the largest one of a flux through a shock at rest.
+/// Returns the smallest value over the largest one of a flux through a shock at rest.
 double constancy(const std::string& flux, const quantity_values& parameters, const end_states& states,
                  double width, const quantity_run& make) {
   // Fast molecules of the hot gas run far into the stream.
@@ -84,7 +84,7 @@ double compute(const quantity_values& parameters, const quantity_run& make) {
   const std::string& value = one_of(parameters, "value", {"density", "mass", "momentum", "energy"});
   const double mach = number_between(parameters, "mach", 1.1, 10.0);
   const end_states states(mach);
-  // A shock is some mean free paths wide, and the weaker the wider.
+  // A shock is some mean free paths wide; weaker shocks are wider.
   const double width = 20.0 * (mach + 1.0) / (mach - 1.0);
   return value == "density" ? density_behind(parameters, states, width, make)
                             : constancy(value, parameters, states, width, make);

@@ -9,18 +9,19 @@ namespace sphere_quantity {
 namespace {
 
 // The fluxes are those of quantities/cylinder.cpp. On a sphere p_i cos + τ_i sin and 2 p_i cos have the same
-// integral X, so a specular wall has the drag of a diffuse one without the term of the molecules that leave
-// it, 2√π/(3s). A wall of the temperature of the stream receives the heat X/2. The test free_molecular_bodies
-// integrates the fluxes themselves.
+// integral X. The drag of a specular wall is therefore that of a diffuse one without the term of the
+// molecules that leave it, 2√π/(3s). A wall of the temperature of the stream receives the heat X/2. The test
+// free_molecular_bodies integrates the fluxes themselves.
 
 double compute(const quantity_values& parameters, const quantity_run& make) {
   const double cells = number_between(parameters, "cells", 4.0, 64.0);
   const int velocities = 2 * static_cast<int>(std::ceil(speed_of_stream(parameters) + 4.4));
-  // Free molecules do not come back: the stream may begin a quarter of a radius from the wall, on all sides.
+  // Free molecules do not come back, so that the stream may begin a quarter of a radius from the wall, on
+  // all sides.
   const int half = static_cast<int>(std::ceil(1.25 * cells - 1e-9));
   const double end = half / cells;
   if (one_of(parameters, "geometry", {"space", "axisymmetric"}) == "axisymmetric") {
-    // Reconstructions along x and r need two cells in between.
+    // Reconstructions along x and r need two cells between the sphere and the boundaries.
     const int wide = static_cast<int>(std::ceil(1.5 * cells - 1e-9));
     return free_stream_coefficient(
         "gas/sphere-axis",

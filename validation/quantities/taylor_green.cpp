@@ -14,9 +14,9 @@ namespace {
 
 constexpr double wave_number = 2.0 * std::numbers::pi;
 
-/// The amplitude of sin(kx) cos(ky) in u_x at time t.
+/// Returns the amplitude of sin(kx) cos(ky) in u_x at time t.
 double amplitude_at(double t, const std::string& epsilon, const quantity_run& make) {
-  // Steps of at most a quarter of ε: the error of the viscosity grows with Δt/ε.
+  // Steps are at most a quarter of ε, because the error of the viscosity grows with Δt/ε.
   const double safety = std::min(1.0, 29.0 * std::stod(epsilon));
   const simulation run =
       make("gas/taylor-green", {"parameters.Kn=" + epsilon, "space.cells=[32,32]", "output.every=0",
@@ -33,7 +33,7 @@ double amplitude_at(double t, const std::string& epsilon, const quantity_run& ma
 
 double compute(const quantity_values& parameters, const quantity_run& make) {
   const double epsilon = number_between(parameters, "epsilon", 0.002, 0.03);
-  // After the transients of the data, which decay like exp(−t/ε).
+  // Both times lie after the transients of the data, which decay like exp(−t/ε).
   constexpr double begin = 0.4, end = 1.0;
   const double decay = std::log(amplitude_at(begin, parameters.at("epsilon"), make) /
                                 amplitude_at(end, parameters.at("epsilon"), make)) /

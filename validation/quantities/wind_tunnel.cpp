@@ -13,8 +13,8 @@ double compute(const quantity_values& parameters, const quantity_run& make) {
   static_cast<void>(number_between(parameters, "reynolds", 1.0, 200.0));
   const double cells = number_between(parameters, "cells", 4.0, 32.0);
   const int half = static_cast<int>(std::ceil(2.0 * cells - 1e-9));
-  // The gas at rest has the temperature 1 + M²/5 of the wall. Velocities reach to 4.9 of its standard
-  // deviations, and further along the stream, which the hot gas in the shock still follows.
+  // The gas at rest has the temperature 1 + M²/5 of the wall. Velocities reach 4.9 of its standard
+  // deviations. Along the stream they reach further, because the hot gas in the shock still moves with it.
   const double across = 4.9 * std::sqrt(1.0 + mach * mach / 5.0),
                along = across + mach * std::sqrt(1.4) / 5.0;
   const simulation run =

@@ -40,7 +40,7 @@ cached_sweeps::cached_sweeps(const case_config& config, int accumulators)
         {accumulators_.data() + static_cast<std::size_t>(k) * rows * columns, columns, 0.0, 1e-6, false});
   for (std::size_t k = 0; k < u_.size(); ++k) u_[k] = 1.0 + 0.1 * std::sin(0.01 * static_cast<double>(k));
   speeds_.assign(columns, 1.0);
-  for (int k = 0; k < columns; ++k)  // of equally distant velocities
+  for (int k = 0; k < columns; ++k)  // as for equally spaced velocities
     capacities_.push_back(columns / std::abs(columns - 1.0 - 2.0 * k));
   forward_.assign(columns, 0.0);
   std::fill_n(forward_.begin(), columns / 2, 1.0);

@@ -10,24 +10,24 @@
 
 namespace apsis::bench {
 
-/// The kernels of the sweeps of a step, edges and limited fluxes, on data that stay in the first-level cache:
-/// a ceiling for steps with finite differences and the positivity limiter. It has the instructions of a step
-/// with their latencies and the edges that neighbouring boxes repeat, and no memory traffic, collision or
-/// administration.
+/// The kernels of the sweeps of a step, edges and limited fluxes, on data that stay in the first-level cache.
+/// Their speed is a ceiling for steps with finite differences and the positivity limiter. They execute the
+/// instructions of a step, including the edges that neighbouring boxes repeat. They have no memory traffic,
+/// collisions or bookkeeping.
 class cached_sweeps {
  public:
-  /// Sweeps along all directions of the mesh of a case, in runs of as many cells as the boxes of a step have,
-  /// into a number of accumulators.
+  /// Prepares sweeps along all directions of the mesh of a case, into a number of accumulators. Each sweep
+  /// has as many cells as the boxes of a step.
   cached_sweeps(const case_config& config, int accumulators);
 
-  /// Takes a run of cells along each direction, `times` times.
+  /// Sweeps once along each direction, `times` times.
   void evaluate(int times);
-  /// Returns the numbers of evaluate(1).
+  /// Returns how many numbers evaluate(1) processes.
   double numbers() const;
 
  private:
   struct sweep {
-    std::vector<const double*> rows;  ///< of a run of cells, with those beyond its ends
+    std::vector<const double*> rows;  ///< rows of the cells of a sweep and of those beyond its ends
     int cells;
   };
 

@@ -7,17 +7,17 @@
 
 namespace apsis::bench {
 
-/// Returns the CPU seconds of this process, summed over its threads.
+/// Returns the CPU time of this process in seconds, summed over its threads.
 double cpu_seconds();
-/// Returns wall-clock seconds, for jobs on several threads.
+/// Returns the wall-clock time in seconds, for jobs on several threads.
 double wall_seconds();
 
 /// Returns the median; of an even number of values, the mean of the two middle ones. Requires at
 /// least one value.
 double median(std::vector<double> values);
 
-/// Measures seconds[job][repeat] by `now`, running the jobs in turns, `repeats` times after one warm-up turn,
-/// so that a drift of the clock rate affects all jobs equally.
+/// Measures seconds[job][repeat] by `now`. Runs the jobs in turns, `repeats` times after one warm-up turn, so
+/// that a drift of the clock rate affects all jobs equally.
 using job = std::function<void()>;
 std::vector<std::vector<double>> in_turns(const std::vector<job>& jobs, int repeats,
                                           double (*now)() = thread_seconds);

@@ -7,17 +7,17 @@
 
 namespace apsis::bench {
 
-/// Returns a built-in case without an early end or output, with cells divided so often that a state has this
-/// many numbers; as it is shipped for 0.
+/// Returns a built-in case without an early end or output. Its cells are divided until a state has at least
+/// `numbers` numbers; 0 leaves the cells of the shipped case.
 case_config flow_of_size(const std::string& name, double numbers);
 
-/// Returns the numbers of unknowns in the cells with gas. Cells with one unknown in common count once.
+/// Returns the number of unknowns in the cells with gas. Cells that share their unknowns count once.
 double gas_unknowns(const simulation& of);
 
-/// Returns the unknowns in cells that bodies cut, among the gas_unknowns.
+/// Returns how many of the gas_unknowns are in cells that bodies cut.
 double cut_unknowns(const simulation& of);
 
-/// Returns the gas_unknowns of a step, at every stage.
+/// Returns the gas_unknowns times the stages of a step.
 double point_stages(const simulation& of);
 
 void advance(simulation& run, int steps);

@@ -1,4 +1,4 @@
-// apsis_measure: measures what docs/speed.md states, prints the tables and adds them to a file.
+// apsis_measure: measures the figures of docs/speed.md, prints the tables and adds them to a file.
 #include "table.hpp"
 
 #include <apsis/core/errors.hpp>
@@ -28,7 +28,7 @@ json read_results(const std::string& path) {
   return file ? json::parse(file) : json::object();
 }
 
-/// Writes to a temporary file first, so that an interrupt leaves the old results.
+/// Writes results to a temporary file first, so that an interrupt leaves the old file intact.
 void write_results(const std::string& path, const json& results) {
   const std::filesystem::path target(path), beside(path + ".part");
   if (target.has_parent_path()) std::filesystem::create_directories(target.parent_path());

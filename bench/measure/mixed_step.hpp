@@ -12,9 +12,9 @@ namespace apsis::bench {
 
 /// Work of the sweeps of a step.
 struct sweep_work {
-  double numbers;    ///< of all sweeps
-  int accumulators;  ///< that a sweep changes, rounded mean
-  double share;      ///< of the time of all kernels
+  double numbers;    ///< numbers of all sweeps
+  int accumulators;  ///< accumulators that a sweep changes, rounded mean
+  double share;      ///< share of the time of all kernels
 };
 
 /// Steps of the mixed-regime problem of the paper (data V, 150 velocities) without monitoring.
@@ -32,7 +32,7 @@ class mixed_step {
   }
   /// Counts the operations and bytes of a step by taking one.
   kernel_work count_work();
-  /// Counts the numbers of the sweeps of a step, and measures their share of its time, by taking one.
+  /// Takes a step, counts the numbers of its sweeps, and measures their share of its time.
   sweep_work count_sweeps();
   /// Returns the fraction of values that are subnormal.
   double subnormal_share() const;
@@ -53,7 +53,7 @@ class mixed_step {
   std::unique_ptr<semidiscrete_problem> problem_;
   stepper<semidiscrete_problem> stepper_;
   field u_;
-  bool fuses_solves_;  ///< point values: stages are solved in the pass that completes them
+  bool fuses_solves_;  ///< with point values, the pass that completes a stage also solves it
   double dt_;
 };
 

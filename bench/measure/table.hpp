@@ -10,12 +10,12 @@
 
 namespace apsis::bench {
 
-/// Extent of a measurement: `repeats` turns, or a quick smoke test.
+/// Settings of a measurement: `repeats` turns, or a quick smoke test.
 struct settings {
   int repeats = 5;
   bool quick = false;
-  std::string device;                                          ///< as for open_device()
-  std::shared_ptr<communicator> processes = single_process();  ///< that were started together
+  std::string device;                                          ///< argument of open_device()
+  std::shared_ptr<communicator> processes = single_process();  ///< processes that were started together
 };
 
 /// A table of results; a cell is a number or a string.
@@ -32,8 +32,8 @@ struct result_table {
 struct entry {
   std::string name, description;
   result_table (*measure)(const settings&);
-  bool on_several_processes = false;  ///< measured when several processes are started, and then alone
-  bool needs_device = false;          ///< measured where there is a device, or one was given
+  bool on_several_processes = false;  ///< whether it requires several processes; these measure no other entry
+  bool needs_device = false;          ///< whether it requires a device
 };
 
 class registered {

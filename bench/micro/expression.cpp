@@ -1,5 +1,5 @@
-// Formulas of a case evaluated by several threads: the pool of parsers against one parser behind a lock, and
-// against a parser for each thread, the ceiling.
+// Several threads evaluate formulas of a case. The pool of parsers is compared with one parser behind a lock,
+// and with a parser for each thread, the ceiling.
 #include <apsis/model/expression.hpp>
 
 #include <memory>
@@ -21,7 +21,7 @@ void shared_expression(benchmark::State& state) {
 }
 BENCHMARK(shared_expression)->ThreadRange(1, 2)->UseRealTime();
 
-/// The same behind a lock.
+/// All threads evaluate one expression behind a lock.
 void locked_expression(benchmark::State& state) {
   static const apsis::expression f(flux, {}, in_u);
   static std::mutex mutex;
@@ -33,7 +33,7 @@ void locked_expression(benchmark::State& state) {
 }
 BENCHMARK(locked_expression)->ThreadRange(1, 2)->UseRealTime();
 
-/// An expression for each thread.
+/// Every thread evaluates an expression of its own.
 void own_expression(benchmark::State& state) {
   const apsis::expression f(flux, {}, in_u);
   double u = 0.1 * (state.thread_index() + 1);

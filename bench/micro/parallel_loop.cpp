@@ -1,6 +1,6 @@
-// Parallel loops over blocks of cells: the thread team of the library against TBB (where it was found) and
-// OpenMP, for bodies that last as long as a block of a sweep. "of_ceiling" is the fraction of the speed with
-// which the bodies alone would run on as many processors.
+// Parallel loops over blocks of cells: the thread team of the library compared with TBB (if available) and
+// OpenMP, for bodies that last as long as a block of a sweep. "of_ceiling" is the speed relative to that of
+// the bodies alone on as many processors.
 #include <apsis/exec/parallel.hpp>
 
 #include <chrono>
@@ -20,7 +20,7 @@
 
 namespace {
 
-/// About 1 ns of dependent work per count, so that a body lasts equally long wherever it runs.
+/// Does about 1 ns of dependent work per count, so that a body lasts equally long wherever it runs.
 double work(double x, int count) {
   for (int k = 0; k < count; ++k) x = 0.5 * x + 0.25;
   return x;
@@ -91,7 +91,8 @@ void openmp_guided(benchmark::State& state) {
 }
 #endif
 
-/// Blocks of a region, and nanoseconds of a block: 40, 400 and 4000 cells of the paper's problem.
+/// Sets the blocks of a region and the nanoseconds of a block, as for 40, 400 and 4000 cells of the
+/// paper's problem.
 void sizes(benchmark::internal::Benchmark* of) {
   of->Args({4, 5000})->Args({16, 10000})->Args({160, 10000})->UseManualTime();
 }

@@ -13,9 +13,9 @@ namespace {
 
 constexpr int cells = 64;
 
-/// Every scheme of the registry on a pencil of rows of `width` values; smooth data of widely different
-/// magnitudes, like a velocity distribution. Each point reads one number and writes two: 24 bytes, like an
-/// element of the triad.
+/// Measures a scheme of the registry on a pencil of rows of `width` values. The data are smooth and of widely
+/// different magnitudes, like a velocity distribution. Each point reads one number and writes two: 24 bytes,
+/// like an element of the triad.
 void reconstruct(benchmark::State& state, const apsis::reconstruction_entry* entry) {
   const auto scheme = entry->make();
   const int width = static_cast<int>(state.range(0)), ghosts = scheme->ghost_width();
@@ -41,7 +41,7 @@ void reconstruct(benchmark::State& state, const apsis::reconstruction_entry* ent
 }  // namespace
 
 int main(int argc, char** argv) {
-  // Not in a static object: the entries are static objects of other files.
+  // This is not in a static object, because the entries are static objects of other files.
   for (const auto* entry : apsis::reconstruction_entries())
     benchmark::RegisterBenchmark(("reconstruction/" + entry->name).c_str(), reconstruct, entry)
         ->Arg(32)

@@ -12,8 +12,8 @@
 
 namespace {
 
-/// Steps of a built-in case, with promises checked as in every run. A stage must at least read a state, read
-/// an accumulator and write it: 24 bytes per point, like an element of the triad.
+/// Measures steps of a built-in case, with promises checked as in every run. A stage must at least read a
+/// state, read an accumulator and write it: 24 bytes per point, like an element of the triad.
 void step(benchmark::State& state, const std::string& name, const std::string& method) {
   apsis::simulation run(apsis::load_case(name, {"time.method=" + method, "time.end=1e6"}));
   const auto points = static_cast<double>(run.mesh().size()) * run.setup().equation->components();

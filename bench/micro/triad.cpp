@@ -4,7 +4,7 @@
 
 namespace {
 
-/// Bytes per second for an array length; the ceiling of the other benchmarks.
+/// Measures bytes per second for an array length, the ceiling of the other benchmarks.
 void triad(benchmark::State& state) {
   const auto count = static_cast<std::size_t>(state.range(0));
   double bytes_per_second = 0.0;

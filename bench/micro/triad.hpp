@@ -19,7 +19,7 @@ inline double triad_bytes_per_second(std::size_t count) {
     for (std::size_t sweep = 0; sweep < sweeps; ++sweep) {
       const double s = 1.0 + 1e-9 * static_cast<double>(sweep);
       for (std::size_t i = 0; i < count; ++i) a[i] = b[i] + s * c[i];
-      // Marks the array as used, so that no sweep can be optimized away.
+      // Marks the array as used, so that the compiler cannot remove a sweep.
       asm volatile("" : : "r"(a.data()) : "memory");
     }
     const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;

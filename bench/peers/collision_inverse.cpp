@@ -30,7 +30,7 @@ class bgk_inverse final : public collision_inverse {
       const auto& at = states_[static_cast<std::size_t>(cell)];
       double omega[3];
       equation_.moments(r.row(cell), omega);
-      // Differential of M in the direction of these moments: M (a + b(v − u) + c(v − u)²).
+      // The differential of M in the direction of these moments is M (a + b(v − u) + c(v − u)²).
       const double d_rho = omega[0], d_u = (omega[1] - at.u * d_rho) / at.rho;
       const double d_T = (2.0 * omega[2] - (at.T + at.u * at.u) * d_rho) / at.rho - 2.0 * at.u * d_u;
       const double lambda = gamma * rates_[static_cast<std::size_t>(cell)], stay = 1.0 / (1.0 + lambda);

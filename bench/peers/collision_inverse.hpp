@@ -10,11 +10,11 @@
 
 namespace apsis::bench::peers {
 
-/// Inverse of I − γJ, J the Jacobian of the collision Q(f)/ε at a state, cell by cell.
+/// The inverse of I − γJ, where J is the Jacobian of the collision Q(f)/ε at a state, cell by cell.
 class collision_inverse {
  public:
   virtual ~collision_inverse() = default;
-  /// Computes what solve() needs of the state f.
+  /// Prepares solve() for the state f.
   virtual void prepare(const field& f) = 0;
   /// Sets z ← (I − γJ)⁻¹ r.
   virtual void solve(double gamma, const field& r, field& z) const = 0;
@@ -25,9 +25,10 @@ class collision_inverse {
 ///   (I − γJ)⁻¹ = (I + λP)/(1 + λ),    λ = γ/ε.
 ///
 /// For cell averages J is the mean over the Gauss points q of (1/ε_q)(P_q − I) D_q, D_q the reconstruction.
-/// Here P is that of the average, and 1/ε the mean of the 1/ε_q. The neglected part P̃ − P with ℛ(P̃ − P) = 0
-/// is not amplified by λ: (I + λP)(P̃ − P) = P̃ − P. Hence the error of the inverse is of the size of the
-/// spatial error, however stiff the cell is. `rates`: 1/ε of every cell. The model must outlive the result.
+/// Here P is that of the average, and 1/ε the mean of the 1/ε_q. The neglected part of P̃ = I + εJ is P̃ − P
+/// with ℛ(P̃ − P) = 0. It is not amplified by λ, because (I + λP)(P̃ − P) = P̃ − P. The error of the inverse
+/// is therefore of the size of the spatial error, however stiff the cell is. `rates`: 1/ε of every cell. The
+/// model must outlive the result.
 std::unique_ptr<collision_inverse> make_bgk_inverse(const relaxation_model& equation,
                                                     std::vector<double> rates);
 
@@ -36,8 +37,8 @@ std::unique_ptr<collision_inverse> make_bgk_inverse(const relaxation_model& equa
 ///   (I − γJ)⁻¹ r = r + d gᵀr λ/(1 + λρ),    λ = γ/ε.
 std::unique_ptr<collision_inverse> make_broadwell_inverse(std::vector<double> rates);
 
-/// Makes a linear solver for SUNDIALS that uses the preconditioner as the inverse, without Krylov iterations
-/// and Jacobian products: a modified Newton method with an approximate Jacobian.
+/// Returns a linear solver for SUNDIALS that uses the preconditioner as the inverse, without Krylov
+/// iterations and Jacobian products. The result is a modified Newton method with an approximate Jacobian.
 SUNLinearSolver make_preconditioner_solver(SUNContext context);
 
 }  // namespace apsis::bench::peers

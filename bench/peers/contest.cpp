@@ -17,7 +17,7 @@ namespace {
 
 constexpr double any = -std::numeric_limits<double>::infinity();
 
-/// Whether a run is to be counted at all: those of methods with an SSP coefficient must keep their promise.
+/// Whether a run counts. Runs of methods with an SSP coefficient must not have negative unknowns.
 bool is_valid(const attempt& one) {
   return one.measured.failure.empty() && (one.of != league::ssp || one.measured.smallest >= 0.0);
 }
@@ -71,8 +71,8 @@ std::vector<double> two_per_decade(double loosest, double tightest) {
   return all;
 }
 
-/// Lower bounds of the unknowns: nonnegative, nonnegative up to the rounding errors of a projection, any
-/// sign.
+/// Returns lower bounds of the unknowns: nonnegative, nonnegative up to the rounding errors of a projection,
+/// any sign.
 std::vector<double> contest::floors() const {
   return signs_ ? std::vector<double>{0.0, -1e-20, any} : std::vector<double>{any};
 }

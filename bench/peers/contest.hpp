@@ -14,9 +14,9 @@ namespace apsis::bench::peers {
 /// Cost and accuracy of one integration.
 struct outcome {
   double seconds = 0.0;         ///< CPU time of the steps, without monitoring
-  double error = 0.0;           ///< at the end time
-  double smallest = 0.0;        ///< smallest unknown after any step
-  double smallest_final = 0.0;  ///< at the end
+  double error = 0.0;           ///< error at the end time
+  double smallest = 0.0;        ///< smallest unknown after all steps
+  double smallest_final = 0.0;  ///< smallest unknown at the end
   long steps = 0;
   std::string failure = {};  ///< empty if the end time was reached
 };
@@ -34,14 +34,13 @@ std::vector<double> two_per_decade(double loosest, double tightest);
 inline constexpr const char* words_of_others =
     "two-step methods, IMEX-BDF of orders 2 to 5 and a method with exact collisions, with equal steps";
 
-/// Class of contestants. A best row of the table is that of one or several classes.
+/// Class of contestants. Each row of best results covers one or several classes.
 enum class league {
   ssp,       ///< methods of Apsis with an SSP coefficient, also of two steps, equal steps; count only without
              ///< negative unknowns
-  any_sign,  ///< methods of the catalogue of Apsis without one, explicit ones too, equal steps
+  any_sign,  ///< methods of the catalogue without an SSP coefficient, also explicit ones, equal steps
   adaptive,  ///< methods of Apsis, steps chosen by a tolerance
-  baseline,  ///< IMEX-BDF and methods with exact collisions, of the literature, in the library too, equal
-             ///< steps
+  baseline,  ///< methods of the literature in the library: IMEX-BDF and exact collisions, equal steps
   other      ///< other programs, and explicit SSP methods, the usual choice without stiffness
 };
 
@@ -60,38 +59,38 @@ struct attempt {
   bool ours() const { return of != league::other && of != league::baseline; }
 };
 
-/// Work needed by each contestant to reach an error: that of the cheapest run that reaches it, whatever its
-/// setting, without interpolation.
+/// The work that each contestant needs to reach an error: that of its cheapest run that reaches the error,
+/// whatever the setting, without interpolation.
 class contest {
  public:
-  /// `unit`: "s", or "µs" for short runs; `signs`: whether tables show the smallest unknown, and compare with
-  /// what stays nonnegative.
+  /// `unit`: "s", or "µs" for short runs; `signs`: whether tables show the smallest unknown, and compare runs
+  /// that stay nonnegative.
   contest(std::vector<double> errors, std::string unit, bool signs)
       : errors_(std::move(errors)), unit_(std::move(unit)), signs_(signs) {}
 
   void add(attempt one) { attempts_.push_back(std::move(one)); }
 
-  /// Runs every attempt once, and then those that count in turns, `repeats` times, if that takes less than
-  /// `seconds_each` per turn; their CPU time is then the median.
+  /// Runs every attempt once. Attempts that count and take less than `seconds_each` then run in turns,
+  /// `repeats` times; their CPU time is the median.
   void run(int repeats, double seconds_each);
 
   /// After run(), adds columns, rows and runs to a table: the best of Apsis, every contestant or only the
-  /// others, and the best of the others; with a first column for ε if the problem has one value of it.
+  /// others, the best of the others, and the best of the baselines. If ε is given, it is the first column.
   void add_to(result_table& result, std::optional<double> epsilon, bool only_others) const;
 
-  /// After run(), returns a row for each contestant, or only for those of others: for every error the CPU
-  /// time, in brackets relative to the best of Apsis (with nonnegative unknowns, if signs are shown), and the
-  /// smallest unknown.
+  /// After run(), returns a row for each contestant, or only for the others. For every error it has the CPU
+  /// time, in brackets the time relative to the best of Apsis, and the smallest unknown if signs are shown.
+  /// The best of Apsis then has nonnegative unknowns.
   std::vector<std::vector<nlohmann::json>> rows(bool only_others) const;
-  /// After run(), returns for every error the best run of Apsis: of all, of methods with an SSP coefficient,
-  /// and of those with steps chosen by a tolerance, with its time and method. Rows without any run are left
-  /// out.
+  /// After run(), returns for every error the time and the method of the best run of Apsis. Three rows are
+  /// for all methods, for those with an SSP coefficient, and for steps chosen by a tolerance. Rows without
+  /// any run are left out.
   std::vector<std::vector<nlohmann::json>> best_of_ours() const;
-  /// After run(), returns for every error the best of the others, relative to the best of Apsis with the same
-  /// lower bound of the unknowns, and its name; if signs are shown, one row each for those that stay
-  /// nonnegative, those that do up to rounding, and all.
+  /// After run(), returns for every error the name of the best of the others, and its time relative to the
+  /// best of Apsis with the same lower bound of the unknowns. If signs are shown, three rows are for runs
+  /// that stay nonnegative, for those that do up to rounding, and for all.
   std::vector<std::vector<nlohmann::json>> best_of_others() const;
-  /// The same of the baselines, after those of the others.
+  /// Does the same for the baselines; no rows without baselines.
   std::vector<std::vector<nlohmann::json>> best_of_baselines() const;
   /// Returns all runs, for diagrams.
   nlohmann::json points() const;

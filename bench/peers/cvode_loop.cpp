@@ -1,4 +1,4 @@
-// CVODE for one small system after the other, as a code without ensembles would call it.
+// CVODE for one small system after the other, as a program without ensembles would call it.
 #include "ensembles.hpp"
 #include "field_vector.hpp"
 

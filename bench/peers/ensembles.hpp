@@ -12,15 +12,15 @@ struct ensemble_task {
   std::string name;
   std::size_t unknowns, parameters;
   double t1;
-  std::vector<double> start;  ///< of every system
-  std::vector<double> sizes;  ///< of the unknowns: atol_i = rtol · size_i
-  /// Returns the parameters of system s of all, which vary with s by some tens of percent.
+  std::vector<double> start;  ///< initial values of every system
+  std::vector<double> sizes;  ///< sizes of the unknowns: atol_i = rtol · size_i
+  /// Returns the parameters of system s, which vary over all systems by some tens of percent.
   std::vector<double> (*parameters_of)(std::size_t s, std::size_t systems);
   /// Integrates all systems in the lanes of Apsis.
   void (*in_lanes)(const ensemble_task& task, const std::string& method, double rtol, std::span<double> u,
                    std::span<const double> parameters);
   /// Integrates all systems by CVODE, one after the other, with exact Jacobians and a dense solver. Memory is
-  /// allocated once. Returns whether all of them ended.
+  /// allocated once. Returns whether all systems reached t1.
   bool (*by_cvode)(const ensemble_task& task, double rtol, std::span<double> u,
                    std::span<const double> parameters);
 };
@@ -30,7 +30,7 @@ ensemble_task robertson_ensemble();
 /// The ODE model of the paper to t = 1, with ε as the parameter; T is explicit in lanes.
 ensemble_task ode_model_ensemble();
 
-// Compiled for the processor of the machine, as users compile their systems.
+// These functions are compiled for the processor of the machine, as users compile their systems.
 void robertson_in_lanes(const ensemble_task& task, const std::string& method, double rtol,
                         std::span<double> u, std::span<const double> parameters);
 void ode_model_in_lanes(const ensemble_task& task, const std::string& method, double rtol,

@@ -8,7 +8,7 @@
 namespace apsis::bench::peers {
 namespace {
 
-/// Content used by the operations of the serial vector, and the field that owns its `data`.
+/// The content that the operations of the serial vector use, and the field that owns `data`.
 struct content : _N_VectorContent_Serial {
   explicit content(const field& from) : u(from) {
     length = static_cast<sunindextype>(u.cells()) * u.stride();

@@ -20,8 +20,8 @@ struct vector_deleter {
 };
 using owned_vector = std::unique_ptr<_generic_N_Vector, vector_deleter>;
 
-/// Wraps a field, padding included, as a serial vector of SUNDIALS, whose operations act on the rows in
-/// place; right-hand sides get fields without copying. Clones are of the same kind.
+/// Returns a serial vector of SUNDIALS with a copy of a field, padding included. Its operations act on the
+/// rows in place, and right-hand sides get fields without copying. Clones are of the same kind.
 owned_vector make_field_vector(const field& u, SUNContext context);
 
 /// Returns the field of such a vector.

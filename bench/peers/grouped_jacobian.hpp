@@ -11,14 +11,15 @@
 
 namespace apsis::bench::peers {
 
-/// Jacobian of a function of `cells` × `components` unknowns by differences: cells that share no cell of
-/// their range are perturbed together, one component at a time.
+/// The Jacobian of a function f of `cells` × `components` unknowns, by differences. The range of a cell is
+/// the set of cells whose f depends on it. Cells with disjoint ranges are perturbed together, one component
+/// at a time.
 class grouped_jacobian {
  public:
   using vector = Eigen::VectorXd;
   using function = std::function<vector(const vector&)>;
 
-  /// Finds the entries that are not zero by large perturbations at `u`: of whole cells for the groups, then
+  /// Finds the nonzero entries by large perturbations at `u`: those of whole cells for the groups, then those
   /// of single components.
   grouped_jacobian(int cells, int components, const function& f, const vector& u)
       : components_(components), range_(static_cast<std::size_t>(cells)) {
@@ -41,7 +42,7 @@ class grouped_jacobian {
     jacobian_.setFromTriplets(entries.begin(), entries.end());
   }
 
-  /// Returns the Jacobian at u, always with the same entries.
+  /// Returns the Jacobian at u, always with the same pattern.
   const Eigen::SparseMatrix<double>& operator()(const function& f, const vector& u) {
     std::fill_n(jacobian_.valuePtr(), jacobian_.nonZeros(), 0.0);
     for_each_difference(f, u, std::sqrt(std::numeric_limits<double>::epsilon()),
@@ -82,8 +83,7 @@ class grouped_jacobian {
   }
 
   void make_groups(int cells) {
-    std::vector<std::vector<char>>
-        taken;  // of each group, whether a cell is in the range of one of its cells
+    std::vector<std::vector<char>> taken;  // [group][cell]: whether a range contains the cell
     for (int cell = 0; cell < cells; ++cell) {
       const auto& range = range_[static_cast<std::size_t>(cell)];
       std::size_t g = 0;
@@ -103,7 +103,7 @@ class grouped_jacobian {
   }
 
   int components_;
-  std::vector<std::vector<int>> range_;   ///< of every cell, the cells of f that depend on it
+  std::vector<std::vector<int>> range_;   ///< range of every cell
   std::vector<std::vector<int>> groups_;  ///< cells that are perturbed together
   Eigen::SparseMatrix<double> jacobian_;
 };

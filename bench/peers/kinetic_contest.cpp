@@ -13,7 +13,7 @@
 namespace apsis::bench::peers {
 namespace {
 
-/// Equal steps, with and without a graded start.
+/// Adds runs with equal steps, with and without a graded start.
 void add_equal_steps(contest& all, kinetic_task& task, const std::string& name, league of,
                      const kinetic_settings& settings) {
   for (const double factor : settings.factors)

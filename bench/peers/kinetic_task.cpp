@@ -24,7 +24,7 @@ double smallest_of(const field& u) {
   return smallest;
 }
 
-/// Adds a method, which the task does not use, and the end time.
+/// Returns the overrides with the end time, and with a method, which the task does not use.
 std::vector<std::string> with_end(std::vector<std::string> overrides, double end) {
   overrides.insert(overrides.end(), {"time.method=md-imex-3-2", fmt::format("time.end={:.17g}", end)});
   return overrides;
@@ -79,7 +79,8 @@ std::unique_ptr<collision_inverse> kinetic_task::inverse() const {
                                            : make_bgk_inverse(equation(), rates_);
 }
 
-/// Only collisions at centres distinguish the first two (problem_builder::with_smooth_collisions()).
+/// Returns the problem for an integrator. problem_ and smooth_ differ only for collisions at
+/// centres (problem_builder::with_smooth_collisions()).
 semidiscrete_problem& kinetic_task::problem_of(const std::string& integrator) const {
   const time_integrator& m = find_integrator(integrator);
   if (m.needs.exact_collision) return *exact_;

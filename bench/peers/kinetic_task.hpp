@@ -11,7 +11,7 @@
 
 namespace apsis::bench::peers {
 
-/// Monitors a run between its steps: smallest values, and the time of the steps alone.
+/// Monitors a run between its steps: smallest values, and the time of the steps without the monitoring.
 class run_monitor {
  public:
   explicit run_monitor(double seconds_allowed) : allowed_(seconds_allowed) {}
@@ -26,8 +26,8 @@ class run_monitor {
   long steps_ = 0;
 };
 
-/// A case as a system of ordinary differential equations f' = T(f) + Q(f)/ε on its mesh, from t = 0 to `end`,
-/// with the same functions for all integrators.
+/// A case as a system of ordinary differential equations f' = T(f) + Q(f)/ε on its mesh, from t = 0 to `end`.
+/// All integrators use the same functions.
 class kinetic_task {
  public:
   /// `overrides`: KEY=VALUE, as on the command line. The model must be a relaxation in one space dimension.
@@ -35,7 +35,7 @@ class kinetic_task {
 
   double end() const { return end_; }
   const field& initial() const { return initial_; }
-  /// Returns the problem for integrators that keep no signs.
+  /// Returns the problem for integrators that preserve no signs.
   semidiscrete_problem& problem() { return *smooth_; }
   /// Returns the inverse of I − γJ for the Jacobian J of the collision.
   std::unique_ptr<collision_inverse> inverse() const;
@@ -43,8 +43,8 @@ class kinetic_task {
   /// nonnegative, r Δt_FE (r = 1 if that is unknown).
   long positive_steps(const std::string& name) const;
 
-  /// Runs `steps` equal steps of an integrator of integrators.hpp; `graded`: the first of them divided into
-  /// steps that resolve the initial layer.
+  /// Runs `steps` equal steps of an integrator of integrators.hpp; With `graded` the first of them is divided
+  /// into steps that resolve the initial layer.
   outcome run(const std::string& name, long steps, bool graded, double seconds_allowed,
               field* result = nullptr);
   /// Runs a method with an embedded solution to a tolerance of the steps, relative to f in the 2-norm.
@@ -68,7 +68,7 @@ class kinetic_task {
   double end_;
   run_setup setup_;
   std::unique_ptr<semidiscrete_problem> problem_,
-      smooth_,  ///< for methods that keep no signs, with the same T and Q
+      smooth_,  ///< for methods that preserve no signs, with the same T and Q
       exact_;   ///< for methods with exact collisions
   field initial_, reference_;
   std::vector<double> rates_;  ///< 1/ε of every cell: at its centre, or the mean over its Gauss points

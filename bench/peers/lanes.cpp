@@ -1,4 +1,4 @@
-// Compiled for the processor of the machine: the vectors of lanes are those of the target.
+// This file is compiled for the processor of the machine, so that lanes are vectors of this processor.
 #include "ensembles.hpp"
 
 #include <apsis/integrate/ensemble.hpp>

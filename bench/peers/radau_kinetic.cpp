@@ -68,7 +68,7 @@ class kinetic_equations {
         [this](const Eigen::VectorXcd& v) -> Eigen::VectorXcd { return of_pair_.solve(v); });
   }
 
-  /// γ₀ is the real eigenvalue of A.
+  /// Uses the factors of the real system, because γ₀ is the real eigenvalue of A.
   vector filtered(const vector& v) const { return of_real_.solve(v); }
 
   const field& unpack(const vector& from, field& to) const {

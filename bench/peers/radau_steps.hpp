@@ -10,8 +10,8 @@ namespace apsis::bench::peers {
 
 struct radau_options {
   double rtol = 1e-6,
-         atol = 1e-8;          ///< of a System without absolute()
-  long most_attempts = 40000;  ///< steps, rejected ones too
+         atol = 1e-8;          ///< absolute tolerance for a System without absolute()
+  long most_attempts = 40000;  ///< largest number of steps, including rejected ones
 };
 
 /// The Radau IIA method of order 5.
@@ -43,7 +43,7 @@ struct radau_tableau {
 /// its starting values and the predictive step control of RADAU5 (Hairer, Wanner, Solving Ordinary
 /// Differential Equations II, section IV.8). With J = ∂F/∂u, a System has
 ///   vector, stages                types of u and of [Z₁, Z₂, Z₃], Z_i = Y_i − u
-///   initial(), rate(t, u)         the initial u; F(t, u), not a number where u has none
+///   initial(), rate(t, u)         the initial u; F(t, u), NaN where it is undefined
 ///   absolute()                    atol of every unknown; not required
 ///   linearize(t, u), factorize(h)  computes J, and factorizes I − h A⊗J and I − hγ₀J
 ///   newton_change(D)              (I − h A⊗J)⁻¹ D
@@ -155,8 +155,8 @@ class radau_steps {
     return z;
   }
 
-  /// Simplified Newton iteration for Z = h A F(u + Z); returns the number of iterations, −1 without
-  /// convergence.
+  /// Solves Z = h A F(u + Z) by a simplified Newton iteration. Returns the number of iterations, −1
+  /// without convergence.
   int solve(stages& z) {
     const auto& c = radau_tableau::get().abscissae;
     double before = 0.0;
@@ -183,7 +183,7 @@ class radau_steps {
     return -1;
   }
 
-  /// As RADAU5: the iteration error relative to that of the step.
+  /// Returns the bound of RADAU5 for the iteration error relative to that of the step.
   double newton_tolerance() const {
     return std::max(10.0 * std::numeric_limits<double>::epsilon() / options_.rtol,
                     std::min(0.03, std::sqrt(options_.rtol)));
@@ -205,9 +205,9 @@ class radau_steps {
   stages z_;
   double t_ = 0.0, next_ = 0.0;  ///< time of u_ and of the end of the step
   double h_ = 0.0, taken_ = 0.0, previous_error_ = 0.0;
-  double factorized_ = 0.0;                 ///< h of the factors; 0: none of the present Jacobian
+  double factorized_ = 0.0;                 ///< h of the factors; 0 if the Jacobian has no factors yet
   double theta_ = 0.0;                      ///< convergence rate of the last Newton iteration
-  bool rejected_ = false, current_ = true;  ///< current_: the Jacobian is that of u
+  bool rejected_ = false, current_ = true;  ///< current_: whether the Jacobian is that of u_
 };
 
 }  // namespace apsis::bench::peers

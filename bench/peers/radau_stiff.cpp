@@ -15,7 +15,7 @@ namespace {
 
 using number = std::complex<double>;
 
-/// I − hλJ for λ of the real eigenvalue and of the pair, as full matrices.
+/// The matrices I − hλJ for the real eigenvalue λ and for one of the pair, stored as dense matrices.
 class dense_matrices {
  public:
   explicit dense_matrices(const stiff_system& of)
@@ -39,7 +39,7 @@ class dense_matrices {
   Eigen::PartialPivLU<Eigen::MatrixXcd> pair_;
 };
 
-/// The same as sparse matrices.
+/// The same matrices, stored as sparse matrices.
 class sparse_matrices {
  public:
   explicit sparse_matrices(const stiff_system& of) {

@@ -13,7 +13,7 @@ namespace {
 
 using integrator = sundials_ode_options::integrator;
 
-/// Equal steps, 1 to `most_steps` of them, without and with graded starts of several growths.
+/// Adds runs with 1 to `most_steps` equal steps, without and with graded starts of several growths.
 void add_equal_steps(contest& all, const stiff_task& task, const std::string& name, league of,
                      long most_steps) {
   const auto add = [&](long steps) {

@@ -10,13 +10,14 @@ namespace apsis::bench::peers {
 
 /// A problem of the contest.
 struct stiff_race {
-  std::string title,  ///< of the table
+  std::string title,  ///< title of the table
       problem;        ///< equation, data and reference, in a sentence
   std::unique_ptr<stiff_task> (*make)(double epsilon);
 };
 
-/// Work and precision of every IMEX method of the catalogue, explicit SSP methods, CVODE, ARKODE and Radau
-/// for ε = 1, 1e-2, 1e-4, 1e-6 and 1e-10. The table has the best of Apsis and a row for each of the others.
+/// Measures work and precision of every IMEX method of the catalogue, explicit methods, other integrators of
+/// the library, CVODE, ARKODE and Radau for ε = 1, 1e-2, 1e-4, 1e-6 and 1e-10. The table has the best of
+/// Apsis and a row for each other contestant.
 result_table run(const stiff_race& race, const settings& options);
 
 }  // namespace apsis::bench::peers

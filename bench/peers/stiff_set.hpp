@@ -15,21 +15,21 @@ namespace apsis::bench::peers {
 
 /// An integration of a problem of apsis/verify/stiff_problem.hpp.
 struct stiff_outcome {
-  std::vector<double> u;     ///< at the end
-  long steps = 0;            ///< accepted
+  std::vector<double> u;     ///< solution at the end
+  long steps = 0;            ///< accepted steps
   long rates = 0;            ///< calls of Q for its value
   double jacobians = 0;      ///< evaluations of Q'; products of Apsis count as parts of one
   std::string failure = {};  ///< empty if the end was reached
 };
 
-/// When and with which tolerances a stiff problem is solved: atol_i = rtol · size_i.
+/// Tolerances and time limit of an integration: atol_i = rtol · size_i.
 struct stiff_limits {
   double rtol = 1e-6;
   double seconds = std::numeric_limits<double>::infinity();  ///< most CPU time of the thread
 };
 
-/// Q and Q' of a stiff problem, the same functions and the same automatic derivatives that Apsis has; counts
-/// its calls.
+/// Q and Q' of a stiff problem, with the functions and the automatic derivatives of Apsis. It counts
+/// their calls.
 class stiff_system {
  public:
   explicit stiff_system(const stiff_problem_entry& problem);
@@ -37,8 +37,8 @@ class stiff_system {
   /// Chooses Q between times[piece] and times[piece + 1].
   void begin(std::size_t piece) { rate_ = problem_.rate(piece); }
   std::size_t size() const { return pattern_.size(); }
-  bool is_banded() const { return problem_.pattern != nullptr; }  ///< all patterns of the set are bands
-  const sparsity_pattern& pattern() const { return pattern_; }    ///< all places without one of the problem
+  bool is_banded() const { return problem_.pattern != nullptr; }  ///< every pattern of this set is a band
+  const sparsity_pattern& pattern() const { return pattern_; }    ///< full without a pattern of the problem
   std::size_t width() const;                                      ///< largest |row − column| of the pattern
 
   /// out ← Q(t, u).
@@ -70,7 +70,7 @@ class stiff_system {
   long rates_ = 0, jacobians_ = 0;
 };
 
-/// A clock that says when a run has taken too long.
+/// A clock that states whether a run has taken too long.
 class stiff_clock {
  public:
   explicit stiff_clock(double most) : most_(most), begin_(thread_seconds()) {}
@@ -80,7 +80,7 @@ class stiff_clock {
   double most_, begin_;
 };
 
-/// The words of stiff_outcome::failure after stiff_limits::seconds.
+/// The value of stiff_outcome::failure for a run that exceeds stiff_limits::seconds.
 inline constexpr const char* too_slow = "too slow";
 
 /// Runs a method of Apsis.

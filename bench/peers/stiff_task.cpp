@@ -29,7 +29,7 @@ struct ode_model {
   static double rate_slope(double w) { return 2.0 * w; }
 };
 
-/// T, E and C of a definition with a constant rate 1, for the library.
+/// Returns the problem of a definition with constant rate 1, for the library.
 template <class Definition>
 auto problem_of(double epsilon) {
   using state = stiff_task::state;
@@ -73,12 +73,12 @@ struct prothero_robinson {
   static double rate_slope(double) { return 0.0; }
 };
 
-/// |u − v|/|u| in the 2-norm.
+/// Returns |u − v|/|u| in the 2-norm.
 double relative_distance(const stiff_task::state& u, const stiff_task::state& v) {
   return std::hypot(u[0] - v[0], u[1] - v[1]) / std::hypot(u[0], u[1]);
 }
 
-/// Limit on the number of steps, that of SUNDIALS in sundials_ode.cpp.
+/// Limit on the number of steps, the same as for SUNDIALS in sundials_ode.cpp.
 constexpr long most_steps = 20000;
 
 template <class Definition>

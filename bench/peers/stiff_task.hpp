@@ -54,7 +54,7 @@ std::unique_ptr<stiff_task> make_kaps(double epsilon);
 /// φ(0) (Prothero, Robinson, Math. Comp. 28 (1974) 145–162).
 std::unique_ptr<stiff_task> make_prothero_robinson(double epsilon);
 
-/// Seconds per call of `body`, averaged over enough calls for the resolution of the clock.
+/// Returns the seconds per call of `body`, averaged over enough calls for the resolution of the clock.
 double seconds_per_call(const std::function<void()>& body);
 
 }  // namespace apsis::bench::peers

@@ -27,8 +27,8 @@ system_of_equations& of(void* data) {
   return *static_cast<system_of_equations*>(data);
 }
 
-/// Returns "recoverable" for moments without an equilibrium: the step was too long, a shorter
-/// one may succeed.
+/// Runs body(). Returns 1, a recoverable error, for moments without an equilibrium, because a shorter step
+/// may succeed.
 template <class Body>
 int recoverable(const Body& body) {
   try {

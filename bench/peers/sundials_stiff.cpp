@@ -89,7 +89,7 @@ class sundials_stiff {
                        ARKStepSetLinearSolver(memory, linear_, matrix_) == 0 &&
                        ARKStepSetJacFn(memory, stiff_jacobian_of) == 0 &&
                        ARKStepSetDeduceImplicitRhs(memory, SUNTRUE) == 0 &&
-                       // Its default of 7 ends half of the integrations.
+                       // With its default of 7, half of the integrations fail.
                        ARKStepSetMaxErrTestFails(memory, 30) == 0 && ARKStepSetMaxConvFails(memory, 30) == 0;
     auto found = march(
         ready, [&](double t) { return ARKStepReInit(memory, nullptr, stiff_rate_of, t, y_.get()); },

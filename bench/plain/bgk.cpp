@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
-// bench/CMakeLists.txt compiles this file a second time, for this processor, where the function has another
-// name.
+// bench/CMakeLists.txt compiles this file a second time, for this processor. The function then has
+// another name.
 #ifndef APSIS_MAKE_BGK
 #define APSIS_MAKE_BGK make_bgk
 #endif
@@ -21,7 +21,7 @@ double square(double x) {
   return x * x;
 }
 
-/// Σ_k ω_k q_k with ω_k ∝ (linear weight)(1 + (τ/(β_k + δ))²).
+/// Edge values Σ_k ω_k q_k of WENO5-Z, with ω_k ∝ (linear weight)(1 + (τ/(β_k + δ))²).
 struct weno_z {
   double g0, g1, g2;
 
@@ -36,8 +36,8 @@ struct weno_z {
     g2 = 1.0 + square(tau / (beta2 + delta));
   }
 
-  /// `near` and `far` are the neighbours of the edge's cell, close to the edge and away from it: weights (1,
-  /// 6, 3)/10 from far to near.
+  /// Returns the value at an edge of the cell c. `far`, `middle` and `near` are the factors of the stencils,
+  /// ordered towards the edge; their linear weights are (1, 6, 3)/10.
   static double edge(double far, double middle, double near, double a, double b, double c, double d,
                      double e) {
     const double w0 = 0.1 * far, w1 = 0.6 * middle, w2 = 0.3 * near;
@@ -48,8 +48,8 @@ struct weno_z {
   }
 };
 
-/// Zhang & Shu: admissible fraction of the deviation from the average c, where `lowest` is the smallest
-/// value. The floor prevents rounding errors of the update from crossing zero.
+/// Returns the admissible fraction of the deviation from the average c, if `lowest` is the smallest value
+/// (Zhang, Shu). The floor prevents negative values from rounding errors of the update.
 double scaling(double c, double lowest) {
   const double floor = 1e-13 * c;
   return lowest < floor ? std::max((c - floor) / (c - lowest), 0.0) : 1.0;
@@ -158,7 +158,7 @@ void loops::reconstruct(const std::vector<double>& f) {
 }
 
 void loops::limit(const std::vector<double>& f) {
-  // Four-point Gauss–Lobatto: the average is (l + r)/12 + (10/12) times an interior value.
+  // By four-point Gauss–Lobatto quadrature, the average is (l + r)/12 + (10/12) times an interior value.
   for (std::size_t n = 0; n < f.size(); ++n) {
     const double c = f[n], l = left_[n], r = right_[n];
     const double between = (c - (l + r) * (1.0 / 12.0)) * 1.2;
@@ -191,7 +191,7 @@ void loops::gauss_values(const std::vector<double>& f, int cell) {
   const double *left = left_.data() + at(cell, 0), *right = right_.data() + at(cell, 0);
   for (int j = 0; j < velocities_; ++j) {
     const double c = average[j], l = left[j], r = right[j];
-    // Quartic with the given edge values and averages on the three cells, in differences from c.
+    // This quartic has the given edge values, and the averages over the three cells, in differences from c.
     const double edges = (l - c) + (r - c), slope = r - l, neighbours = (m[j] - c) + (p[j] - c),
                  rise = p[j] - m[j];
     const double d0 = -9.0 / 32.0 * edges + neighbours * (1.0 / 192.0);

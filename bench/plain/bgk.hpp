@@ -13,10 +13,11 @@ struct method {
   double r = 1.0;
 };
 
-/// f_t + v f_x = (M[f] − f)/ε(x), periodic in x, directly as in the literature: loops over cells and
-/// velocities and arrays of doubles. Finite volumes with WENO5-Z (Borges et al. 2008), the positivity limiter
-/// of Zhang & Shu (2010), upwind fluxes, collisions at three Gauss points of the quartic of every cell, and
-/// stages with T(u_j) stored. Baseline for the library, with which it shares no code.
+/// A solver of f_t + v f_x = (M[f] − f)/ε(x), periodic in x. It follows the literature directly, with loops
+/// over cells and velocities on arrays of doubles. It has finite volumes with WENO5-Z (Borges et al. 2008),
+/// the positivity limiter of Zhang & Shu (2010) and upwind fluxes. Collisions act at three Gauss points of
+/// the quartic of every cell, and T(u_j) of every stage is stored. It is a baseline for the library, with
+/// which it shares no code.
 class bgk {
  public:
   struct mesh {
@@ -32,9 +33,9 @@ class bgk {
   virtual void step(double dt, std::vector<double>& f) = 0;
 };
 
-/// Compiled with the flags of the library's kernels.
+/// Returns the solver, compiled with the flags of the library's kernels.
 std::unique_ptr<bgk> make_bgk(bgk::mesh space, method scheme);
-/// The same source compiled with -O3 -march=native -ffast-math: for this processor only, and without the
+/// Returns the solver, compiled with -O3 -march=native -ffast-math: for this processor only, and without the
 /// guarantees of IEEE 754.
 std::unique_ptr<bgk> make_native_bgk(bgk::mesh space, method scheme);
 

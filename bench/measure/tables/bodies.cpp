@@ -1,4 +1,4 @@
-// The price of a body: steps with it beside steps of the same flow without it.
+// The cost of a body: steps with it compared with steps of the same flow without it.
 #include "../clock.hpp"
 #include "../flow.hpp"
 #include "../table.hpp"
@@ -22,8 +22,8 @@ case_config without_bodies(case_config of) {
   return of;
 }
 
-/// Returns the time of some steps for an unknown in a cut cell: that of the lines and fluxes of cut cells,
-/// and that of all work which does not depend on the kind of a cell.
+/// Returns the time of some steps per unknown in a cut cell. It is the time for lines and fluxes of cut
+/// cells, plus the time of all work that does not depend on the kind of cell.
 double time_of_cut_unknown(simulation& flow, int steps) {
   profile::start();
   const double start = wall_seconds();

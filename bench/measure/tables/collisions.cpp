@@ -19,7 +19,8 @@ struct gas {
   int velocity_dimensions, degrees_of_freedom;
 };
 
-/// Wavy data between periodic ends, 150 velocities in one dimension and enough for T = 1 in more.
+/// Returns a case with wavy data on a periodic interval. It has 150 velocities in one dimension, and enough
+/// for T = 1 in more.
 case_config case_of(const gas& what, const std::string& discretization, int cells) {
   const std::vector<std::string> points = {"150", "[20, 20]", "[16, 16, 16]"};
   return load_case(

@@ -27,7 +27,7 @@ namespace {
 constexpr int velocities = 150;
 constexpr const char* method = "md-imex-10-3-long";
 
-/// A gas between two walls, whose equilibria are formulas at all these temperatures.
+/// Returns a gas between two walls, whose equilibria have closed forms at all its temperatures.
 case_config gas_between_walls(double points) {
   return parse_case(fmt::format("[model]\nname = \"bgk\"\nepsilon = 0.05\n"
                                 "[space]\ncells = {}\nformulation = \"finite-difference\"\n"
@@ -45,14 +45,15 @@ bool is_real(const std::string& name) {
                       [&](const auto* kind) { return !kind->is_real && kind->name == name; });
 }
 
-/// Memory is left for tables, and for other programs.
+/// The rest of the memory is for tables and other programs.
 constexpr double usable = 0.9;
 
 bool fits(const case_config& of, double bytes) {
   return memory_need(run_setup(of), 0).bytes() <= usable * bytes;
 }
 
-/// Powers of ten, and the largest number whose run fits into the device while the host has three states.
+/// Returns powers of ten, and the largest number of points whose run fits into the device while the host
+/// stores three states.
 std::vector<double> sizes(const device& on, bool small) {
   if (small) return {3e3, 6e3};
   constexpr double least = 1e5, states_on_host = 3.0;
@@ -66,7 +67,7 @@ std::vector<double> sizes(const device& on, bool small) {
   return all;
 }
 
-/// The most bytes and operations of a device in a second, and the fewest of a point in a stage.
+/// The most bytes and operations per second of a device, and the fewest per point and stage.
 struct ceilings {
   double bytes, multiply_adds, bytes_of_point, operations_of_point;
 };
@@ -80,7 +81,7 @@ ceilings measure_ceilings(device& on, bool small) {
           work.bytes / host.point_stages(), work.operations / host.point_stages()};
 }
 
-/// Point·stages per second of whole runs, whose state is checked after each step.
+/// Returns the point·stages per second of whole runs, which check the state after each step.
 double speed_of_runs(const case_config& gas, const std::shared_ptr<device>& on, const settings& options) {
   simulation run(std::make_unique<run_setup>(gas, single_process(), on));
   const int steps = steps_to_measure(run, options.quick);

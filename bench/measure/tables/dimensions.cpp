@@ -26,8 +26,8 @@ struct problem_size {
   int points;  ///< velocities of each direction
 };
 
-/// States of 50 to 75 MB. The moments of Maxwellians on the velocities are exact only where these are dense
-/// and reach far; otherwise equilibria are found by Newton's method.
+/// Returns problems with states of 50 to 75 MB. The moments of Maxwellians are exact only if the velocities
+/// are dense and reach far. Otherwise Newton's method finds the equilibria.
 std::vector<problem_size> sizes(bool with_closed_form, bool quick) {
   if (quick) return {{"1D1V", "Newton", "[60]", 1, 6, 150}, {"2D2V", "Newton", "[16, 12]", 2, 6, 12}};
   std::vector<problem_size> all = {{"1D1V", "Newton", "[40000]", 1, 6, 150},
@@ -54,17 +54,17 @@ case_config case_of(const problem_size& of) {
       "waves.toml");
 }
 
-/// How often a turn evaluates the sweeps in the cache.
+/// Returns how often a turn evaluates the sweeps in the cache.
 int evaluations(const problem_size& of, const settings& options) {
   return options.quick ? 1 : 20000 / of.dimensions;
 }
 
-/// Rows for a number of threads, and in the first one the sizes with equilibria in closed form too.
+/// Adds the rows for a number of threads. Only one thread also has the sizes with equilibria in closed form.
 void measure_on(int n, const settings& options, result_table& result) {
   set_threads(n);
   const auto all_sizes = sizes(n == 1, options.quick);
   std::deque<mixed_step> steps;
-  std::deque<std::vector<cached_sweeps>> sweeps;  // of each thread
+  std::deque<std::vector<cached_sweeps>> sweeps;  // sweeps of each thread
   std::vector<sweep_work> swept;
   std::vector<job> jobs;
   for (const problem_size& each : all_sizes) {

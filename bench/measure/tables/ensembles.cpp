@@ -1,4 +1,4 @@
-// Many small systems in lanes, and one after the other.
+// Speed of many small systems in lanes, compared with one after the other.
 #include "measure/clock.hpp"
 #include "measure/table.hpp"
 #include "peers/ensembles.hpp"
@@ -38,7 +38,7 @@ class contest {
     if (!task_.by_cvode(task_, rtol, u, parameters_)) u.assign(u.size(), NAN);
     return u;
   }
-  /// The largest error of all unknowns, relative to |u_i| + size_i.
+  /// Returns the largest error of all unknowns, relative to |u_i| + size_i.
   double error(const numbers& u) const {
     double largest = 0.0;
     for (std::size_t i = 0; i < u.size(); ++i) {
@@ -47,7 +47,7 @@ class contest {
     }
     return largest;
   }
-  /// The largest tolerance 10^{−k/2} of CVODE with at most this error.
+  /// Returns the largest tolerance 10^{−k/2} of CVODE with at most this error.
   double tolerance_of_cvode(double most) const {
     for (int k = 4; k <= 26; ++k)
       if (error(by_cvode(std::pow(10.0, -0.5 * k))) <= most) return std::pow(10.0, -0.5 * k);

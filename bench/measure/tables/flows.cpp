@@ -1,5 +1,5 @@
-// Throughput of the flows that users run: every case of cases/gas and cases/laws beside the same gas between
-// periodic ends, and where the time goes.
+// Throughput of the flows that users run, and where their time goes. Every case of cases/gas and cases/laws
+// is compared with the same gas between periodic ends.
 #include "../clock.hpp"
 #include "../flow.hpp"
 #include "../table.hpp"
@@ -23,8 +23,8 @@
 namespace apsis::bench::flows_table {
 namespace {
 
-/// The gas of a case between periodic ends, without bodies, forces and sources; without an axis, where other
-/// velocities have as many numbers across.
+/// Returns the gas of a case between periodic ends, without bodies, forces and sources. An axisymmetric case
+/// becomes Cartesian, with as many velocities across.
 case_config periodic(case_config of) {
   of.space.geometry = geometry_choice::cartesian;
   of.space.boundary = "periodic";
@@ -37,7 +37,7 @@ case_config periodic(case_config of) {
   return of;
 }
 
-/// Shares of the time of some steps: sweeps, collisions, walls, forces, monitor, the rest.
+/// Returns the shares of the time of some steps: sweeps, collisions, walls, forces, monitor, the rest.
 std::array<double, 6> shares_of(simulation& run, int steps) {
   profile::start();
   const double start = wall_seconds();

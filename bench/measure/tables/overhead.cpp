@@ -74,8 +74,8 @@ auto ode_problem() {
       [](double u) { return 1.0 + u * u; }, epsilon);
 }
 
-/// Returns a job of `steps` steps from (2, 0) by `step`; it stores the last state, so that no step can
-/// be optimized away.
+/// Returns a job of `steps` steps from u by `step`. It stores the last state, so that the compiler cannot
+/// remove a step.
 template <class State, class Step>
 job steps_of(int steps, State u, std::shared_ptr<double> result, Step step) {
   return [steps, u, result, step] {

@@ -1,4 +1,5 @@
-// Work and precision on the mixed-regime problem on point values, with the same kernels for all contestants.
+// Work and precision on the mixed-regime problem on cell averages that collide at centres, with the same
+// kernels for all contestants.
 #include "measure/table.hpp"
 #include "peers/kinetic_races.hpp"
 

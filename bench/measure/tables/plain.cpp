@@ -110,7 +110,8 @@ struct contest {
   double dt, t = 0.0;
 };
 
-/// Throws unless all agree; otherwise the comparison would be meaningless.
+/// Returns the largest difference of the results. Throws unless they agree, because the comparison would
+/// otherwise be meaningless.
 double require_agreement(contest& all, int steps) {
   all.library(steps);
   all.formulas(steps);
@@ -134,7 +135,7 @@ result_table measure(const settings& options) {
       "few steps, in the 2-norm over f.";
   result.columns = {"method",        "plain (ms)",     "native (ms)",   "library (ms)", "advance (ms)",
                     "plain/library", "native/library", "plain/advance", "difference"};
-  // Short jobs and many turns: a disturbance affects one turn only.
+  // Jobs are short and turns many, so that a disturbance affects only one turn.
   const int steps = options.quick ? 2 : 10, turns = options.quick ? 1 : 5 * options.repeats;
   for (const std::string name : {"md-imex-3-2", "md-imex-6-3"}) {
     contest all(name);

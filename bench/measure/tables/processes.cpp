@@ -24,7 +24,7 @@ namespace {
 
 using processes_pointer = std::shared_ptr<communicator>;
 
-/// A periodic gas with n cells in each direction but the first, which has `first`.
+/// A periodic gas with `first` cells in the first direction and `others` in each other direction.
 struct gas {
   std::string name;
   int dimensions, first, others, points;
@@ -46,11 +46,11 @@ case_config case_of(const gas& of) {
       "waves.toml");
 }
 
-/// Who takes a step.
+/// The processes that take a step.
 enum class workers {
-  root,        ///< the root, with the whole mesh
+  root,        ///< the root alone, with the whole mesh
   each_alone,  ///< every process, with a mesh of its own
-  together     ///< all, which share the mesh
+  together     ///< all processes, which share the mesh
 };
 
 /// Steps of a run on one or all processes; the others sleep meanwhile.
@@ -63,7 +63,7 @@ class timed_run {
                                           who == workers::together ? all : single_process());
     take();
   }
-  /// Returns the wall-clock seconds of a step, those of the slowest process.
+  /// Takes a step and returns its wall-clock seconds on the slowest process.
   double take() {
     wait_asleep();
     const double start = wall_seconds();
@@ -76,7 +76,7 @@ class timed_run {
   const simulation* run() const { return run_.get(); }
 
  private:
-  /// A barrier without a busy loop, which would disturb the others. A process that arrives late wakes nobody.
+  /// Waits for all processes without a busy loop, which would disturb the others.
   void wait_asleep() {
     if (!all_->all_call_within(3600.0)) throw std::runtime_error("a process did not arrive within an hour");
   }
@@ -88,9 +88,9 @@ class timed_run {
 
 /// Messages of a step.
 struct exchanged {
-  double messages, bytes, reductions;  ///< of the process with most of them
+  double messages, bytes, reductions;  ///< messages, bytes and reductions of this process
   double waited,                       ///< seconds of packing and waiting in a step
-      blocking;                        ///< seconds of the same exchanges with nothing to do meanwhile
+      blocking;                        ///< seconds of the same exchanges without other work
 };
 
 exchanged count_exchanges(const gas& of, const processes_pointer& all) {
@@ -102,7 +102,8 @@ exchanged count_exchanges(const gas& of, const processes_pointer& all) {
   result.messages = static_cast<double>(all->count().messages - before.messages);
   result.bytes = static_cast<double>(all->count().bytes - before.bytes);
   result.reductions = static_cast<double>(all->count().reductions - before.reductions);
-  // A process that is faster than the others waits for them; the shortest time is that of the messages.
+  // A process that is faster than the others waits for them, so that the shortest time is that of
+  // the messages.
   std::vector<double> waits;
   for (int step = 0; step < 5; ++step) {
     profile::start();
@@ -120,7 +121,7 @@ exchanged count_exchanges(const gas& of, const processes_pointer& all) {
   const field u = setup.initial_state();
   const auto made = setup.builder().make_space();
   domain& space = *made;
-  constexpr int width = 4;  // of WENO with the limiter
+  constexpr int width = 4;  // halo of WENO with the limiter
   space.reserve(u.components(), width);
   const long bytes_before = all->count().bytes;
   space.exchange(u);
@@ -135,7 +136,7 @@ exchanged count_exchanges(const gas& of, const processes_pointer& all) {
   return result;
 }
 
-/// Seconds of a message of so many numbers to the next process and back again, halved.
+/// Returns the seconds in which processes 0 and 1 send each other `count` numbers; 0 on other processes.
 double one_way(const processes_pointer& all, std::size_t count, int times) {
   if (all->rank() > 1) return 0.0;
   std::vector<double> mine(count, 1.0), theirs(count);
@@ -149,7 +150,7 @@ double one_way(const processes_pointer& all, std::size_t count, int times) {
   return (wall_seconds() - start) / times;
 }
 
-/// Latency and bandwidth between two processes, and the time of a reduction.
+/// Measures latency and bandwidth between two processes, and the time of a reduction.
 void measure_messages(const settings& options, result_table& result) {
   const auto& all = options.processes;
   const int times = options.quick ? 10 : 2000;
@@ -196,7 +197,8 @@ void measure_gas(const gas& whole, const settings& options, result_table& result
                                   {"dimensions", whole.dimensions},
                                   {"components", together.run()->setup().equation->components()},
                                   {"seconds_per_point", median(seconds_alone) / points},
-                                  {"exchanges", of.messages},  // two processes: one message in each
+                                  {"exchanges", of.messages},  // with two processes, an exchange is
+                                                               // one message
                                   {"reductions", of.reductions}});
   result.rows.push_back({whole.name, fmt::format("{:.2g}", points), all->size(), 1e3 * median(seconds),
                          fmt::format("{:.0f} %", 100.0 * median(weak)),

@@ -12,8 +12,8 @@
 namespace apsis::bench::scaling_table {
 namespace {
 
-/// Cost of a point·stage in units of a multiply–add, measured at the same time to eliminate a drift of the
-/// clock rate from one size to the next.
+/// Returns the cost of a point·stage in units of a multiply–add. Both are measured at the same time, to
+/// eliminate a drift of the clock rate from one size to the next.
 double cost_in_multiply_adds(mixed_step& run, int steps, int repeats, std::vector<double>& seconds) {
   constexpr double count = 4e7;
   std::vector<double> costs;

@@ -1,4 +1,4 @@
-// Iterations to the steady state, and what they save compared with steps in time.
+// Iterations to the steady state, and the time that they save compared with steps in time.
 #include "../clock.hpp"
 #include "../table.hpp"
 
@@ -23,9 +23,9 @@ constexpr double tolerance = 1e-8;
 struct flow {
   std::string name;
   std::vector<std::string> keys;
-  bool varies = true;  ///< with parameters.delta
+  bool varies = true;  ///< whether parameters.delta varies
   std::string mesh = "";
-  double limit = 10.0;  ///< seconds of the run in time
+  double limit = 10.0;  ///< CPU seconds of the run in time
 };
 
 std::vector<flow> all_flows(bool quick) {
@@ -45,7 +45,7 @@ std::vector<flow> all_flows(bool quick) {
           {"gas/cavity", {"space.cells=[64, 64]"}, true, ", 64 × 64 cells", 60.0}};
 }
 
-/// The upwind5 of both, so that they solve the same equations.
+/// Starts a run. Both modes have upwind5, so that they solve the same equations.
 simulation start(const flow& of, const std::string& delta, const std::string& mode) {
   std::vector<std::string> keys = of.keys;
   if (of.varies) keys.push_back("parameters.delta=" + delta);
@@ -70,8 +70,8 @@ solved solve(const flow& of, const std::string& delta) {
 }
 
 struct marched {
-  double seconds;  ///< in which the rate of change has fallen to the tolerance
-  bool complete;   ///< else extrapolated from the decay of the second half
+  double seconds;  ///< CPU seconds in which the rate of change falls to the tolerance
+  bool complete;   ///< false if extrapolated from the decay of the second half
 };
 
 marched march(const flow& of, const std::string& delta, double limit) {

@@ -1,5 +1,5 @@
-// The methods without second derivatives on the stiff problems of the literature: the measurement behind the
-// automatic choice of a method for general stiff systems.
+// The methods without second derivatives on the stiff problems of the literature. The automatic choice of a
+// method for general stiff systems follows from this measurement.
 #include "measure/clock.hpp"
 #include "measure/table.hpp"
 #include "peers/stiff_set.hpp"
@@ -21,11 +21,11 @@ namespace {
 
 using peers::stiff_limits;
 
-/// How many times the best a method counts that does not reach a tolerance within a digit, or takes longer.
+/// Time, relative to the best, of a method that does not reach a tolerance within a digit, or takes longer.
 constexpr double missing = 30.0;
 
-/// Methods of order 3 and more with implicit collisions and without second derivatives, whose stages share a
-/// derivative, and extrapolated Euler steps.
+/// Returns the methods of order 3 and more with implicit collisions and without second derivatives, whose
+/// stages share a derivative. Extrapolated Euler steps follow.
 std::vector<std::string> competitors(bool quick) {
   if (quick) return {"ark-437", "extrapolated-euler-4"};
   std::vector<std::string> names;
@@ -41,7 +41,8 @@ std::vector<std::string> competitors(bool quick) {
   return names;
 }
 
-/// CPU seconds of an integration; nothing if it does not reach rtol within a digit in `most` seconds.
+/// Returns the CPU seconds of an integration; nothing if it does not reach rtol within a digit in
+/// `most` seconds.
 std::optional<double> seconds_of(const stiff_problem_entry& problem, const std::string& method, double rtol,
                                  double most, int repeats) {
   constexpr double long_run = 0.1;
@@ -56,7 +57,7 @@ std::optional<double> seconds_of(const stiff_problem_entry& problem, const std::
   return median(seconds);
 }
 
-/// The result of a method at a tolerance: ln of its time over that of the best, summed over the problems.
+/// The result of a method at a tolerance: ln of its time over that of the best method, summed over problems.
 struct score {
   double log_ratios = 0.0;
   int reached = 0;

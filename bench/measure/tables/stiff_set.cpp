@@ -1,4 +1,4 @@
-// The stiff problems of the literature, by Apsis and other programs.
+// The stiff problems of the literature, solved by Apsis and other programs.
 #include "measure/clock.hpp"
 #include "measure/table.hpp"
 #include "peers/stiff_set.hpp"
@@ -27,10 +27,10 @@ struct contestant {
   std::string label;  ///< a method of Apsis, or empty
   std::function<stiff_outcome()> run;
   stiff_outcome measured = {};
-  std::vector<double> seconds = {};  ///< of one integration, one for each turn
+  std::vector<double> seconds = {};  ///< seconds of one integration, for each turn
 };
 
-/// Runs once, and again until the clock has resolved the run.
+/// Runs a contestant so often that the clock resolves the time of a run.
 void take_turn(contestant& one) {
   constexpr double enough = 5e-3;
   int runs = 0;
@@ -42,7 +42,7 @@ void take_turn(contestant& one) {
   one.seconds.push_back((thread_seconds() - begin) / runs);
 }
 
-/// The methods of one step with implicit collisions, and extrapolated Euler steps.
+/// Returns the methods of one step with implicit collisions, and extrapolated Euler steps.
 std::vector<std::string> implicit_methods() {
   std::vector<std::string> names;
   for (const auto& name : method_names()) {
@@ -64,9 +64,9 @@ class race {
     return {method, [this, method, limits] { return peers::run_apsis_stiff(problem_, method, limits); }};
   }
 
-  /// The method that takes the least CPU time and reaches rtol within a digit, else the one with most digits.
-  /// The search begins with the usual method, and no other has more than twice its time, or the time of the
-  /// best before it.
+  /// Returns the method that reaches rtol within a digit in the least CPU time, otherwise the method with
+  /// most digits. The search begins with the usual method. Every other method is stopped after twice its
+  /// time, or after the time of the best method so far.
   std::string best_of(const std::vector<std::string>& methods) const {
     contestant first = by_apsis(usual(), limits_.seconds);
     take_turn(first);
@@ -100,7 +100,7 @@ class race {
             {"", [this] { return peers::run_radau_stiff(problem_, limits_); }}};
   }
 
-  /// "method: digits; milliseconds; calls of Q + Jacobians".
+  /// Returns "method: digits; milliseconds; calls of Q + Jacobians".
   std::string cell(const contestant& one) const {
     const std::string name = one.label.empty() ? "" : "`" + one.label + "`: ";
     const auto& found = one.measured;
@@ -111,7 +111,7 @@ class race {
   }
 
  private:
-  /// The method that "auto" chooses.
+  /// Returns the method that "auto" chooses.
   std::string usual() const { return choose_method({.general = true, .tolerance = limits_.rtol}).method; }
   double digits_of(const contestant& one) const { return correct_digits(problem_, one.measured.u); }
 

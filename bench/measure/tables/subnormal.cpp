@@ -33,7 +33,7 @@ struct outcome {
   double share, gain;  ///< share of subnormal values, and time without over time with flushing
 };
 
-/// Both start from a state whose tails contain subnormal numbers.
+/// Compares steps without and with flushing. Both start from a state whose tails contain subnormal numbers.
 outcome compare(const std::string& discretization, int max, const settings& options) {
   const std::vector<std::string> grid = {fmt::format("velocity.max={}", max),
                                          fmt::format("velocity.points={}", 10 * max)};

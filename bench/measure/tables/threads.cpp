@@ -13,9 +13,9 @@
 namespace apsis::bench::threads_table {
 namespace {
 
-/// Ideal speedup of the machine: multiply–adds in registers, which share nothing, on one thread and on two
-/// threads simultaneously. They run for `seconds` without interruption, or in as many pieces as a step has
-/// passes over the field, with a barrier after each.
+/// Returns the ideal speedup of the machine: that of multiply–adds in registers, which share nothing, from
+/// one thread to two simultaneous threads. They run for about `seconds`, in `pieces` with a barrier after
+/// each. A step has as many pieces as passes over the field.
 double ideal(double seconds, int pieces, int repeats) {
   constexpr double sample = 2e7;
   const double count = seconds / seconds_of_multiply_adds(sample) * sample / pieces;
@@ -45,7 +45,7 @@ result_table measure(const settings& options) {
   for (const char* discretization : {"finite-difference", "finite-volume"})
     for (const int cells : sizes) {
       mixed_step run(discretization, "md-imex-3-2", cells);
-      // Short jobs and many turns: a disturbance affects one turn only.
+      // Jobs are short and turns many, so that a disturbance affects only one turn.
       const int steps = run.steps_in(options.quick ? 0.01 : 0.04),
                 turns = options.quick ? 1 : 5 * options.repeats;
       const auto seconds = in_turns({[&] { run.take(steps); },

@@ -18,7 +18,8 @@ struct turn {
   double multiply_adds, triad, steps;
 };
 
-/// Wall-clock seconds until all `threads` threads have done `job`, best of several attempts: a ceiling.
+/// Returns the wall-clock seconds until all threads have done a job, the best of several attempts, as for
+/// a ceiling.
 double best_together(const job& what) {
   double best = 1e300;
   for (int attempt = 0; attempt < 3; ++attempt) {

@@ -24,8 +24,8 @@ namespace {
 /// The method that the others are compared with.
 constexpr const char* usual = "md-imex-8-3-mixed";
 
-/// Methods of order two and more with an SSP coefficient, for the promise f ≥ 0, and with the terms of size
-/// ε.
+/// Returns the methods of order two and more that have an SSP coefficient, for the promise f ≥ 0, and the
+/// right terms of size ε.
 std::vector<std::string> competitors(bool quick) {
   if (quick) return {usual, "md-imex-5-2"};
   std::vector<std::string> all;
@@ -50,7 +50,7 @@ case_config with_longest_steps(const std::string& name, const std::string& metho
   return of;
 }
 
-/// The flow with each method.
+/// A flow with each of several methods.
 class race {
  public:
   race(const std::string& flow, const std::vector<std::string>& methods) {
@@ -60,7 +60,7 @@ class race {
     }
   }
 
-  /// Returns for each method the time that a unit of time of the flow costs, relative to the usual one.
+  /// Returns the CPU time per unit of time of the flow for each method, relative to the usual one.
   std::vector<double> costs(std::size_t of_usual, const settings& options) {
     const double span = span_of(options.quick ? 0.001 : 0.2);
     std::vector<job> jobs;
@@ -80,7 +80,7 @@ class race {
   }
 
  private:
-  /// The time of the flow that about so many seconds reach.
+  /// Returns the time of the flow that the first run covers in about `seconds`.
   double span_of(double seconds) {
     const double start = wall_seconds();
     runs_.front()->advance();

@@ -23,7 +23,7 @@ job with(std::int64_t instructions, job body) {
   };
 }
 
-/// Measures seconds[set][turn] of `body` with each of the instruction sets.
+/// Measures seconds[set][turn] of `body` with each instruction set.
 std::vector<std::vector<double>> with_each(const std::vector<std::int64_t>& sets, const job& body,
                                            int turns) {
   std::vector<job> jobs;

@@ -8,8 +8,8 @@
 
 namespace apsis {
 
-/// Returns the values of sums over the terms of all processes, on all of them. Collective. The results do not
-/// depend on how the terms are distributed among processes.
+/// Returns the values of sums over the terms of all processes, on every process. Collective. The results do
+/// not depend on how the terms are distributed among processes.
 std::vector<double> global_values(communicator& processes, std::span<exact_sum> sums);
 
 /// Returns the smallest of the numbers of all processes. Collective.

@@ -11,9 +11,9 @@ struct memory_limit {
   std::string source;  ///< the limiting resource: "available memory of the machine", …
 };
 
-/// Returns the minimum of MemAvailable of the machine, the memory left in the control groups of the process
-/// (version 1 or 2, page cache counted as free), and the limit of its address space. `root` is the root of
-/// the file system with proc and sys; tests substitute their own.
+/// Returns the minimum of three limits: MemAvailable of the machine, the memory left in the control groups of
+/// the process, and the memory left in its address space. Control groups are of version 1 or 2; their page
+/// cache counts as free. `root` is the root of the file system with proc and sys; tests substitute their own.
 memory_limit available_memory(const std::filesystem::path& root = "/");
 
 /// Makes the GNU C library retain up to 2 GiB of freed memory for later allocations; has no effect on other C

@@ -33,8 +33,8 @@ class memory_space {
   virtual void copy_to_host(const double* from, std::size_t count, double* host) const = 0;
 };
 
-/// Returns the memory of the host. allocate() does not write to it, so that the thread that first writes a
-/// page gets the page near its core.
+/// Returns the memory of the host. allocate() does not write to it: each page lies near the core of the
+/// thread that first writes it.
 const memory_space& host_memory();
 
 /// Numbers in a memory space, released with the object that owns them.
@@ -52,7 +52,7 @@ class stored_numbers {
   double* data() { return data_; }                       ///< first number, null if empty
   const double* data() const { return data_; }           ///< first number, null if empty
   std::size_t size() const { return count_; }            ///< how many numbers
-  const memory_space& space() const { return *space_; }  ///< where they live
+  const memory_space& space() const { return *space_; }  ///< memory space of the numbers
 
  private:
   const memory_space* space_ = &host_memory();

@@ -16,9 +16,9 @@
 //   }
 //   APSIS_AFTER_FORMULAS();
 //   #endif
-// A kernel file is compiled once for each instruction set and includes the header as often, because a
-// function must carry the attributes of the instructions that it uses. APSIS_NUMBERS is the namespace of the
-// instruction set there; it is `scalar` in all other files.
+// A kernel file is compiled once for each instruction set, and includes the header as often. A function must
+// carry the attributes of the instructions that it uses. APSIS_NUMBERS is the namespace of the instruction
+// set there; it is `scalar` in all other files.
 //
 // Operations on numbers a, b, c of type N, beside + − * / and the comparisons < and >, which return a mask:
 //   N(x)                     the constant x;
@@ -29,7 +29,7 @@
 //   minimum(a, b)            as smaller, but unspecified if either is NaN or both are zeros; also maximum;
 //   absolute(a)              |a|;
 //   any<N>(mask), all<N>(mask)   whether the mask is set somewhere, or everywhere. A formula may use them to
-//                            skip work, not to change a result: a number must not depend on those beside it;
+//                            skip work, not to change a result: a number must not depend on its neighbours;
 //   inverse_power_of_two(a)  2^−e for a = 2^e m, 1 ≤ m < 2, a normal and below 2^1022;
 //   truncated(a)             a rounded towards 0, |a| < 2^31;
 //   power_of_two(a)          2^a for an integer −1022 ≤ a ≤ 1023;
@@ -104,7 +104,7 @@ template <class N>
 APSIS_FORMULA N maximum(N a, N b) {
   return a > b ? a : b;
 }
-/// Returns |a|.
+/// Returns the absolute value of a.
 APSIS_FORMULA double absolute(double a) {
   return __builtin_fabs(a);
 }
@@ -122,7 +122,7 @@ APSIS_FORMULA double from_bits(unsigned long long bits) {
 APSIS_FORMULA double inverse_power_of_two(double a) {
   return from_bits(0x7fe0000000000000ull - (bits_of(a) & 0x7ff0000000000000ull));
 }
-/// Returns a rounded towards 0, |a| < 2^31.
+/// Returns a rounded towards 0, for −2^31 < a < 2^31.
 APSIS_FORMULA double truncated(double a) {
   return __builtin_trunc(a) + 0.0;  // not −0; defined also for NaN, which a conversion to int is not
 }

@@ -19,8 +19,8 @@
 namespace apsis {
 namespace {
 
-/// Number of threads of the loops that this thread starts. It is not shared by the process, because another
-/// thread of Python could then change it after a loop has prepared scratch memory for its threads.
+/// Number of threads of the loops that this thread starts. It is not global: another thread of Python could
+/// change a global number after a loop has prepared scratch memory for its threads.
 thread_local int thread_count = 1;
 std::atomic<std::size_t> fewest_shared = fewest_shared_numbers;
 
@@ -118,7 +118,7 @@ part_blocks::part_blocks(int n, int longest, int parts) : n_(n), parts_(std::max
 }
 
 int part_blocks::begin(int block) const {
-  // Where the pieces of the last block begin, in eighths of it: a half, a quarter and two eighths.
+  // Begins of the pieces of the last block, in eighths of the block: a half, a quarter and two eighths.
   static constexpr int eighths[] = {0, 4, 6, 7};
   const int part = block / per_part(), i = block % per_part();
   if (part == parts_) return n_;

@@ -59,7 +59,7 @@ struct pack {
     return copy;
   }
 
-  /// Whether a comparison holds for any number of a pack, or for all of them.
+  /// Whether a comparison holds for any number of a pack, or for all numbers.
   template <class Mask>
   static HWY_INLINE bool any(Mask mask) {
     return !hn::AllFalse(D(), mask);

@@ -9,8 +9,8 @@
 namespace apsis {
 
 /// Returns finite differences whose operators run on a device, for problem_builder::with_discretization().
-/// States of the problem live in the memory of the device (field::copy_rows()). Results have the same bits as
-/// on the host.
+/// States of the problem are stored in the memory of the device (field::copy_rows()). Results have the same
+/// bits as on the host.
 ///
 ///   device& card = …;
 ///   auto problem =

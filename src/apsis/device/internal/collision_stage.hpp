@@ -7,9 +7,8 @@
 
 namespace apsis::kernels {
 
-/// The part of a stage of the BGK model that does not depend on the kind of velocities: u ← v with
-/// v = u + a Q(v)/ε + b Q̇(v)/ε² in every cell. Cells whose equilibrium the kernel does not find remain
-/// unchanged and are marked.
+/// A stage u ← v, v = u + a Q(v)/ε + b Q̇(v)/ε², in every cell. This part does not depend on the velocity
+/// grid. Cells whose equilibrium the kernel does not find remain unchanged and are marked.
 struct collision_stage {
   double* u;                       ///< rows of all cells
   double* marks;                   ///< mark of every cell: 1 if the cell remains unchanged, else 0

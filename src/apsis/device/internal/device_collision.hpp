@@ -15,11 +15,10 @@
 namespace apsis {
 
 /// make_pointwise_collision() on a device, with the same bits. It solves stages of the BGK, Shakhov and
-/// ellipsoidal models on velocity grids that are products of lines. The host solves two kinds of cells,
-/// row by row: those whose target is cut off, and those whose equilibrium Newton's method does not find
-/// from a Gaussian.
+/// ellipsoidal models on velocity grids that are products of lines. The host solves the other cells, row by
+/// row: their target is cut off, or Newton's method does not find their equilibrium from a Gaussian.
 ///
-/// Its states live in the memory of the device.
+/// States are stored in the memory of the device.
 class device_collision final : public collision {
  public:
   /// `on` and `equation` must outlive the operator. The other arguments are those of
@@ -33,9 +32,9 @@ class device_collision final : public collision {
   void solve(double t, double a, double b, field& u) override;
   /// Runs on the host, with copies of the states.
   void add_collision(double t, const field& u, std::span<const target<field, double>> targets) override;
-  /// On the host, with a copy of the state.
+  /// Runs on the host, with a copy of the state.
   double forward_euler_step(const field& u) const override;
-  /// On the host, with a copy of the state.
+  /// Runs on the host, with a copy of the state.
   double relaxation_time(const field& u) const override;
   double take_cut() override;
   /// Returns how many cells the host has solved in all stages so far.

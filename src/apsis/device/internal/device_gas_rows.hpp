@@ -20,7 +20,7 @@ class device_gas_rows {
 
   /// Returns the numbers of view(), without its pointers.
   static kernels::gas_rows shape(const gas& molecules);
-  /// Returns the arguments of kernels, which live as long as this object.
+  /// Returns the arguments of kernels. Their pointers are valid as long as this object lives.
   kernels::gas_rows view() const;
 
  private:

@@ -23,7 +23,7 @@ std::string kernel_of_reconstruction(const std::string& name);
 /// upwind_transport on a device, with the same bits. The host evaluates boundaries with the rows next
 /// to them.
 ///
-/// Its states live in the memory of the device.
+/// States are stored in the memory of the device.
 class device_transport final : public transport {
  public:
   /// `on`, `equation` and `unknown` must outlive the operator. `kernel` is kernel_of_reconstruction() of the

@@ -40,8 +40,8 @@ APSIS_FORMULA void put_gaussian(const Group& group, const gas_rows::direction& o
     put(j, gaussian_start(curve.a, group.load(of.v + j, of.n - j) - curve.u, curve.per()));
 }
 
-/// The equilibrium of a cell as a product of one function along each direction: a Gaussian, or the weights
-/// next to it that Newton's method finds.
+/// The equilibrium of a cell as a product of one function along each direction. It is a Gaussian, or the
+/// weights next to it that Newton's method finds.
 template <int Dimensions>
 struct grid_equilibrium {
   fluid_state of_g;                       ///< state of g alone
@@ -52,8 +52,7 @@ struct grid_equilibrium {
   line_moments moments;                   ///< moments of the product, if known
 
   /// Finds the equilibrium of moments ω with the state s, together with the other lanes of the block. `free`
-  /// is shared memory for as many numbers as the directions have points. Other lanes may read the functions
-  /// after the next wait.
+  /// is shared memory for gas_rows::points numbers. Other lanes may read the functions after the next wait.
   template <class Group>
   APSIS_FORMULA void find(const Group& group, const gas_rows& rows, equilibrium_formulas closed_forms,
                           const double* omega, const fluid_state& s, double* free) {

@@ -11,7 +11,7 @@
 //
 //   lane.index(), lane.count()    number of this lane in its block, and number of lanes
 //   lane.block(), lane.blocks()   number of its block, and number of blocks
-//   lane.shared()                 memory of the block, as many numbers as the launch asks for, undefined
+//   lane.shared()                 memory of the block with the numbers that the launch requests, undefined
 //   lane.wait()                   waits for all lanes of the block
 //
 // Kernels consist of formulas (exec/number.hpp) on doubles, and are compiled for the host as well, where the

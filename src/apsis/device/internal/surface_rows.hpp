@@ -50,8 +50,7 @@ class surface_rows {
   std::span<const double> rates() const { return faces_.rates(); }
 
  private:
-  /// Ends of segments at which components enter, for one direction and side; no two of them are at the
-  /// same cell.
+  /// Ends of segments at which components enter, for one direction and side; each cell has at most one.
   struct entries {
     double spacing = 1.0;
     std::vector<std::array<int, 3>> ends;  ///< in the layout of kernels::enter

@@ -14,15 +14,15 @@ namespace apsis {
 /// The segments of one direction on a device, and the speeds along it.
 class swept_segments {
  public:
-  /// `halo`: how many cells beyond a piece fluxes need the edges of; `ghosts`: how many rows there are beyond
+  /// `halo`: number of cells beyond a piece whose edge values fluxes need; `ghosts`: number of rows beyond
   /// each end.
   swept_segments(device& on, const domain& space, const surface_rows& surfaces, int direction, int halo,
                  int ghosts);
 
   /// Sets the speeds of the components.
   void set_speeds(const line_speeds& of);
-  /// Starts the sweep `kernel`. The caller sets the states and targets in `arguments`; this function sets
-  /// the rest.
+  /// Starts the sweep `kernel`. The caller sets the states and targets in `arguments`; this function sets the
+  /// other members.
   void sweep(const std::string& kernel, kernels::sweep_arguments arguments) const;
 
  private:

@@ -117,8 +117,8 @@ int apsis_method_fact(const apsis_method* method, const char* key, double* value
 
 // Callbacks -------------------------------------------------------------------------------------------------
 
-/// Callbacks return 0 on success. A positive number rejects the state, as if it were NaN: a step controlled
-/// by a tolerance is repeated with a smaller length; any other step ends the integration with
+/// Callbacks return 0 on success. A positive number rejects the state, as if it were NaN. Steps controlled by
+/// a tolerance are then repeated with a smaller length; others end the integration with
 /// APSIS_NUMERICAL_ERROR. A negative number ends it with APSIS_CALLBACK_ERROR. `data` is the pointer given to
 /// apsis_set_data(), and `n` the number of unknowns in `u`. Outputs have undefined contents before the call.
 

@@ -35,8 +35,8 @@ extern "C" {
 
 // Callbacks -------------------------------------------------------------------------------------------------
 
-/// Callbacks return 0 on success. A positive number rejects the state: a step controlled by a tolerance is
-/// repeated with a smaller length; any other step ends the integration with APSIS_NUMERICAL_ERROR. A negative
+/// Callbacks return 0 on success. A positive number rejects the state. Steps controlled by a tolerance are
+/// then repeated with a smaller length; others end the integration with APSIS_NUMERICAL_ERROR. A negative
 /// number ends it with APSIS_CALLBACK_ERROR. `data` is the pointer given to apsis_sundials_set_user_data().
 
 /// ydot ← T(t, y) or Q(t, y): ARKRhsFn.
@@ -102,7 +102,7 @@ int apsis_sundials_set_user_data(apsis_sundials* integrator, void* data);
 int apsis_sundials_set_stage(apsis_sundials* integrator, apsis_sundials_stage_function* stage);
 /// Sets the linear solver, which the integrator does not own. It is iterative without a matrix, or direct
 /// with a matrix that supports products with vectors and c A + I. A direct solver factorizes I − γJ, γ =
-/// √|b|, which preconditions GMRES from both sides. For methods without second derivatives (b = 0, γ = a) it
+/// √|b|, to precondition GMRES from both sides. For methods without second derivatives (b = 0, γ = a) it
 /// solves the systems alone. By default GMRES solves them. Error: APSIS_INPUT_ERROR for other pairs.
 int apsis_sundials_set_linear_solver(apsis_sundials* integrator, SUNLinearSolver solver, SUNMatrix matrix);
 /// Sets products with the Jacobian, and the function that prepares them, or NULL. Without products and
@@ -174,8 +174,8 @@ int apsis_sundials_evolve(apsis_sundials* integrator, sunrealtype tout, N_Vector
 int apsis_sundials_one_step(apsis_sundials* integrator, sunrealtype tout, N_Vector y, sunrealtype* treached);
 /// Returns the time reached; NaN for NULL.
 sunrealtype apsis_sundials_time(const apsis_sundials* integrator);
-/// Writes the solution at a time of the last step to y, with the order of the method and its positivity, as
-/// apsis_state_at() does: ARKStepGetDky with k = 0.
+/// Writes the solution at a time of the last step to y, as apsis_state_at() does. It has the order and the
+/// positivity of the method: ARKStepGetDky with k = 0.
 int apsis_sundials_state_at(apsis_sundials* integrator, sunrealtype t, N_Vector y);
 /// Sets *k and *t to the function and the time of an event; `index` counts events from 0 in the order of
 /// time. Error: APSIS_INPUT_ERROR unless index < apsis_sundials_count(integrator, APSIS_SUNDIALS_EVENTS).
@@ -206,10 +206,10 @@ long long apsis_sundials_count(const apsis_sundials* integrator, int counter);
 int apsis_sundials_make_stepper(apsis_sundials* integrator, SUNStepper* stepper);
 #endif
 
-/// Returns a copy of y whose scalar products and norms do not depend on how the vector is divided among
-/// threads or processes, because their sums are exact until the last rounding. N_VDestroy() releases the
-/// copy. A linear solver made from it, such as SUNLinSol_SPGMR(copy, …), has the same bits on any number of
-/// processes; so has the default linear solver. Returns NULL if memory or an operation is missing.
+/// Returns a copy of y whose scalar products and norms are exact sums, rounded once. They do not depend on
+/// how the vector is divided among threads or processes. N_VDestroy() releases the copy. A linear solver made
+/// from it, such as SUNLinSol_SPGMR(copy, …), has the same bits on any number of processes; so has the
+/// default linear solver. Returns NULL if memory or an operation is missing.
 N_Vector apsis_sundials_clone(N_Vector y);
 
 #ifdef __cplusplus

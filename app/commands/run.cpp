@@ -116,7 +116,7 @@ int run_on(const std::shared_ptr<communicator>& processes, run_options options) 
 }
 
 int run(const run_options& options) {
-  // This comes first, so that an interrupt before the first step has the same effect as a later one.
+  // The handler is set first, so that an interrupt before the first step has the same effect as a later one.
   watch_for_interrupts(reports_errors() ? "the current step, and a checkpoint if there is a folder (--out)"
                                         : nullptr);
   return on_all_processes(

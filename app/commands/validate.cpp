@@ -119,7 +119,7 @@ class comparison {
             {"wall_s", wall},       {"quantities", quantities}, {"warnings", warnings_.messages()}};
   }
 
-  /// Returns how many reference values are computed, and how many of them are not met.
+  /// Returns how many reference values are computed, and how many are not met.
   std::pair<std::size_t, std::size_t> counts() const {
     const auto failed =
         std::count_if(done_.begin(), done_.end(), [](const auto& one) { return !one.holds(); });

@@ -9,8 +9,8 @@
 
 namespace apsis::paper {
 
-/// Returns a picture of a study that varies time.method, model.epsilon and then the mesh or the step, as in
-/// the figures of the paper: one panel per method, one curve per epsilon, error against Δt.
+/// Returns a picture of a study that varies time.method, model.epsilon and then the mesh or the step. As in
+/// the paper, it has one panel per method and one curve per epsilon, the error against Δt.
 picture accuracy_picture(const convergence_table& table, const std::string& name, const std::string& title,
                          const std::string& caption);
 

@@ -6,10 +6,11 @@ namespace apsis::paper {
 
 /// Exact solution of the Riemann problem of the Broadwell limit system (paper, eq. broadlimit)
 ///     ρ_t + m_x = 0,   m_t + ((ρ² + m²)/(2ρ))_x = 0,   (ρ, m) = left for x < 0, right for x > 0.
-/// With u = m/ρ the characteristic speeds are λ∓ = (u ∓ √(2 − u²))/2. Through a rarefaction dm/dρ = λ. With u
-/// = √2 sin θ, ln ρ + θ + ln(cos θ + sin θ) is therefore constant in the slow wave, and ln ρ − θ + ln(cos θ −
-/// sin θ) in the fast one. A shock obeys s[ρ] = [m] and s[m] = [(ρ² + m²)/(2ρ)], a quadratic equation for the
-/// ratio of the densities. Bisection on u finds the state between the two waves. Dimensionless.
+/// With u = m/ρ the characteristic speeds are λ∓ = (u ∓ √(2 − u²))/2. Through a rarefaction dm/dρ = λ.
+/// With u = √2 sin θ, the slow wave therefore has a constant ln ρ + θ + ln(cos θ + sin θ), and the fast
+/// wave a constant ln ρ − θ + ln(cos θ − sin θ). A shock obeys s[ρ] = [m] and s[m] = [(ρ² + m²)/(2ρ)], a
+/// quadratic equation for the ratio of the densities. Bisection on u finds the state between the two
+/// waves. Dimensionless.
 class broadwell_riemann {
  public:
   /// The unknowns at one point.

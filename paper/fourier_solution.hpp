@@ -14,9 +14,9 @@ namespace apsis::paper {
 /// compared with it.
 class fourier_solution {
  public:
-  /// Computes the solution from initial data on [a, b] to t = end, with an odd number of collocation points
-  /// and `steps` steps. initial(x, ω) sets ω at x. Systems without space have one point. Throws input_error
-  /// for an even number of points.
+  /// Computes the solution from initial data on [a, b] to t = end. It has an odd number of collocation points
+  /// and takes `steps` steps. The function `initial` sets ω at x. Systems without space have one point.
+  /// Throws input_error for an even number of points.
   fourier_solution(const limit_equations& system, double a, double b, int points,
                    const std::function<void(double, std::span<double>)>& initial, double end, int steps);
 

@@ -13,8 +13,8 @@ namespace apsis::paper {
 /// not written.
 fourier_solution limit_solution(const case_config& config, int points = 129, int steps = 1000);
 
-/// Returns the relative L2 distance of ω from that solution after a run of the production code with ε = 0,
-/// summed over the components of ω. It compares averages or point values, as in the case.
+/// Runs the production code with ε = 0. Returns the relative L2 distance of ω from that solution, summed over
+/// the components of ω. It compares averages or point values, as in the case.
 double distance_from_limit_solution(const case_config& config, const fourier_solution& solution,
                                     const study_control& control = {});
 

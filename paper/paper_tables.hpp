@@ -17,7 +17,7 @@ struct printed_condition {
 };
 
 /// Returns the table of order conditions of two-derivative implicit methods up to order 4, typed from the
-/// paper in its b, c notation (section "Formulating the order conditions").
+/// paper in its b, c notation. Its section is "Formulating the order conditions".
 std::vector<printed_condition> printed_implicit_conditions(const butcher_form<double>& t);
 /// Returns the table of multi-derivative IMEX methods up to order 3 (paper, section "Formulating
 /// order conditions").

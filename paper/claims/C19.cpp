@@ -87,7 +87,7 @@ report_table slopes(const method_errors& m) {
   return t;
 }
 
-/// Returns the change of the references with another tolerance and one column fewer.
+/// Returns the change of the references with a tolerance ten times as large and one column fewer.
 double doubt_of_references(const study_control& control) {
   std::vector<double> moved(epsilon_count);
   run_all(control, "uncertainty of the references", static_cast<int>(epsilon_count), [&](int e) {

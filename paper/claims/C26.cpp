@@ -18,9 +18,9 @@ namespace {
 constexpr const char* name = "imdrk-9-5";
 constexpr long double modulus = 0.8L, end = 4.0L;
 
-/// Returns the maximum error at t = 4, in long double, for the free rigid body: y' = (y₂y₃, −y₁y₃,
-/// −k²y₁y₂), y(0) = (0, 1, 1), with the solution y = (sn, cn, dn)(t, k). In a system no two trees give the
-/// same differential.
+/// Returns the maximum error at t = 4, in long double, for the free rigid body. Its equation is y' = (y₂y₃,
+/// −y₁y₃, −k²y₁y₂), y(0) = (0, 1, 1), with the solution y = (sn, cn, dn)(t, k). In this system no two trees
+/// have the same differential.
 double rigid_body_error(long steps) {
   const auto body = [](const auto& y, auto& out) {
     out[0] = y[1] * y[2];

@@ -14,8 +14,9 @@ namespace apsis::validation {
 namespace coaxial_quantity {
 namespace {
 
-/// Speed of the inner wall, and the difference of temperature. The equation of the run is nonlinear: terms of
-/// second order are up to these numbers, relative to the value, and below the error of the mesh.
+/// Speed of the inner wall, and the difference of temperature. The equation of the run is nonlinear.
+/// Relative to the value, terms of second order are at most as large as these numbers, and below the error
+/// of the mesh.
 constexpr double speed = 0.01, heat = 0.002;
 
 // For ρ = T = 1 a mass √(1/2π) arrives per unit of time and area. It leaves with the velocity of the wall, or

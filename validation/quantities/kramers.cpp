@@ -9,8 +9,8 @@ namespace apsis::validation {
 namespace kramers_quantity {
 namespace {
 
-/// Returns the value at `at` of a smooth function with the term y log y of a layer at y = 0, from its values
-/// at y_i.
+/// Returns the value at `at` of a function from its values at y_i. It is smooth but for the term y log y of a
+/// layer at y = 0.
 double interpolated(const std::vector<double>& y, const std::vector<double>& values, double at) {
   const auto singular = [](double s) { return s > 0.0 ? s * std::log(s) : 0.0; };
   if (at < y[1]) {

@@ -1,6 +1,6 @@
-// Parallel loops over blocks of cells: the thread team of the library compared with TBB (if available) and
-// OpenMP, for bodies that last as long as a block of a sweep. "of_ceiling" is the speed relative to that of
-// the bodies alone on as many processors.
+// Parallel loops over blocks of cells: the thread team of the library compared with OpenMP, and with TBB if
+// available. Bodies last as long as a block of a sweep. "of_ceiling" is the speed relative to that of the
+// bodies alone on as many processors.
 #include <apsis/exec/parallel.hpp>
 
 #include <chrono>

@@ -8,8 +8,8 @@
 
 namespace apsis::bench {
 
-/// Measures the bytes per second of a = b + s·c on arrays of `count` doubles each (24 bytes per element): the
-/// best of several runs, because a ceiling is the performance of an undisturbed machine.
+/// Measures the bytes per second of a = b + s·c on arrays of `count` doubles each, 24 bytes per element.
+/// Returns the best of several runs, because a ceiling is the performance of an undisturbed machine.
 inline double triad_bytes_per_second(std::size_t count) {
   aligned_vector<double> a(count, 0.0), b(count, 1.0), c(count, 2.0);
   const std::size_t sweeps = std::max<std::size_t>(1, (std::size_t{1} << 22) / count);

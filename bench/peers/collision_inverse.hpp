@@ -32,8 +32,8 @@ class collision_inverse {
 std::unique_ptr<collision_inverse> make_bgk_inverse(const relaxation_model& equation,
                                                     std::vector<double> rates);
 
-/// Returns the inverse for Broadwell's model on point values: Q = d q with d = (1, −1, 1), q = f₀² − f₊f₋ and
-/// g = ∇q = (−f₋, 2f₀, −f₊) gives J = d gᵀ/ε of rank one with gᵀd = −ρ, and
+/// Returns the inverse for Broadwell's model on point values. There Q = d q with d = (1, −1, 1) and q = f₀² −
+/// f₊f₋. With g = ∇q = (−f₋, 2f₀, −f₊), J = d gᵀ/ε has rank one, gᵀd = −ρ, and
 ///   (I − γJ)⁻¹ r = r + d gᵀr λ/(1 + λρ),    λ = γ/ε.
 std::unique_ptr<collision_inverse> make_broadwell_inverse(std::vector<double> rates);
 

@@ -74,21 +74,22 @@ class contest {
   /// `repeats` times; their CPU time is the median.
   void run(int repeats, double seconds_each);
 
-  /// After run(), adds columns, rows and runs to a table: the best of Apsis, every contestant or only the
-  /// others, the best of the others, and the best of the baselines. If ε is given, it is the first column.
+  /// After run(), adds columns, rows and runs to a table. Rows are the best of Apsis, every contestant or
+  /// only the others, the best of the others, and the best of the baselines. If ε is given, it is the
+  /// first column.
   void add_to(result_table& result, std::optional<double> epsilon, bool only_others) const;
 
   /// After run(), returns a row for each contestant, or only for the others. For every error it has the CPU
-  /// time, in brackets the time relative to the best of Apsis, and the smallest unknown if signs are shown.
-  /// The best of Apsis then has nonnegative unknowns.
+  /// time, and in brackets the time relative to the best of Apsis. If signs are shown, it has the smallest
+  /// unknown too. The best of Apsis then has nonnegative unknowns.
   std::vector<std::vector<nlohmann::json>> rows(bool only_others) const;
   /// After run(), returns for every error the time and the method of the best run of Apsis. Three rows are
   /// for all methods, for those with an SSP coefficient, and for steps chosen by a tolerance. Rows without
   /// any run are left out.
   std::vector<std::vector<nlohmann::json>> best_of_ours() const;
-  /// After run(), returns for every error the name of the best of the others, and its time relative to the
-  /// best of Apsis with the same lower bound of the unknowns. If signs are shown, three rows are for runs
-  /// that stay nonnegative, for those that do up to rounding, and for all.
+  /// After run(), returns for every error the name of the best of the others, and its relative time. This is
+  /// relative to the best of Apsis with the same lower bound of the unknowns. If signs are shown, three rows
+  /// are for runs that stay nonnegative, for those that do up to rounding, and for all.
   std::vector<std::vector<nlohmann::json>> best_of_others() const;
   /// Does the same for the baselines; no rows without baselines.
   std::vector<std::vector<nlohmann::json>> best_of_baselines() const;

@@ -67,7 +67,7 @@ double find_broadwell_reference(kinetic_task& task, bool quick) {
 }
 
 /// Returns numbers of equal steps. The longest steps span four cells or ten relaxation times (the rate is ρ/ε
-/// with ρ ≤ 5); only methods of many stages are stable for them. All methods but ssprk-2-2 have errors below
+/// with ρ ≤ 5). Only methods of many stages are stable for these. All methods but ssprk-2-2 have errors below
 /// 1e-8 with 1280 steps. Returns no numbers if the runs would exceed the time limit by far.
 std::vector<long> explicit_steps_of_broadwell(double end, double epsilon) {
   std::vector<long> all;

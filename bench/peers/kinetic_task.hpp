@@ -39,18 +39,18 @@ class kinetic_task {
   semidiscrete_problem& problem() { return *smooth_; }
   /// Returns the inverse of I − γJ for the Jacobian J of the collision.
   std::unique_ptr<collision_inverse> inverse() const;
-  /// Returns the number of steps of an integrator in [0, end] at the largest Δt for which f stays
-  /// nonnegative, r Δt_FE (r = 1 if that is unknown).
+  /// Returns the number of steps of an integrator in [0, end] of the length r Δt_FE, the largest for which f
+  /// stays nonnegative. Without a known r, r = 1.
   long positive_steps(const std::string& name) const;
 
-  /// Runs `steps` equal steps of an integrator of integrators.hpp; With `graded` the first of them is divided
+  /// Runs `steps` equal steps of an integrator of integrators.hpp. With `graded` the first of them is divided
   /// into steps that resolve the initial layer.
   outcome run(const std::string& name, long steps, bool graded, double seconds_allowed,
               field* result = nullptr);
   /// Runs a method with an embedded solution to a tolerance of the steps, relative to f in the 2-norm.
   outcome run_to_tolerance(const method& m, double tolerance, double seconds_allowed);
-  /// Computes the solution by extrapolated Euler steps of order 8 with a bound of the error of a step,
-  /// relative to f in the 2-norm (integrate/extrapolation.hpp).
+  /// Returns the solution by extrapolated Euler steps of order 8 (integrate/extrapolation.hpp). `tolerance`
+  /// bounds the error of a step, relative to f in the 2-norm.
   field extrapolated(double tolerance);
 
   void set_reference(field exact) { reference_ = std::move(exact); }

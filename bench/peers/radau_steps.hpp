@@ -39,8 +39,8 @@ struct radau_tableau {
   }
 };
 
-/// Integrates u' = F(t, u) by Radau IIA of order 5 with the error estimate, the simplified Newton iteration,
-/// its starting values and the predictive step control of RADAU5 (Hairer, Wanner, Solving Ordinary
+/// Integrates u' = F(t, u) by Radau IIA of order 5. The error estimate, the simplified Newton iteration, its
+/// starting values and the predictive step control are those of RADAU5 (Hairer, Wanner, Solving Ordinary
 /// Differential Equations II, section IV.8). With J = ∂F/∂u, a System has
 ///   vector, stages                types of u and of [Z₁, Z₂, Z₃], Z_i = Y_i − u
 ///   initial(), rate(t, u)         the initial u; F(t, u), NaN where it is undefined

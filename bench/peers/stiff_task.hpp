@@ -26,8 +26,8 @@ class stiff_task {
   virtual Eigen::Matrix2d transport_jacobian(const state& u) const = 0;
   virtual Eigen::Matrix2d collision_jacobian(const state& u) const = 0;
 
-  /// Runs `steps` equal steps of an integrator of integrators.hpp; with a `growth` other than 0, the first of
-  /// them is divided into steps that resolve the initial layer, whose times grow by this factor. Seconds are
+  /// Runs `steps` equal steps of an integrator of integrators.hpp. With a `growth` other than 0, the first
+  /// step is divided into steps that resolve the initial layer; their times grow by this factor. Seconds are
   /// those of one of many integrations, without the construction of the stepper.
   virtual outcome run(const std::string& name, long steps, int growth) const = 0;
   /// Runs a method with an embedded solution to a tolerance of the steps, relative to u in the 2-norm.
@@ -45,13 +45,14 @@ class stiff_task {
   ode_state<long double> exact_;
 };
 
-/// The ODE model of the paper (apsis/verify/ode_model.hpp): u2 is initially out of equilibrium.
+/// Returns the ODE model of the paper (apsis/verify/ode_model.hpp); u2 is initially out of equilibrium.
 std::unique_ptr<stiff_task> make_ode_model(double epsilon);
-/// Kaps' problem in the variables u1 = y2, u2 = y1: u1' = u2 − u1 − u1², u2' = −2u2 + (u1² − u2)/ε from (1,
-/// 1), with the solution u1 = e^{−t}, u2 = u1² for every ε (Kaps, Rentrop, Numer. Math. 33 (1979) 55–68).
+/// Returns Kaps' problem in the variables u1 = y2, u2 = y1: u1' = u2 − u1 − u1², u2' = −2u2 + (u1² −
+/// u2)/ε from (1, 1). The solution is u1 = e^{−t}, u2 = u1² for every ε (Kaps, Rentrop, Numer. Math. 33
+/// (1979) 55–68).
 std::unique_ptr<stiff_task> make_kaps(double epsilon);
-/// Prothero and Robinson's problem y' = φ'(t) + (φ(t) − y)/ε with φ = sin(π/4 + t) and time as u1, from y =
-/// φ(0) (Prothero, Robinson, Math. Comp. 28 (1974) 145–162).
+/// Returns Prothero and Robinson's problem y' = φ'(t) + (φ(t) − y)/ε with φ = sin(π/4 + t) and time as u1,
+/// from y = φ(0) (Prothero, Robinson, Math. Comp. 28 (1974) 145–162).
 std::unique_ptr<stiff_task> make_prothero_robinson(double epsilon);
 
 /// Returns the seconds per call of `body`, averaged over enough calls for the resolution of the clock.

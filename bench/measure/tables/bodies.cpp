@@ -23,7 +23,7 @@ case_config without_bodies(case_config of) {
 }
 
 /// Returns the time of some steps per unknown in a cut cell. It is the time for lines and fluxes of cut
-/// cells, plus the time of all work that does not depend on the kind of cell.
+/// cells, plus that of all work that does not depend on the kind of cell.
 double time_of_cut_unknown(simulation& flow, int steps) {
   profile::start();
   const double start = wall_seconds();

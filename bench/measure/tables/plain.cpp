@@ -70,7 +70,7 @@ double relative_difference(const std::vector<double>& a, const std::vector<doubl
   return std::sqrt(difference / size);
 }
 
-/// The same run in several implementations.
+/// One run in several implementations.
 struct contest {
   explicit contest(const std::string& name)
       : config(case_with(name)),

@@ -15,7 +15,7 @@ namespace {
 
 /// Returns the ideal speedup of the machine: that of multiply–adds in registers, which share nothing, from
 /// one thread to two simultaneous threads. They run for about `seconds`, in `pieces` with a barrier after
-/// each. A step has as many pieces as passes over the field.
+/// each. A step has one piece per pass over the field.
 double ideal(double seconds, int pieces, int repeats) {
   constexpr double sample = 2e7;
   const double count = seconds / seconds_of_multiply_adds(sample) * sample / pieces;

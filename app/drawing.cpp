@@ -29,7 +29,7 @@ namespace fs = std::filesystem;
 /// The output of a child process that is suppressed.
 enum class dropped { nothing, output, everything };
 
-/// Waits for a child process and returns its termination status. Meanwhile interrupts are forwarded to it.
+/// Waits for a child process and returns its termination status. Meanwhile forwards interrupts to it.
 int status_of(pid_t child) {
   {
     const forwarded_interrupts forwarding(child);

@@ -45,8 +45,7 @@ json embedded_json(const method& m, const certificate& c) {
           {"buffers", steps.buffers()}};
 }
 
-/// Returns the error estimate of a method. For a method file, which has no stored weight, the certificate
-/// has it.
+/// Returns the error estimate of a method. For a method file the weight is that of the certificate.
 step_estimate estimate_of(const method& m, const certificate& c) {
   step_estimate how = apsis::estimate_of(m);
   if (!how.doubles && c.embedded) how.weight = c.embedded->weight;

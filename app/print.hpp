@@ -4,8 +4,8 @@
 
 namespace apsis::app {
 
-/// Writes results to standard output. printable() escapes them, which in JSON and TOML stands for the same
-/// characters. Throws io_error if that fails.
+/// Writes results to standard output. printable() escapes control characters; in JSON and TOML the escapes
+/// stand for the same characters. Throws io_error if that fails.
 void print(const std::string& text);
 
 }  // namespace apsis::app

@@ -1,7 +1,8 @@
-// Uses the integrator with a state type of your own. The problem is the relaxation system u_t + v_x = 0, v_t
-// + u_x = (u²/2 − v)/ε on a periodic interval of length 1. Differences are upwind in its characteristic
-// variables u ± v. Its limit for ε → 0 is Burgers' equation. The state need only be copyable; the problem
-// implements three functions of problem.hpp.
+// Uses the integrator with a state type of your own. The problem is the relaxation system
+//   u_t + v_x = 0,   v_t + u_x = (u²/2 − v)/ε
+// on a periodic interval of length 1. Differences are upwind in its characteristic variables u ± v. Its limit
+// for ε → 0 is Burgers' equation. The state need only be copyable; the problem implements three functions of
+// problem.hpp.
 #include <apsis/core/relaxation_weights.hpp>
 #include <apsis/integrate/integrate.hpp>
 

@@ -16,11 +16,11 @@ struct printed_condition {
       right;         ///< right-hand side as printed
 };
 
-/// Returns the table of order conditions of two-derivative implicit methods up to order 4, typed from the
-/// paper in its b, c notation. Its section is "Formulating the order conditions".
+/// Returns the order conditions of two-derivative implicit methods up to order 4, as the paper prints them in
+/// its b, c notation (section "Formulating the order conditions").
 std::vector<printed_condition> printed_implicit_conditions(const butcher_form<double>& t);
-/// Returns the table of multi-derivative IMEX methods up to order 3 (paper, section "Formulating
-/// order conditions").
+/// Returns the order conditions of multi-derivative IMEX methods up to order 3, as the paper prints them
+/// (section "Formulating order conditions").
 std::vector<printed_condition> printed_imex_conditions(const butcher_form<double>& t);
 
 /// An entry of a matrix, counted from 1 as in the paper.

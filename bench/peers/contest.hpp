@@ -15,7 +15,7 @@ namespace apsis::bench::peers {
 struct outcome {
   double seconds = 0.0;         ///< CPU time of the steps, without monitoring
   double error = 0.0;           ///< error at the end time
-  double smallest = 0.0;        ///< smallest unknown after all steps
+  double smallest = 0.0;        ///< smallest unknown over all steps
   double smallest_final = 0.0;  ///< smallest unknown at the end
   long steps = 0;
   std::string failure = {};  ///< empty if the end time was reached

@@ -51,7 +51,7 @@ panel draw_pair(const pair_of_methods& methods, claim_result& result) {
   const std::string steps = fmt::format("of {} steps 1/4 … 1/{}", total, finest);
   result.findings.push_back(
       exactly(fmt::format("{}: positive and decreasing for how many {}", methods.ssp, steps), right, total));
-  // Only for the step 1/64 < 1/50 the second-order DIRK method is harmless.
+  // Only for the step 1/64 < 1/50 is the second-order DIRK method harmless.
   const int harmless = std::string(methods.dirk) == "dirk-2-2" ? 1 : 0;
   result.findings.push_back(
       exactly(fmt::format("{}: not so for how many {}", methods.dirk, steps), wrong, total - harmless));

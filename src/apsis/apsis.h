@@ -247,8 +247,8 @@ int apsis_set_event_observer(apsis_integrator* integrator, apsis_event_observer_
 /// copied. Methods that need equal steps restart at each. count = 0 removes them.
 int apsis_set_stop_times(apsis_integrator* integrator, size_t count, const double* times);
 
-/// Sets the time, the state, n numbers that are copied, and all counters to 0. Error: APSIS_INPUT_ERROR if a
-/// number is not finite.
+/// Sets the time and the state, n numbers that are copied, and resets all counters to 0. Error:
+/// APSIS_INPUT_ERROR if a number is not finite.
 int apsis_start(apsis_integrator* integrator, double t0, const double* u0);
 /// Integrates from the time reached to t1 and ends exactly there. After an error the state is that of the
 /// last accepted step; the integration may be continued with other settings. Methods that need equal steps

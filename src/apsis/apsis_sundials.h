@@ -1,9 +1,9 @@
 /// Apsis for programs that use SUNDIALS: time integration of u' = T(t, u) + Q(t, u), where u is any N_Vector.
 ///
 /// The transport T is explicit and the collision Q implicit, as f_E and f_I of ARKODE. Callbacks have the
-/// types of ARKODE. Functions and callbacks name their counterpart there after a colon, as in ":
-/// ARKStepReset". Only the operations of vectors access their data, and any SUNLinearSolver may solve linear
-/// systems. All quantities are dimensionless. docs/sundials.md has an example.
+/// types of ARKODE. A name after a final colon, such as ARKStepReset, is the counterpart in SUNDIALS. Only
+/// the operations of vectors access their data, and any SUNLinearSolver may solve linear systems. All
+/// quantities are dimensionless. docs/sundials.md has an example.
 ///
 /// Functions that return an int return one of apsis_status (apsis.h). Errors are negative;
 /// apsis_error_message() describes the last error of the calling thread. There is no global state: threads
@@ -90,7 +90,7 @@ void apsis_sundials_free(apsis_sundials* integrator);
 /// Settings other than data and observers restart the control of step lengths. In callbacks, all settings,
 /// apsis_sundials_reset() and apsis_sundials_evolve() return APSIS_INPUT_ERROR.
 
-/// Sets the time, the state, which is copied, and all counters to 0: ARKStepReset.
+/// Sets the time and the state, which is copied, and resets all counters to 0: ARKStepReset.
 int apsis_sundials_reset(apsis_sundials* integrator, sunrealtype t, N_Vector y);
 /// Sets the last argument of all callbacks, initially NULL.
 int apsis_sundials_set_user_data(apsis_sundials* integrator, void* data);
@@ -135,7 +135,7 @@ int apsis_sundials_set_safety(apsis_sundials* integrator, sunrealtype safety);
 /// w_i = 1/(relative |y_i| + absolute). relative ≥ 0, and absolute > 0; both 0 removes the control:
 /// ARKStepSStolerances.
 int apsis_sundials_set_tolerance(apsis_sundials* integrator, sunrealtype relative, sunrealtype absolute);
-/// Does the same with an absolute tolerance for each unknown: positive numbers, which are
+/// Does the same with an absolute tolerance for each unknown, positive numbers that are
 /// copied: ARKStepSVtolerances.
 int apsis_sundials_set_tolerances(apsis_sundials* integrator, sunrealtype relative, N_Vector absolute);
 /// Sets the law of step control, as apsis_set_controller(): ARKStepSetAdaptivityMethod.

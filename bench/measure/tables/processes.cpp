@@ -197,8 +197,7 @@ void measure_gas(const gas& whole, const settings& options, result_table& result
                                   {"dimensions", whole.dimensions},
                                   {"components", together.run()->setup().equation->components()},
                                   {"seconds_per_point", median(seconds_alone) / points},
-                                  {"exchanges", of.messages},  // with two processes, an exchange is
-                                                               // one message
+                                  {"exchanges", of.messages},  // two processes: one message each
                                   {"reductions", of.reductions}});
   result.rows.push_back({whole.name, fmt::format("{:.2g}", points), all->size(), 1e3 * median(seconds),
                          fmt::format("{:.0f} %", 100.0 * median(weak)),

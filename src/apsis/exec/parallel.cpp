@@ -118,7 +118,7 @@ part_blocks::part_blocks(int n, int longest, int parts) : n_(n), parts_(std::max
 }
 
 int part_blocks::begin(int block) const {
-  // Begins of the pieces of the last block, in eighths of the block: a half, a quarter and two eighths.
+  // Starts of the pieces of the last block, in eighths of the block: a half, a quarter and two eighths.
   static constexpr int eighths[] = {0, 4, 6, 7};
   const int part = block / per_part(), i = block % per_part();
   if (part == parts_) return n_;

@@ -9,7 +9,7 @@ namespace apsis::kernels {
 /// each row.
 template <int Dimensions>
 struct correlated_rows {
-  /// Returns the number of numbers in the tables of a row, which three dimensions need.
+  /// Returns how many numbers the tables of a row have, which three dimensions need; otherwise 0.
   static constexpr APSIS_FORMULA long numbers_of_tables(const gas_rows& rows) {
     if (rows.dimensions < 3) return 0;
     const long n0 = rows.of[0].n, n1 = rows.of[1].n, n2 = rows.of[2].n;

@@ -94,7 +94,8 @@ bool has_roots_within(std::vector<std::complex<double>> c, double radius) {
   while (c.size() > 1) {
     const auto first = c.front(), last = c.back();
     if (!(std::abs(first) < std::abs(last))) return false;
-    // (conj(c_n) p(ζ) − c_0 ζ^n conj(p(1/conj ζ)))/ζ has as many roots in the disc, one less.
+    // conj(c_n) p(ζ) − c_0 ζ^n conj(p(1/conj ζ)) has as many roots in the disc as p. One of them is 0: divide
+    // by ζ.
     const std::size_t n = c.size() - 1;
     std::vector<std::complex<double>> reduced(n);
     for (std::size_t k = 1; k <= n; ++k)

@@ -9,9 +9,9 @@
 
 namespace apsis {
 
-/// Growth of the solution of u' = λ_T u + λ_Q u in a step, T treated as transport and Q as collision:
-/// z = Δt λ_T, w = Δt λ_Q ≤ 0. The amplification factors ζ of a method of k steps are the roots of a
-/// polynomial of degree k; a method of one step has ζ = R(z, w).
+/// Growth of the solution of u' = λ_T u + λ_Q u in a step. The method treats λ_T u as transport and λ_Q u as
+/// collision, with z = Δt λ_T and w = Δt λ_Q ≤ 0. The amplification factors ζ of a method of k steps are the
+/// roots of a polynomial of degree k; a method of one step has ζ = R(z, w).
 class amplification {
  public:
   /// A method of one step, or the rows of a two-step method (method::steps).
@@ -24,10 +24,10 @@ class amplification {
 
   /// Whether the collision is treated implicitly or exactly, so that every w ≤ 0 is admissible.
   bool is_stiff() const { return kind_ != method_kind::explicit_only; }
-  /// Returns all coefficients: the same numbers for the same factors.
+  /// Returns all coefficients; they determine the factors.
   std::vector<double> fingerprint() const;
 
-  /// Whether the transport enters: not for implicit methods.
+  /// Whether the factors depend on z; those of implicit methods do not.
   bool has_transport() const { return kind_ != method_kind::implicit_only; }
 
  private:

@@ -27,7 +27,8 @@ struct entry {
   certificate certified;
 };
 
-/// Whether two methods have the same kind and coefficients, however written; embedded rows are not compared.
+/// Whether two methods have the same kind and equal values of all coefficients. Embedded rows are not
+/// compared.
 bool is_same(const method& a, const method& b) {
   const auto x = a.coefficients<mp_real>(), y = b.coefficients<mp_real>();
   const auto equal = [](const matrix<mp_real>& one, const matrix<mp_real>& other) {
@@ -75,7 +76,7 @@ void require_own_name(const method& m, const std::string& path) {
     throw input_error(source_place{path, 0, 0}, problem);
 }
 
-/// Certifies a method and completes it with data of its certificate.
+/// Certifies a method and gives its embedded row the weight from the certificate.
 certificate certify_and_complete(method& m) {
   certificate c = certify(m);
   if (m.embedded && c.embedded) m.embedded->weight = c.embedded->weight;
@@ -97,9 +98,9 @@ method make_named_method(std::string_view name) {
   throw input_error("unknown method '" + text + "' (there is no such name); " + suggest(text, known));
 }
 
-/// Parses and certifies a method on first use and caches it. A method file is cached by path and contents,
-/// so that a changed file is certified again; entries of earlier contents stay, because callers hold
-/// references to them.
+/// Parses and certifies a method on first use and caches it. A method file is cached by path and contents, so
+/// that a changed file is certified again. Entries of earlier contents stay, because callers hold references
+/// to them.
 const entry& find_entry(const std::string& name) {
   static std::mutex guard;
   static std::map<std::pair<std::string, std::string>, std::unique_ptr<entry>> known;
@@ -168,7 +169,7 @@ std::unique_ptr<time_integrator> integrator_of_file(method file) {
 
 namespace {
 
-/// Makes and certifies an integrator; `text` is that of a method file, if `name` is its path.
+/// Makes and certifies an integrator. If `name` is the path of a method file, `text` is its contents.
 std::unique_ptr<time_integrator> make_integrator(const std::string& name, const std::string& text) {
   for (const integrator_kind_entry* kind : integrator_kind_entries()) {
     const auto formulas = kind->formulas != nullptr ? kind->formulas() : std::vector<std::string>();

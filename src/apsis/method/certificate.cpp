@@ -18,7 +18,7 @@
 namespace apsis {
 namespace {
 
-/// Returns the coefficients that satisfy the order conditions of a method.
+/// Returns the Butcher form to which the order conditions of a method apply.
 butcher_form<mp_real> conditioned_form(const shu_osher_form<mp_real>& form, method_kind kind) {
   return to_butcher(solves_exactly(kind) ? with_resolved_flows(form) : form);
 }
@@ -30,7 +30,7 @@ int last_order(method_kind kind) {
   return certificate::highest_order + (kind == method_kind::imex ? 0 : 1);
 }
 
-/// `b`: the conditioned_form().
+/// Finds the order of `b`, the conditioned_form(), and the conditions of the next order that it violates.
 void find_order(const butcher_form<mp_real>& b, const mp_real& tolerance, certificate& c) {
   const int last = last_order(c.kind);
   for (int p = 1; p <= last && c.order == p - 1; ++p) {
@@ -61,7 +61,7 @@ void find_order(const butcher_form<mp_real>& b, const mp_real& tolerance, certif
   c.error_constant = std::numeric_limits<double>::quiet_NaN();
 }
 
-/// Exact collisions set no limit.
+/// Exact collisions do not limit the step.
 void find_ssp_of_exact_collisions(const shu_osher_form<mp_real>& form, const butcher_form<mp_real>& b,
                                   const mp_real& zero, certificate& c) {
   c.unconditional = is_convex(form, c.kind, form.stages());
@@ -162,7 +162,7 @@ void check_embedded_signs(const shu_osher_form<mp_real>& form, const mp_real& to
   check("-embedded.ddot", -form.ddot[last], 0);
 }
 
-/// embedded_certificate::weight.
+/// Returns embedded_certificate::weight.
 double weight_of_estimate(const embedded_certificate& e, const certificate& c) {
   constexpr double usual = 18.0;  // keeps errors within 30 tolerances (docs/methods.md)
   const mp_real alignment = std::max(e.alignment, mp_real("0.1"));
@@ -170,8 +170,8 @@ double weight_of_estimate(const embedded_certificate& e, const certificate& c) {
   return e.order == c.order - 1 && ratio > usual ? ratio / usual : 1.0;
 }
 
-/// Returns the number of decimals that the order of ũ can be checked to: of the method, or of a row with
-/// fewer.
+/// Returns the number of decimals to which the order of ũ can be checked: the smaller of those of the method
+/// and of its embedded row.
 int precision_of(const method& extended, const embedded_row& row) {
   int own = std::max(decimals(row.d), decimals(row.ddot));
   for (const auto* weights : {&row.P, &row.W})

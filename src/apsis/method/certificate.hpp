@@ -41,19 +41,20 @@ struct embedded_certificate {
   int explicit_evaluations = 0;  ///< additional evaluations of T, at stages where u^{n+1} needs none
   int implicit_solves = 0;       ///< additional stage solves: 0 or 1
   /// Factor W of the estimated error of a step: max(1, C/(18 a C̃)) if q = p − 1, else 1. C is the error
-  /// constant of the method, C̃ the estimate and a its alignment, at least 0.1. Then errors of u and estimates
-  /// are both of size Δt^p, and after a time of order one the error is about C/(aC̃) times the estimates.
+  /// constant of the method, C̃ the estimate and a its alignment, at least 0.1. For q = p − 1, errors of u and
+  /// estimates are both of size Δt^p. After a time of order one the error is about C/(aC̃) times the
+  /// estimates.
   double weight = 1.0;
 };
 
 /// Certificate of a method: its properties, derived from the coefficients alone.
 struct certificate {
-  static constexpr int highest_order = 8;  ///< conditions of higher order are not evaluated; with exact
-                                           ///< collisions, of order above 4
+  static constexpr int highest_order = 8;  ///< largest order that is certified; 4 with exact collisions
 
   std::string name;                      ///< name of the method
   method_kind kind = method_kind::imex;  ///< determines which order conditions apply
-  int order = 0;                         ///< order p by the order conditions, at most the highest evaluated
+  int order = 0;                         ///< order p by the order conditions, at most the largest that is
+                                         ///< certified
   mp_real order_residual;                ///< largest residual of the conditions up to `order`
   std::vector<failed_condition> next;    ///< violated conditions of order p + 1
   int conditions = 0;                    ///< number of conditions up to order p
@@ -62,8 +63,8 @@ struct certificate {
 
   bool unconditional = false;           ///< SSP without a step bound from Q
   bool bounded = true;                  ///< the explicit part sets a bound Δt ≤ r Δt_FE
-  mp_real ssp_coefficient = 0;          ///< r, from the Butcher form alone, with exact collisions from the
-                                        ///< Shu–Osher form; undefined if !bounded
+  mp_real ssp_coefficient = 0;          ///< r from the Butcher form; with exact collisions, from the
+                                        ///< Shu–Osher form. Undefined if !bounded
   mp_real radius_of_implicit_part = 0;  ///< radius of absolute monotonicity of A: relevant where Q satisfies
                                         ///< a forward Euler condition
   mp_real explicit_radius = 0;          ///< radius of absolute monotonicity of Â: SSP coefficient of the
@@ -74,8 +75,8 @@ struct certificate {
                                  ///< as a stage
   bool gsa = true;               ///< globally stiffly accurate: u^{n+1} = u_s rather than an explicit update
   bool ap = false;               ///< asymptotic preserving for any initial data
-  std::string ap_data;           ///< "any data", "consistent data" or "none"; "(moments only)" if not GSA,
-                                 ///< because then u^{n+1} itself is not projected to equilibrium
+  std::string ap_data;           ///< "any data", "consistent data" or "none"; with "(moments only)" if not
+                                 ///< GSA, because u^{n+1} is then not projected to equilibrium
   int explicit_evaluations = 0;  ///< of T per step, n_F
   int implicit_solves = 0;       ///< stages with d_i ≠ 0 or ḋ_i ≠ 0
   implicit_stability stability;  ///< default values for methods without stage solves
@@ -95,11 +96,11 @@ struct certificate {
 };
 
 /// Certifies a method in arithmetic of 60 digits. Tolerance: 10^{3−n} for coefficients of n decimals, 1e-50
-/// for exact ones.
+/// for exact ones. A claim that does not hold is an entry of `failures`.
 certificate certify(const method& m);
 
 /// Returns the certificate of the method called `name`; a method file that has changed is certified again.
-/// Throws like find_method, except that a method whose claims fail gets its certificate returned.
+/// Throws like find_method(), except for claims that do not hold: the certificate lists them.
 const certificate& find_certificate(const std::string& name);
 
 /// Throws a claim_error that lists the failures of `c`, if there are any.

@@ -22,8 +22,8 @@ void check_order_claim(const method& m, certificate& c) {
 namespace {
 
 /// Whether a claimed number agrees with the computed one: to two units of its last decimal or, if it is
-/// exact, to the accuracy of the radius. Counting values down to −tolerance as nonnegative shifts the radius
-/// by a multiple of the tolerance, a product of a few coefficients.
+/// exact, to the accuracy of the radius. The radius counts values down to −tolerance as nonnegative. This
+/// shifts it by the tolerance times a product of a few coefficients.
 bool agrees(const std::string& claimed, const mp_real& found, const mp_real& tolerance) {
   const int digits = decimals(claimed);
   const mp_real allowed = digits > 0 ? 2 * pow(mp_real(10), -digits) : 1000 * tolerance;
@@ -72,8 +72,8 @@ void check_intermediate_claim(const method& m, certificate& c) {
           : fmt::format("claims.intermediate = {} but a stage is neither relaxed nor u^n", *claimed));
 }
 
-/// Checks that r of the file, which the step-size rule uses, is an SSP coefficient and that the weights of
-/// the form are convex.
+/// Checks that the weights of the form are convex, and that r of the file is at most the SSP coefficient. The
+/// step-size rule uses this r.
 void check_form(const method& m, const shu_osher_form<mp_real>& form, const mp_real& tolerance,
                 certificate& c) {
   if (!c.bounded || c.ssp_coefficient == 0) return;

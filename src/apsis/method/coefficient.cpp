@@ -10,7 +10,7 @@ bool is_digit(char c) {
   return std::isdigit(static_cast<unsigned char>(c)) != 0;
 }
 
-/// Advances i past the digits that begin there and returns their number.
+/// Advances i past the digits that begin at i, and returns their number.
 std::size_t digits(const std::string& text, std::size_t& i) {
   const std::size_t start = i;
   while (i < text.size() && is_digit(text[i])) ++i;

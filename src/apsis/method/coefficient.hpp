@@ -19,12 +19,12 @@ std::string negated(const std::string& text);
 /// Returns a number with 12 significant digits, for messages.
 std::string short_text(const mp_real& x);
 
-/// Returns the number of decimals of a long decimal (12 or more), which bounds the precision to expect of the
-/// order conditions; 0 for rationals and short decimals, which are exact.
+/// Returns the number of decimals of `text` if there are 12 or more; they bound the accuracy of the order
+/// conditions. Returns 0 for rationals and shorter decimals, which count as exact.
 int decimals(const std::string& text);
 
-/// Returns the largest admissible residual of an equation that coefficients of this number of decimals
-/// satisfy: 1000 units in the last decimal, 1e-50 for exact ones (0 decimals).
+/// Returns the largest admissible residual of an equation in coefficients with this number of decimals: 1000
+/// units of the last decimal, or 1e-50 for exact coefficients (0 decimals).
 mp_real residual_tolerance(int decimals);
 
 }  // namespace apsis

@@ -7,11 +7,12 @@
 
 namespace apsis {
 
-/// Converts a Butcher form with exact coefficients (s rows, the last one u^{n+1}) to a Shu–Osher form: the
-/// convex form of the paper's class or, for explicit methods, the canonical form (P = 0), where one exists;
-/// otherwise R = I, that is D = A, W = Â = −P with r = 1, in which u_i is u^n plus its increments. If neither
-/// exists, because Q̇ of one stage enters another, returns nothing and sets `reason` to the entry that rules
-/// out the convex form.
+/// Converts a Butcher form with exact coefficients to a Shu–Osher form. Its s rows end with u^{n+1}. The
+/// result is the first of these forms that exists:
+/// - the convex form of the paper's class or, for explicit methods, the canonical form (P = 0);
+/// - R = I, in which u_i is u^n plus its increments: D = A, W = Â = −P and r = 1.
+/// Neither exists if there is no convex form and Q̇ of one stage enters another. The function then returns
+/// nothing and sets `reason` to the entry that rules out the convex form.
 std::optional<shu_osher_form<std::string>> exact_shu_osher(const butcher_form<std::string>& b,
                                                            method_kind kind, std::string& reason);
 

@@ -57,7 +57,7 @@ bool has_derivative(const method& m) {
   return !std::all_of(m.exact.ddot.begin(), m.exact.ddot.end(), is_zero);
 }
 
-/// Returns Ȧ of a method for which it is diagonal.
+/// Returns Ȧ = diag(ḋ) of a form with R = I.
 matrix<std::string> derivative_of(const method& m) {
   matrix<std::string> a(m.stages(), m.stages());
   for (std::size_t i = 0; i < m.stages(); ++i)
@@ -98,7 +98,7 @@ std::string embedded_table(const embedded_row& row, method_kind kind) {
   return out;
 }
 
-/// The same of a tableau, which has an IMEX method.
+/// Formats the table [embedded] of a tableau. Its weights are those of T and of Q.
 std::string embedded_weights(const embedded_row& row) {
   return fmt::format("\n[embedded]\norder = {}\n{}b_hat = {}\n", row.order,
                      row.origin.empty() ? "" : fmt::format("origin = {}\n", quoted(row.origin)), list(row.W));

@@ -9,9 +9,9 @@
 
 namespace apsis {
 
-/// Methods in closed form, one for each number S, of stages or as the description states. A file of
-/// method/families/ defines `extern const family_entry family_<file>`. Members are found by name like methods
-/// of the catalogue.
+/// Methods in closed form, one for each S. S is the number of stages, unless the description states another.
+/// A file of method/families/ defines `extern const family_entry family_<file>`. Members are found by name
+/// like methods of the catalogue.
 struct family_entry {
   std::string pattern;                 ///< name with S in place of the number: "md-imex-chain-S-2"
   std::string description;             ///< one line: order, r and n_F in terms of S
@@ -26,7 +26,7 @@ std::vector<const family_entry*> family_entries();
 /// Returns the family whose pattern matches `name`, whatever stands in place of S; nullptr without one.
 const family_entry* try_find_family(std::string_view name);
 
-/// Returns why the family has no member of this name, "md-imex-chain-S-2 has S from 3 to 64"; "" if
+/// Returns why the family has no member of this name, such as "md-imex-chain-S-2 has S from 3 to 64"; "" if
 /// it has one.
 std::string missing_member(const family_entry& family, std::string_view name);
 

@@ -8,13 +8,13 @@
 
 namespace apsis {
 
-/// A kind of time integrator: method/kinds/NAME.cpp defines `extern const integrator_kind_entry
-/// integrator_kind_NAME`, integrate/kinds/NAME.hpp how it steps, and a line of integrate/any_stepper.hpp
-/// joins the two. Members are method files, formulas, or both.
+/// A kind of time integrator. method/kinds/NAME.cpp defines `extern const integrator_kind_entry
+/// integrator_kind_NAME`, and integrate/kinds/NAME.hpp implements its steps. A line of
+/// integrate/any_stepper.hpp joins the two. Members are method files, formulas, or both.
 struct integrator_kind_entry {
   std::string name,  ///< time_integrator::kind
       description;   ///< one line: how u^{n+1} is computed
-  /// Whether a method file, parsed, is a member; nullptr if no file is.
+  /// Returns whether a parsed method file is a member; nullptr if no file is.
   bool (*reads)(const method& file) = nullptr;
   /// Makes the member of a method file, without checking its claims. Required with `reads`.
   std::unique_ptr<time_integrator> (*of_file)(method file) = nullptr;
@@ -27,7 +27,8 @@ struct integrator_kind_entry {
 /// Returns all kinds, in the order of the registry.
 std::vector<const integrator_kind_entry*> integrator_kind_entries();
 
-/// Makes the integrator of a method file, parsed, without checking its claims.
+/// Makes the integrator of a parsed method file without checking its claims. Throws input_error if the file
+/// is of no kind.
 std::unique_ptr<time_integrator> integrator_of_file(method file);
 
 }  // namespace apsis

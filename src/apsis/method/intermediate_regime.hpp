@@ -10,15 +10,15 @@
 
 namespace apsis {
 
-/// O(ε) terms of a method of type A or ARS applied to u' = T(u) + C(E(ω) − u)/ε, ω = ℛu, for ε ≪ Δt
+/// O(ε) terms, for ε ≪ Δt, of a method of type A or ARS applied to u' = T(u) + C(E(ω) − u)/ε, ω = ℛu
 /// (docs/plateaus.md). The exact solution deviates from equilibrium by D = E(ω) − u, of size ε; stage i
 /// deviates by χ_i D. To leading order in ε and Δt the numerical ω obeys
-///   ω_t = ℛT(E) − flux · ℛT′(E) D,    exact: flux = 1,
-/// its initial layer shifts it by `layer` times the shift due to the exact layer, and the result deviates
-/// from equilibrium by last · D. The O(ε) part of the error vanishes for data near equilibrium if flux =
-/// last = 1, and for any data if, in addition, layer = 1. The remaining members are the coefficients of
-/// the terms of size εΔt; each belongs to one elementary differential of f = ℛT(E), g = E′f − T(E) and Ψ
-/// = ℛT′(E)/C. Dimensionless.
+///   ω_t = ℛT(E) − flux · ℛT′(E) D,    exact: flux = 1.
+/// The numerical initial layer shifts ω by `layer` times the shift due to the exact layer. The result u^{n+1}
+/// deviates from equilibrium by last · D. The O(ε) part of the error vanishes for data near equilibrium if
+/// flux = last = 1, and for any data if, in addition, layer = 1. The remaining members are the coefficients
+/// of the terms of size εΔt. Each belongs to one elementary differential of f = ℛT(E), g = E′f − T(E) and Ψ =
+/// ℛT′(E)/C. Dimensionless.
 template <class Real>
 struct intermediate_regime {
   bool applies = false;  ///< whether every stage has d ≠ 0 or ḋ ≠ 0, or is u^n itself
@@ -151,11 +151,11 @@ struct finite_rate {
 
 /// Computes flux, last, layer and decay at finite z > 0, for methods of any type. Stage i deviates from
 /// equilibrium by κ_i(z) times the exact deviation, where
-///   (I + zA − z²Ȧ) κ = z ĉ + κ_s e,    flux(z) = Σ b̂_i κ_i,    last(z) = κ_s;
-/// for Δt → 0 with z fixed, the numerical ω obeys ω_t = ℛT(E) − flux(z) ℛT′(E) D. Both tend to 1 as z → 0 and
-/// to the values of intermediate_regime as z → ∞. A deviation D₀ left from the initial layer is λ_i D₀ in
-/// stage i, with (I + zA − z²Ȧ) λ = e, so that the step changes ω by −Δt layer(z) ℛT′(E) D₀ and leaves
-/// decay(z) D₀.
+///   (I + zA − z²Ȧ) κ = z ĉ + κ_s e,    flux(z) = Σ b̂_i κ_i,    last(z) = κ_s.
+/// For Δt → 0 with z fixed, the numerical ω obeys ω_t = ℛT(E) − flux(z) ℛT′(E) D. flux and last tend to 1 as
+/// z → 0 and to the values of intermediate_regime as z → ∞. A deviation D₀ left from the initial layer is λ_i
+/// D₀ in stage i, with (I + zA − z²Ȧ) λ = e. The step changes ω by −Δt layer(z) ℛT′(E) D₀ and leaves decay(z)
+/// D₀.
 template <class Real>
 finite_rate<Real> at_finite_rate(const butcher_form<Real>& b, const Real& z) {
   const std::size_t s = b.stages();
@@ -182,15 +182,15 @@ finite_rate<Real> at_finite_rate(const butcher_form<Real>& b, const Real& z) {
   return out;
 }
 
-/// Maximum of |flux(z) − 1|/z over z. Where ε is neither small nor large compared with Δt, and Δt → 0 with
-/// it, the error of the O(ε) term is at most `error`·Δt, and attains it for ε/C = Δt/at.
+/// Maximum of |flux(z) − 1|/z over z. As ε and Δt tend to 0 at a fixed ratio, the error of the O(ε) term is
+/// at most `error`·Δt. It attains this bound for ε/C = Δt/at.
 struct intermediate_band {
   double error = 0.0,  ///< max |flux(z) − 1|/z
       at = 0.0;        ///< location z of the maximum
 };
 
-/// Maximizes |excess(z)|/z, excess = flux − 1, over 10⁻³ ≤ z ≤ 10⁵: samples at 40 points per decade and
-/// refines every local maximum by golden section. Returns a NaN error where the excess is NaN.
+/// Maximizes |excess(z)|/z, excess = flux − 1, over 10⁻³ ≤ z ≤ 10⁵. Samples at 40 points per decade and
+/// refines every local maximum by golden section. Returns a NaN error if a sample is NaN.
 template <class Excess>
 intermediate_band compute_band_of(const Excess& excess) {
   constexpr int per_decade = 40, first = -3 * per_decade, last = 5 * per_decade;

@@ -35,7 +35,7 @@ formula_orders compute_formula_orders(const linear_formula<mp_real>& m) {
 }
 
 double error_amplification(const std::vector<double>& weights) {
-  // Roots other than 1 have a modulus below 1, 0.71 for order 5; later terms are below the rounding.
+  // Roots other than 1 have a modulus below 1 (0.71 for order 5), so that later terms are below rounding.
   constexpr std::size_t most = 4096;
   std::vector<double> response(weights.size(), 0.0);  // h_n, h_{n−1}, …
   response.front() = 1.0;

@@ -16,7 +16,7 @@ struct linear_formula {
   int steps() const { return static_cast<int>(a.size()); }  ///< k
 };
 
-/// Orders of a formula: it is exact for polynomials up to a degree.
+/// Order and error constants of a formula. A formula of order p is exact for polynomials up to degree p.
 struct formula_orders {
   int order = 0;          ///< p, the smaller of those of T and Q
   mp_real residual,       ///< largest defect of polynomials up to degree p
@@ -24,8 +24,8 @@ struct formula_orders {
       explicit_constant;  ///< the same with Q = 0
 };
 
-/// Computes them from 1 = Σ_i a_i x_i^q + q b = Σ_i (a_i x_i^q + q c_i x_i^{q−1}), x_i = 1 − i in units of Δt
-/// from t_n, t_{n+1} = 1.
+/// Computes order and constants from 1 = Σ_i a_i x_i^q + q b = Σ_i (a_i x_i^q + q c_i x_i^{q−1}), where x_i =
+/// 1 − i. Times are in units of Δt from t_n, so that t_{n+1} = 1.
 formula_orders compute_formula_orders(const linear_formula<mp_real>& m);
 
 /// Returns Σ_n |h_n − h_{n−1}|, the largest change of u in one step where every step adds an error of at most

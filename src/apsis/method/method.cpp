@@ -114,8 +114,8 @@ Real on_grid(const mp_real& x) {
   }
 }
 
-/// Sets the weights of row i of P and W such that the weight left for u^n is exactly 0 in Real if it is
-/// exactly 0, and never negative.
+/// Sets row i of P and W. Rounding preserves a weight of u^n that is 0 (up to `nothing`), and it makes no
+/// positive weight of u^n negative.
 template <class Real>
 void set_row(const shu_osher_form<std::string>& exact, std::size_t i, const mp_real& nothing,
              shu_osher_form<Real>& m) {

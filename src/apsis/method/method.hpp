@@ -11,7 +11,7 @@
 
 namespace apsis {
 
-/// Class of equations that a method integrates; determines its order conditions.
+/// Class of equations that a method integrates. It determines the order conditions.
 enum class method_kind {
   implicit_only,   ///< u' = Q(u): no transport (trees of one colour)
   imex,            ///< u' = T(u) + Q(u): T explicit, Q implicit (trees of two colours)
@@ -35,7 +35,7 @@ bool has_derivatives(method_kind kind);
 /// Returns the colours of the trees whose order conditions a method of this kind must satisfy.
 tree_colours colours_of(method_kind kind);
 
-/// Claims of a method file; verified when the method is loaded.
+/// Claims of a method file. Loading the method verifies them.
 struct method_claims {
   int order = 0;                               ///< p, exactly
   std::optional<std::string> ssp_coefficient;  ///< as written; "unconditional" for implicit methods
@@ -47,17 +47,18 @@ struct method_claims {
       intermediate;  ///< O(ε) terms that are exact where ε ≪ Δt: "slow" (N1, N2) or "all" (N1–N3)
 };
 
-/// An additional row of the Shu–Osher form: a solution ũ of lower order than u^{n+1}, used to estimate the
-/// error of a step:
+/// An additional row of the Shu–Osher form. Its solution ũ has a lower order than u^{n+1} and serves to
+/// estimate the error of a step:
 ///   ũ = r̃ u^n + Σ_j p̃_j u_j + Σ_j w̃_j (u_j + (Δt/r) T(u_j)) + Δt d̃ Q(ũ) + Δt² d̃̇ Q̇(ũ),
 ///   r̃ = 1 − Σ_j (p̃_j + w̃_j),
-/// with r of the method and j over all its stages. If all weights and d̃ are ≥ 0 and d̃̇ ≤ 0, ũ preserves
-/// every convex property that the stages preserve. Coefficients are strings, like those of the method.
+/// where r is that of the method and j runs over all its stages. If all weights and d̃ are ≥ 0 and d̃̇ ≤ 0, ũ
+/// preserves every convex property that the stages preserve. Coefficients are strings, like those of the
+/// method.
 struct embedded_row {
   int order = 0;               ///< q, below the order of the method
   std::string origin;          ///< how it was found; "" if not stated
-  bool convex = true;          ///< whether all weights are ≥ 0; otherwise only the signs of d̃ and d̃̇ hold.
-                               ///< False of a tableau, whose weights W are those of Q too
+  bool convex = true;          ///< whether all weights are ≥ 0; otherwise only d̃ ≥ 0 and d̃̇ ≤ 0 hold. False
+                               ///< for a tableau: its W are the weights of T and of Q
   std::vector<std::string> P,  ///< p̃, one entry per stage
       W;                       ///< w̃, one entry per stage
   std::string d = "0",         ///< d̃
@@ -66,7 +67,7 @@ struct embedded_row {
 };
 
 /// A time integrator as data. Coefficients are stored as the strings of the method file (exact rationals
-/// "p/q" or decimals of any length) and converted to the precision requested.
+/// "p/q" or decimals of up to 200 characters) and converted to the precision requested.
 class method {
  public:
   std::string name,                      ///< as in the method file, or that of a member of a family
@@ -83,12 +84,12 @@ class method {
   /// Number of rows of the form; the last row is u^{n+1}.
   std::size_t stages() const { return exact.stages(); }
 
-  /// Whether u^{n+1} is not a stage but an explicit update, u^n + Δt Σ b̂_j T(u_j) + Δt Σ b_j Q(u_j): the
-  /// last row has no implicit part although the method has one.
+  /// Whether u^{n+1} is an explicit update instead of a stage: u^n + Δt Σ b̂_j T(u_j) + Δt Σ b_j Q(u_j). Its
+  /// row has no implicit part, although the method has one.
   bool ends_with_update() const;
 
-  /// Whether Q of a stage enters a later one (D has entries below the diagonal), which puts the method
-  /// outside the paper's class.
+  /// Whether Q of a stage enters a later stage: D has entries below the diagonal. Such a method is outside
+  /// the paper's class.
   bool is_tableau() const;
 
   /// Number of decimals of the longest inexact coefficient; 0 if all coefficients are exact (rationals
@@ -110,13 +111,13 @@ class method {
 /// family (family_registry.hpp), or a method file given by its path, FILE.toml. A file is read at every call
 /// and certified again when its contents have changed; references returned earlier stay valid. Throws
 /// input_error with the closest name if there is no such method, or with the range of S if a family has no
-/// such member; claim_error if a claim fails; io_error if a file cannot be read.
+/// such member. Throws claim_error if a claim fails, and io_error if a file cannot be read.
 const method& find_method(std::string_view name);
 
 /// Returns the names of the methods of one step of the catalogue, sorted; members of families are not listed.
 std::vector<std::string> method_names();
 
-/// Whether `name` is one of these, or matches the pattern of a family.
+/// Whether `name` is one of method_names() or matches the pattern of a family.
 bool is_method_name(std::string_view name);
 
 /// Parses the text of a method file without certifying the method; `file` appears in messages. Throws

@@ -7,7 +7,7 @@
 namespace apsis {
 namespace {
 
-/// Tolerance of the last row of a kind, which every tolerance reaches.
+/// Smallest tolerance of a row that applies to every tolerance.
 constexpr double any = 0.0;
 
 std::string text_of(const method_request& wanted) {
@@ -43,8 +43,8 @@ bool applies(const choice_row& row, const method_request& wanted) {
 }  // namespace
 
 const std::vector<choice_row>& choice_table() {
-  // Equal steps are given and not chosen for an error, so that only methods with an SSP coefficient, which
-  // bound the step, compete for them on a mesh. Where the bound is the step, its cost per unit of time
+  // Equal steps on a mesh are given, not chosen for an error. Only methods with an SSP coefficient compete
+  // for them, because it bounds the step. Where the step equals this bound, the cost per unit of time
   // decides.
   static const std::vector<choice_row> rows = {
       {"space", std::nullopt, false, std::nullopt, true, "md-imex-10-3-long",

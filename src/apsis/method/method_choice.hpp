@@ -25,7 +25,7 @@ struct method_request {
 /// A row of the table of choices. The first row that applies decides.
 struct choice_row {
   std::string problem;                   ///< "space", "system", "general" (a system with any Q), or "any"
-  std::optional<bool> signs;             ///< nothing: with and without
+  std::optional<bool> signs;             ///< whether bounds must be preserved; nothing: either
   bool explicit_method = false;          ///< the method resolves ε/C: only where CΔt/ε ≤ resolved_ratio
   std::optional<double> tolerance_from;  ///< smallest tolerance of the row; nothing: equal steps
   bool longest_steps = false;            ///< only where the method determines the length of steps
@@ -34,10 +34,12 @@ struct choice_row {
   std::string origin;                    ///< the measurement that decides
 };
 
-/// Largest CΔt/ε at which an explicit method may be chosen: stable, with room for a rate that grows.
+/// Largest CΔt/ε at which an explicit method may be chosen. Its steps are then stable, also if the rate C
+/// grows moderately.
 inline constexpr double resolved_ratio = 0.5;
 
-/// Returns the table: methods that win the benchmarks of docs/speed.md, checked against docs/data/speed.
+/// Returns the table: methods that win the benchmarks of docs/speed.md. A test compares it with
+/// docs/data/speed.
 const std::vector<choice_row>& choice_table();
 
 /// A method and why it was chosen.

@@ -225,7 +225,7 @@ void read_butcher(const toml::table& table, const std::string& file, method& m) 
   m.exact = *exact;
 }
 
-/// u^{n−1} is given: its row is empty.
+/// Throws input_error unless the first row of a two-step method is 0: it stands for u^{n−1}, which is given.
 void require_given_row(const toml::table& root, const std::string& file, const method& m) {
   const toml_section top(root, file, "", all_keys);
   if (m.kind != method_kind::imex || !top.has("shu_osher") || top.has("embedded"))

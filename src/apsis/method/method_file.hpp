@@ -14,8 +14,8 @@ std::string read_method_text(const std::string& path);
 /// Whether a method name is the path of a method file, that is, ends in ".toml".
 bool is_method_file(std::string_view name);
 
-/// Returns why a method from a file cannot use its name, with a suggestion; "" if it can. Rejected are names
-/// that match the pattern of a family without being a member, and names of a catalogue method or family
+/// Returns why a method from a file cannot use its name, with a suggestion; "" if it can. Rejects a name that
+/// matches the pattern of a family without being a member. Rejects the name of a catalogue method or family
 /// member with different coefficients, because results are filed under the name.
 std::string taken_name(const method& m);
 

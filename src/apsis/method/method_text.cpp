@@ -40,8 +40,8 @@ std::size_t after_quotes(std::string_view text, std::size_t begin) {
   return text.size();
 }
 
-/// Outside strings and comments, a '.' either separates the parts of a key or is the point of a number, which
-/// has only one.
+/// Throws input_error for a key of too many parts or too deeply nested values. Outside strings and comments,
+/// a '.' separates parts of a key or is the only point of a number.
 void check_depth(std::string_view text, const std::string& file) {
   std::size_t parts = 1, nested = 0;
   for (std::size_t at = 0; at < text.size(); ++at) {

@@ -5,14 +5,14 @@
 
 namespace apsis {
 
-/// Checks the text of a method file before it is parsed. Throws input_error with the position of the first
-/// offending byte if the text is larger than 1 MiB, has a key of more than 8 parts ("a.b.c" has 3) or values
-/// nested deeper than 8 lists or tables: a recursive parser would overflow the stack.
+/// Checks the text of a method file before it is parsed, because deep nesting would overflow the stack of a
+/// recursive parser. Throws input_error with the position of the first offending byte. The text is at most 1
+/// MiB long, its keys have at most 8 parts ("a.b.c" has 3), and its values at most 8 nested lists or tables.
 void check_method_text(std::string_view text, const std::string& file);
 
-/// Returns why a string cannot be the name of a method, with a suggestion; "" if it can. Names become part of
-/// file names and messages: 1 to 60 letters, digits, '-', '_', '+' and '.', beginning with a letter or digit,
-/// and not ending in ".toml", which marks files.
+/// Returns why a string cannot be the name of a method, with a suggestion; "" if it can. A name has 1 to 60
+/// letters, digits, '-', '_', '+' and '.', because it becomes part of file names and messages. It begins with
+/// a letter or digit and does not end in ".toml", which marks files.
 std::string method_name_problem(std::string_view name);
 
 }  // namespace apsis

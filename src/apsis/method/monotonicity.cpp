@@ -101,8 +101,8 @@ ssp_analysis analyse_imex(const butcher_form<mp_real>& b, const mp_real& zero) {
       return result;
     }
   }
-  // Limits on r: the weight −R_ij (for a merged stage, the row sum, weight of u^n) must carry the Euler
-  // step r K_ij.
+  // Limits on r: the weight −R_ij of a stage must be at least r K_ij, the weight of its Euler step. For a
+  // merged stage it is the weight of u^n, the row sum.
   result.exists = result.unconditional = true;
   result.bounded = false;
   for (std::size_t i = 0; i < s; ++i) {

@@ -17,14 +17,15 @@ struct ssp_analysis {
   std::string forbids;         ///< the entry that limits r, or rules out every r > 0
 };
 
-/// Analyses the paper's class: with d_j, ḋ_j the diagonals, column j of R⁻¹ is A_·j/d_j or Ȧ_·j/ḋ_j, so R is
-/// unique, and r = min −R_ij/(RÂ)_ij over (RÂ)_ij > 0, if Re ≥ 0, RÂ ≥ 0, and RA and RȦ are diagonal with
-/// signs ≥ 0 and ≤ 0. A first stage that is u^n itself is merged with u^n; the last row needs no implicit
-/// part (an explicit update u^{n+1}). Entries below `zero` count as 0.
+/// Analyses whether a method belongs to the paper's class. With the diagonals d_j and ḋ_j of A and Ȧ, column
+/// j of R⁻¹ is A_·j/d_j or Ȧ_·j/ḋ_j, so that R is unique. The class requires Re ≥ 0, RÂ ≥ 0, R_ij ≤ 0 for j <
+/// i, and diagonal RA ≥ 0 and RȦ ≤ 0. Then r = min −R_ij/(RÂ)_ij over (RÂ)_ij > 0. A stage that is u^n itself
+/// is merged with u^n. The last row may be an explicit update without implicit part. Entries below `zero`
+/// count as 0.
 ssp_analysis analyse_imex(const butcher_form<mp_real>& b, const mp_real& zero);
 
-/// Returns R of that class, or nothing, with the offending entry in `reason`, if the method is not in the
-/// class. If a stage is u^n itself, it carries the weight of u^n in all rows.
+/// Returns R of that class without a check of signs. If A and Ȧ do not determine R, returns nothing and sets
+/// `reason` to the offending entry. If a stage is u^n itself, it carries the weight of u^n in later rows.
 std::optional<matrix<mp_real>> stage_matrix(const butcher_form<mp_real>& b, const mp_real& zero,
                                             std::string& reason);
 

@@ -18,7 +18,7 @@ struct plateau_bounds {
 };
 
 /// Computes the bounds from 20 samples per decade of 1 ≤ z ≤ 10⁵; the first terms are the values at z = 10⁵.
-/// +infinity if the stage equations have no solution.
+/// The bounds are +infinity if the stage equations have no solution.
 template <class Real>
 plateau_bounds compute_plateau_bounds(const butcher_form<Real>& b) {
   const auto defects = [&b](double z) {

@@ -69,8 +69,8 @@ class coefficient_system {
     return equations;
   }
 
-  /// Gradients of all equations by finite differences: in 60 digits a step of 1e-28 has an error of about
-  /// 1e-28, which merely turns the quadratic convergence of Newton's method into a factor of 1e-28 per step.
+  /// Gradients of all equations by finite differences. In 60 digits a step of 1e-28 has an error of about
+  /// 1e-28. Newton's method then converges by a factor of 1e-28 per step instead of quadratically.
   std::vector<mp_vector> gradients() {
     const mp_real step(1e-28);
     const auto base = residuals();
@@ -144,7 +144,7 @@ mp_vector solve(std::vector<mp_vector> a, mp_vector b) {
   return b;
 }
 
-/// Maximum norm; NaN if any entry is, which std::max would drop.
+/// Maximum norm; NaN if any entry is NaN. std::max alone would drop it.
 mp_real largest_of(const mp_vector& v) {
   mp_real largest(0);
   for (const auto& x : v) {
@@ -171,9 +171,8 @@ mp_vector least_change(const std::vector<mp_vector>& J, const mp_vector& right, 
 }
 
 /// Returns scales for which the minimal change is small in every coefficient, not only in the sum: Lawson's
-/// iteration increases the weight of coefficients that move far.
-/// `bound`: no solution of J d = right has max |d| below it, because y·right = (Jᵀy)·d ≤ Σ|Jᵀy| max|d|
-/// for every y.
+/// iteration increases the weight of coefficients that move far. Sets `bound` to a lower bound of max |d|
+/// over all solutions of J d = right: y·right = (Jᵀy)·d ≤ Σ|Jᵀy| max|d| for every y.
 mp_vector even_scales(const std::vector<mp_vector>& J, const mp_vector& right, mp_real& bound) {
   const std::size_t n = J.empty() ? 0 : J.front().size();
   mp_vector weight(n, mp_real(1)), best_scale(n, mp_real(1));

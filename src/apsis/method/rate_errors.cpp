@@ -13,9 +13,9 @@ namespace {
 
 /// Below this z the layer is resolved, and its error is below the rounding of 1/z.
 constexpr double resolved = 1e-3;
-/// For larger z a method has its limit.
+/// Beyond this z the errors have reached their limit.
 constexpr double limit = 1e7;
-/// Slopes of bounded errors between `limit` and twice that, with room.
+/// Bound of the slopes that rounding causes in bounded errors between `limit` and twice that.
 constexpr double rounding_of_slope = 1e-8;
 
 /// Returns the error of the integral of a layer, from λ(z) and R(−z).

@@ -23,15 +23,16 @@ struct rate_errors {
 rate_errors rate_errors_at(const method& m, double z);
 
 /// Errors of the O(ε) terms for every z, as polynomials of s = 1/(1 + z). Repeated implicit Euler solves
-/// multiply a deviation by s, so a combination of them applies such a polynomial at every point of space with
-/// the z of that point:
+/// multiply a deviation by s. A combination of them therefore applies such a polynomial at every point of
+/// space, with the z of that point:
 ///   flux(z) − 1 ≈ (1 − s) Σ_k flux_k s^k,    last likewise,    layer ≈ Σ_k layer_k s^k.
 struct rate_response {
   static constexpr std::size_t terms = 9;  ///< number of coefficients
   std::array<double, terms> flux{};        ///< flux_k
   std::array<double, terms> last{};        ///< last_k
   std::array<double, terms> layer{};       ///< layer_k
-  /// lim (last(z) − 1)/z, of methods whose result is not relaxed; not contained in `last`.
+  /// lim (last(z) − 1)/z for z → ∞, nonzero if the result is not relaxed. `last` does not contain this
+  /// growth.
   double last_growth = 0.0;
 
   /// Returns the largest |Σ_k c_k s^k| (1 − s) over 0 ≤ s ≤ 1.

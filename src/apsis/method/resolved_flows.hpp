@@ -8,18 +8,19 @@
 namespace apsis {
 
 // A method with exact collisions, of the class of Hu and Shu (arXiv:1807.03728), has the Shu–Osher form of an
-// IMEX method without Q̇, with the exact solution of the collision in place of every stage solve:
+// IMEX method without Q̇. The exact solution of the collision replaces every stage solve:
 //   u_i = exp(d_i Δt Q)(r_i u^n + Σ_{j<i} p_ij u_j + Σ_{j<i} w_ij (u_j + (Δt/r) T(u_j))),    u^{n+1} = u_s,
-// where exp(sQ) u is v(s) of v' = Q(v), v(0) = u. If all weights and d_i are ≥ 0, it preserves for Δt ≤ r
-// Δt_FE every convex property that forward Euler steps of T and exact collisions preserve. Dimensionless.
+// where exp(sQ) u is the solution v(s) of v' = Q(v), v(0) = u. If all weights and d_i are ≥ 0, it preserves
+// for Δt ≤ r Δt_FE every convex property that forward Euler steps of T and exact collisions preserve.
+// Dimensionless.
 
-/// Largest order whose conditions with_resolved_flows() gives; methods with d_i ≥ 0 have at most order 2
-/// (Goldman, Kaper, SIAM J. Numer. Anal. 33 (1996) 349–367, for compositions).
+/// Largest order whose conditions follow from with_resolved_flows(). Methods with d_i ≥ 0 have at most order
+/// 2 (Goldman, Kaper, SIAM J. Numer. Anal. 33 (1996) 349–367, for compositions).
 inline constexpr int order_of_resolved_flows = 4;
 
 /// Returns an additive Runge–Kutta method in which every exact collision is a step of the classical method of
-/// fourth order for v' = Q(v), so that its order conditions up to order 4 are those of the method
-/// with exact collisions.
+/// fourth order for v' = Q(v). Its order conditions up to order 4 are those of the method with exact
+/// collisions.
 template <class Real>
 shu_osher_form<Real> with_resolved_flows(const shu_osher_form<Real>& m) {
   constexpr std::size_t rows_of_flow = 4;
@@ -51,8 +52,8 @@ shu_osher_form<Real> with_resolved_flows(const shu_osher_form<Real>& m) {
 }
 
 /// Returns the largest r for which the rows of a convex form are convex combinations of u^n, of stages and of
-/// forward Euler steps of length Δt/r: the least r_m (p_ij + w_ij)/w_ij over w_ij > 0, with r_m of the form;
-/// 0 without transport, which sets no limit.
+/// forward Euler steps of length Δt/r. It is the least r_m (p_ij + w_ij)/w_ij over w_ij > 0, where r_m is the
+/// r of the form. Returns 0 for a form without transport, which sets no limit.
 template <class Real>
 Real largest_step_of_form(const shu_osher_form<Real>& m) {
   Real least(0);

@@ -38,8 +38,8 @@ namespace {
 
 using complex = std::complex<long double>;
 
-/// R(z) from the nonzero entries of the Shu–Osher form: O(s) for the families, whose Butcher
-/// forms have O(s²).
+/// R(z) from the nonzero entries of the Shu–Osher form. The families have O(s) of them, but O(s²) in the
+/// Butcher form.
 class sparse_function {
  public:
   explicit sparse_function(const shu_osher_form<long double>& m) {
@@ -183,8 +183,8 @@ double sector(const shu_osher_form<long double>& m, const sparse_function& R) {
   return 0.0;
 }
 
-/// Returns the implicit part alone. An update whose Q weights repeat an earlier stage, as b = e_s·A does in
-/// methods whose b̂ differs, is identified with that stage.
+/// Returns the implicit part alone. If the Q weights of an update repeat those of an earlier stage, the
+/// update is identified with that stage. This occurs in methods with b = e_s·A whose b̂ differs.
 shu_osher_form<long double> implicit_part(const shu_osher_form<long double>& m) {
   const auto b = to_butcher(m);
   const std::size_t last = m.stages() - 1;

@@ -60,7 +60,7 @@ polynomial square_on_imaginary_axis(const polynomial& p) {
   return out;
 }
 
-/// The same with absolute values of all terms: a scale for the cancellation in each coefficient.
+/// |p(iy)|² with absolute values of all terms: a scale for the cancellation in each coefficient.
 polynomial terms_on_imaginary_axis(const polynomial& p) {
   polynomial a, b;
   for (std::size_t k = 0; k < p.size(); ++k) (k % 2 == 0 ? a : b).push_back(abs(p[k]));

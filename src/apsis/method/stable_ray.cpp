@@ -79,7 +79,7 @@ enclosure quadratic(complex c0, complex c1, complex c2, real middle, real half) 
           {slope, 2 * half * modulus(c2)}};
 }
 
-/// R on the ray as a function of t = |z| or t = 1/|z|, by forward substitution in the Shu–Osher form, whose
+/// R on the ray as a function of t = |z| or t = 1/|z|, by forward substitution in the Shu–Osher form. Its
 /// convex combinations do not cancel, so that the discs stay small.
 class ray {
  public:
@@ -185,7 +185,7 @@ std::pair<real, real> slope_of_square(const enclosure& R) {
 
 constexpr real allowance = 1e-14L;
 
-/// Whether |R|² ≤ 1 for 0 ≤ t ≤ 1.
+/// Whether |R|² ≤ 1 is proved for 0 ≤ t ≤ 1.
 bool is_stable_part(ray& R, bool far) {
   struct interval {
     real begin, length;

@@ -7,12 +7,12 @@
 
 namespace apsis {
 
-/// A law by which error control chooses the next step from the last three accepted ones. A step of length
-/// Δt_n with the estimated error err_n could have been ℓ_n Δt_n long, ℓ_n = 0.9 (tol/err_n)^{1/k}, where err
-/// ~ Δt^k. After an accepted step
+/// A law by which error control chooses the next step from the last three accepted ones. Estimated errors
+/// grow like err ~ Δt^k. A step of length Δt_n with the error err_n could have been ℓ_n Δt_n long, where ℓ_n
+/// = 0.9 (tol/err_n)^{1/k}. After an accepted step
 ///   Δt_{n+1} = Δt_n ℓ_n^{β₁} ℓ_{n−1}^{β₂} ℓ_{n−2}^{β₃} (Δt_n/Δt_{n−1})^{−α},
-/// a digital filter of the errors (G. Söderlind, ACM Trans. Math. Softw. 29 (2003) 1–26). ℓ and quotients of
-/// steps that do not exist are 1. The predictive law is Δt_{n+1} = ℓ_n Δt_n min(1, ℓ_n Δt_n/(ℓ_{n−1}
+/// a digital filter of the errors (G. Söderlind, ACM Trans. Math. Softw. 29 (2003) 1–26). At the beginning, ℓ
+/// and quotients of missing steps are 1. The predictive law is Δt_{n+1} = ℓ_n Δt_n min(1, ℓ_n Δt_n/(ℓ_{n−1}
 /// Δt_{n−1})). Every law settles where ℓ = 1.
 struct step_law {
   std::string name,              ///< of time.controller
@@ -20,10 +20,10 @@ struct step_law {
       citation;                  ///< where it was published
   std::array<double, 3> beta{};  ///< β₁, β₂, β₃
   double alpha = 0.0;            ///< α
-  bool predictive = false;       ///< the predictive law; β and α have no meaning
+  bool predictive = false;       ///< the predictive law, without β and α
 };
 
-/// Name of the law of controllers for which no other is chosen.
+/// Name of the default law.
 inline constexpr std::string_view usual_step_law = "predictive";
 
 /// Returns all laws.

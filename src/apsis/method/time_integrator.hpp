@@ -16,7 +16,7 @@ namespace apsis {
 struct integrator_needs {
   bool explicit_collision = false;  ///< evaluates Q(u) at stages (problem_with_explicit_collision)
   bool exact_collision = false;     ///< solves u' = Q(u) exactly (problem_with_exact_collision)
-  bool equal_steps = false;         ///< steps have equal lengths, because their coefficients depend on it
+  bool equal_steps = false;         ///< the coefficients are those of steps of equal length
 };
 
 /// Certificate of an integrator as facts for a program and lines for a reader, in the order of a report.
@@ -40,9 +40,9 @@ struct integrator_certificate {
   bool claims_hold() const { return failures.empty(); }
 };
 
-/// A time integrator of any kind, as far as it is known before a step: `apsis list`, `check` and `run` ask
-/// this type, and make_stepper() (integrate/any_stepper.hpp) takes its steps. Kinds are the entries of
-/// integrator_kind_registry.hpp. Dimensionless.
+/// A time integrator of any kind, with the properties known before a step. `apsis list`, `check` and `run`
+/// use this type. make_stepper() (integrate/any_stepper.hpp) makes the stepper that takes its steps. Kinds
+/// are the entries of integrator_kind_registry.hpp. Dimensionless.
 class time_integrator {
  public:
   virtual ~time_integrator() = default;
@@ -57,8 +57,8 @@ class time_integrator {
   integrator_needs needs;      ///< requirements
   int kept_states = 0;         ///< states that it stores in addition to those of starter()
   std::vector<double> weights = {1.0};  ///< of u^n, u^{n−1}, … in u^{n+1} for T = Q = 0
-  /// Weights of values and solves of a step, for bounds of rounding: the first k − 1 rows stand for u^{n−k+1}
-  /// … u^{n−1}.
+  /// Weights of values and solves of a step, from which bounds of rounding follow. The first k − 1 rows stand
+  /// for u^{n−k+1} … u^{n−1}.
   shu_osher_form<double> form;
 
   /// Returns the method of the first steps; the method itself if it takes one step.
@@ -67,7 +67,7 @@ class time_integrator {
   virtual const method* file() const { return nullptr; }
   /// Returns the method, if the integrator is a method of one step with a file or family; otherwise nullptr.
   const method* one_step() const { return file() != nullptr && file()->steps == 1 ? file() : nullptr; }
-  /// Returns its growth factors.
+  /// Returns its amplification factors for linear problems.
   virtual amplification growth() const = 0;
   /// Returns the errors of its O(ε) terms at z = CΔt/ε > 0.
   virtual rate_errors errors_at(double z) const = 0;
@@ -85,7 +85,7 @@ const time_integrator& find_integrator(const std::string& name);
 /// families are not listed.
 std::vector<std::string> integrator_names();
 
-/// Returns those of integrator_names() that are of one kind.
+/// Returns those of integrator_names() that are of this kind.
 std::vector<std::string> integrator_names(const std::string& kind);
 
 /// Returns those of integrator_names() that are not methods of one step.

@@ -1,6 +1,6 @@
-// Extrapolation of implicit–explicit Euler steps in the substep, of any order: the reference against which
-// methods with positivity are measured, and the cheapest choice for small errors where signs do not matter.
-// (Deuflhard 1985; for IMEX: Constantinescu & Sandu, SIAM J. Sci. Comput. 31 (2010) 4452.)
+// Extrapolation of implicit–explicit Euler steps in the length of the substep. Methods with positivity are
+// compared with this family. It is the cheapest choice for small errors where signs do not matter. (Deuflhard
+// 1985; for IMEX: Constantinescu & Sandu, SIAM J. Sci. Comput. 31 (2010) 4452.)
 #include <apsis/method/family_parts.hpp>
 #include <apsis/method/family_registry.hpp>
 
@@ -22,8 +22,8 @@ std::string weight(long n, long columns) {
   return denominator < 0 ? fraction(-numerator, -denominator) : fraction(numerator, denominator);
 }
 
-/// Row 1 is u^n; the substeps of n = 1 … S follow, u_k = u_{k−1} + (Δt/n) T(u_{k−1}) + (Δt/n) Q(u_k), in
-/// convex form with r = 1; the last row is Σ_n weight(n) u_n, u_n the last of the n substeps.
+/// Row 1 is u^n. The substeps of n = 1 … S follow in convex form with r = 1: u_k = u_{k−1} + (Δt/n)
+/// T(u_{k−1}) + (Δt/n) Q(u_k). The last row is Σ_n weight(n) u_n, where u_n is the last of the n substeps.
 method make(std::size_t columns) {
   const auto order = static_cast<long>(columns);
   const std::size_t rows = 2 + columns * (columns + 1) / 2, last = rows - 1;

@@ -1,4 +1,5 @@
-// n = S − 2 evaluations of T, r = n − 1, with exact O(ε) terms for ε ≪ Δt. Derivation: docs/plateaus.md.
+// Methods with n = S − 2 evaluations of T, r = n − 1 and exact O(ε) terms for ε ≪ Δt. Derivation:
+// docs/plateaus.md.
 #include <apsis/method/family_parts.hpp>
 #include <apsis/method/family_registry.hpp>
 
@@ -6,8 +7,8 @@ namespace apsis {
 namespace plateau_free_family {
 namespace {
 
-/// Order 2 leaves one condition, ḋ_2 + (n−1) ḋ_{n+1} = −(n² − 3n + 4)/n². Two equal parts are within 2 % of
-/// the smallest error constant for every n, and n = 3 gives md-imex-5-2.
+/// Order 2 leaves one condition, ḋ_2 + (n−1) ḋ_{n+1} = −(n² − 3n + 4)/n². Two equal terms on the left give an
+/// error constant within 2 % of the smallest for every n. The member with n = 3 is md-imex-5-2.
 method make(std::size_t stages) {
   const long n = static_cast<long>(stages) - 2;
   const std::size_t last = stages - 1;

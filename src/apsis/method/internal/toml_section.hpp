@@ -39,8 +39,8 @@ class toml_section {
   std::string coefficient(const std::string& key) const { return coefficient_of(need(key), key); }
   /// Returns a list of coefficients.
   std::vector<std::string> vector(const std::string& key) const { return row(need(key), key); }
-  /// Reads the rows of a lower triangular matrix into m; row i has i − 1 + diagonal entries, or one per stage
-  /// with trailing zeros.
+  /// Reads the rows of a lower triangular matrix into m. Row i = 1, 2, … has i − 1 + diagonal entries, or one
+  /// per stage with trailing zeros.
   void triangle(const std::string& key, std::size_t diagonal, matrix<std::string>& m) const;
   /// Returns the number of rows of a matrix, from 1 to most_stages.
   std::size_t row_count(const std::string& key) const;

@@ -22,8 +22,8 @@ shu_osher_form<double> rows_of(const linear_formula<double>& m) {
   return form;
 }
 
-/// IMEX-BDF of order k as an integrator, "imex-bdf-k". Its form has no transport, because T(u^n) has no place
-/// in it.
+/// IMEX-BDF of order k as an integrator, "imex-bdf-k". Its form has no transport: T(u^n) enters, but no row
+/// stands for u^n.
 class imex_bdf_integrator final : public time_integrator {
  public:
   /// Throws input_error unless 1 ≤ k ≤ 5.
@@ -31,7 +31,7 @@ class imex_bdf_integrator final : public time_integrator {
   /// Extrapolated Euler of order k, certified.
   const method& starter() const override { return *starter_; }
   amplification growth() const override;
-  /// The errors are 0, except in the layer, which the starter passes.
+  /// The errors are 0, except that of the layer: the starter integrates it.
   rate_errors errors_at(double z) const override;
   integrator_certificate certify() const override;
 

@@ -4,8 +4,8 @@
 
 namespace apsis {
 
-/// A method of one step as an integrator: the kinds that differ in how a stage solves the collision derive
-/// from it.
+/// A method of one step as an integrator. Kinds whose stages solve the collision in another way derive from
+/// it.
 class one_step_integrator : public time_integrator {
  public:
   /// Copies the method.
@@ -14,7 +14,7 @@ class one_step_integrator : public time_integrator {
   const method* file() const override { return &method_; }
   amplification growth() const override { return amplification(method_); }
   rate_errors errors_at(double z) const override { return rate_errors_at(method_, z); }
-  /// The facts of certificate.hpp that every integrator has.
+  /// Returns the facts of certificate.hpp that every integrator has.
   integrator_certificate certify() const override;
 
  private:

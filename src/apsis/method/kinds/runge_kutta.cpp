@@ -10,7 +10,7 @@ namespace apsis {
 namespace runge_kutta_kind {
 namespace {
 
-/// Whether Q of a stage that is not recovered from its solve enters a later stage.
+/// Whether a stage needs Q of an earlier one whose solve does not yield it (d = 0 or ḋ ≠ 0).
 bool evaluates_collisions(const shu_osher_form<double>& m) {
   for (std::size_t k = 0; k < m.stages(); ++k)
     for (std::size_t j = 0; j < k; ++j)

@@ -64,7 +64,7 @@ class weights_of_trees {
     return all;
   }
 
-  /// By the product rule for Q̇ = Q′Q, as in elementary_weights().
+  /// Returns the factors of ḋ, by the product rule for Q̇ = Q′Q as in elementary_weights().
   std::vector<Real> merged(const rooted_tree& tree) const {
     auto sum = zeros_;
     for (std::size_t k = 0; k < tree.children.size(); ++k) {
@@ -101,7 +101,7 @@ void find_order(const shu_osher_form<mp_real>& form, const mp_real& tolerance, t
   }
 }
 
-/// Signs of the form; a failure names the entry.
+/// Checks the signs of the form, and counts evaluations and solves. A failure names the entry.
 void check_signs(const shu_osher_form<mp_real>& form, const mp_real& tolerance, two_step_certificate& c) {
   const auto initial = initial_weights(form);
   const auto check = [&c](const std::string& what, const mp_real& value, const mp_real& least) {
@@ -131,7 +131,7 @@ void check_signs(const shu_osher_form<mp_real>& form, const mp_real& tolerance, 
       }
 }
 
-/// flux and last for z → ∞: χ of docs/plateaus.md, with χ_0 = χ_s = 1.
+/// Checks flux and last for z → ∞, with χ of docs/plateaus.md and χ_0 = χ_s = 1.
 void find_slow_terms(const shu_osher_form<mp_real>& form, const mp_real& tolerance, two_step_certificate& c) {
   const std::size_t rows = form.stages();
   std::vector<mp_real> kept(rows), zeros(rows), ones(rows, mp_real(1));
@@ -228,7 +228,7 @@ class two_step_integrator final : public time_integrator {
   const method& starter() const override { return *starter_; }
   const method* file() const override { return &rows_; }
   amplification growth() const override { return amplification(rows_); }
-  /// The layer is that of the starter.
+  /// The error of the layer is that of the starter.
   rate_errors errors_at(double z) const override;
   integrator_certificate certify() const override;
 
@@ -247,8 +247,8 @@ two_step_integrator::two_step_integrator(method m) : rows_(std::move(m)) {
   stages = rows_.stages() - 1;
   kept_states = static_cast<int>(rows_.stages());
   needs.equal_steps = true;
-  // The first steps may be of one order less. The first of these methods has the right terms of size epsilon
-  // and is SSP up to r = 1.25; those of higher order are not SSP.
+  // The first steps may be of one order less. md-imex-10-3-mixed has the right terms of size epsilon and is
+  // SSP up to r = 1.25. The starters of higher order are not SSP.
   const bool has_ssp_starter = order <= 4;
   starter_ =
       &find_method(has_ssp_starter ? "md-imex-10-3-mixed" : fmt::format("extrapolated-euler-{}", order));

@@ -10,8 +10,8 @@
 
 namespace apsis {
 
-// A two-step method with equal steps is a Shu–Osher form of s + 1 rows, whose first row stands for
-// u^{n−1}: with u_0 = u^{n−1} and i = 1 … s,
+// A two-step method with equal steps is a Shu–Osher form of s + 1 rows. The first row stands for u_0 =
+// u^{n−1}. For i = 1 … s,
 //   u_i = r_i u^n + Σ_{j<i} p_ij u_j + Σ_{j<i} w_ij (u_j + (Δt/r) T(u_j)) + Δt d_i Q(u_i) + Δt² ḋ_i Q̇(u_i),
 //   r_i = 1 − Σ_j (p_ij + w_ij),    u^{n+1} = u_s.
 // If all weights and d_i are ≥ 0 and ḋ_i ≤ 0, it preserves for Δt ≤ r Δt_FE every convex property of u^{n−1}
@@ -19,7 +19,7 @@ namespace apsis {
 // of this form are not in the paper. Dimensionless.
 
 /// Computes the last entries φ_s(τ) of the stage vectors of order_conditions.hpp, with φ_0(τ) =
-/// (−1)^{|τ|}/γ(τ), the value of the exact solution at t_n − Δt: the method has order p if φ_s(τ) = 1/γ(τ)
+/// (−1)^{|τ|}/γ(τ), the value of the exact solution at t_n − Δt. The method has order p if φ_s(τ) = 1/γ(τ)
 /// for |τ| ≤ p.
 template <class Real>
 std::vector<Real> two_step_weights(const shu_osher_form<Real>& m, const std::vector<rooted_tree>& trees);
@@ -27,7 +27,8 @@ std::vector<Real> two_step_weights(const shu_osher_form<Real>& m, const std::vec
 /// flux and last of docs/plateaus.md for a two-step method.
 template <class Real>
 struct two_step_rate {
-  Real flux{},  ///< rate of a moment by the deviation from equilibrium, relative to the exact one
+  Real flux{},  ///< rate of change of a moment due to the deviation from equilibrium, relative to the exact
+                ///< one
       last{};   ///< deviation from equilibrium after a step, relative to the exact one
 };
 

@@ -65,7 +65,8 @@ design_condition tree_condition(const std::vector<rooted_tree>& trees, std::size
   return {trees[k].name, {{1.0, {static_cast<int>(k)}, stages - 1}}, 1.0, trees[k].density};
 }
 
-/// Adds a response of the stages at ζ; returns the index of its real part, which its imaginary part follows.
+/// Adds a response of the stages at ζ. Returns the index of its real part; the imaginary part is the next
+/// node.
 int add_response(condition_list& list, series_node::kind what, std::complex<double> zeta) {
   const double previous = what == series_node::kind::response ? 1.0 : 0.0;
   list.nodes.push_back({what, {}, {}, zeta, previous});
@@ -78,7 +79,7 @@ int add_transport(condition_list& list, int child, double previous = 0.0) {
   return static_cast<int>(list.nodes.size()) - 1;
 }
 
-/// Values of z in a decade at which band_terms() and layer_terms() are taken.
+/// Number of z per decade in band_terms() and layer_terms().
 constexpr int band_points = 8;
 
 /// Returns logarithmically spaced radii from 0.1 to 300.
@@ -134,7 +135,7 @@ void add_regime_equations(condition_list& list, regime_demand demand, std::size_
 condition_list band_terms(std::size_t stages, int steps) {
   const std::size_t last = stages - 1;
   condition_list list;
-  // Of two-step methods Σ b̂ = 1 + (weight of u^{n−1} in the result), by which flux is divided.
+  // For two-step methods flux is divided by Σ b̂ = 1 + (weight of u^{n−1} in the result).
   const int of_one =
       steps == 2 ? add_transport(list, add_response(list, series_node::kind::response, 0.0)) : -1;
   for (const double z : radii(band_points)) {

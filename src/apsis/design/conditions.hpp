@@ -8,8 +8,8 @@
 
 namespace apsis {
 
-/// A polynomial equation Σ_t a_t Π_f y_f[stage_t] = target/divisor in stage vectors y, which a list of nodes
-/// defines.
+/// A polynomial equation Σ_t a_t Π_f y_f[stage_t] = target/divisor in stage vectors y. A list of nodes
+/// defines these vectors.
 struct design_condition {
   /// A term a Π_f y_f[stage].
   struct term {
@@ -38,34 +38,35 @@ enum class regime_demand {
 
 /// Returns the order conditions of the paper's class in a form that is regular at its solutions.
 ///
-/// With transport, order ≥ 3 implies Σ b̂_i (c_i − ĉ_i)² = 0 with b̂ ≥ 0, so c = ĉ at each stage in
-/// `transport`; this is imposed, and one tree is kept of those that differ only in leaves under a node T
-/// (15 of 20 conditions at order 3, 49 of 72 at order 4). Without transport, order ≥ 5 implies Σ b_i
-/// δ_i² = 0 with δ = Ac + ȧ − c²/2, so δ = 0 at each stage in `relaxation` (those with d > 0). The
-/// proofs are in docs/design.md.
+/// With transport, order ≥ 3 implies Σ b̂_i (c_i − ĉ_i)² = 0 with b̂ ≥ 0, so that c = ĉ at each stage in
+/// `transport`. These equations are imposed. Of trees that differ only in leaves under a node T, one is kept
+/// (15 of 20 conditions at order 3, 49 of 72 at order 4). Without transport, order ≥ 5 implies Σ b_i δ_i² = 0
+/// with δ = Ac + ȧ − c²/2, so that δ = 0 at each stage with d > 0, those in `relaxation`. Both lists have one
+/// entry per stage. The proofs are in docs/design.md.
 condition_list order_equations(method_kind kind, int order, std::size_t stages,
                                const std::vector<char>& transport, const std::vector<char>& relaxation,
                                int steps = 1);
 
-/// Adds those of the conditions (N1) to (N3) that are demanded.
+/// Adds the conditions among (N1) to (N3) that `demand` requires.
 void add_regime_equations(condition_list& list, regime_demand demand, std::size_t stages);
 
-/// Returns the conditions of exactly this order, whose residuals form the error constant.
+/// Returns the conditions of exactly this order. Their residuals form the error constant.
 condition_list error_terms(method_kind kind, int order, std::size_t stages);
 
 /// Returns terms whose residuals measure the error of the O(ε) term where ε ~ Δt (docs/plateaus.md, the
-/// band): with z = CΔt/ε, their 2-norm is that of (flux(z) − 1)/z · (1 − R(−z))/(1 − e^{−z}) over log₁₀ z,
+/// band). With z = CΔt/ε, their 2-norm is that of (flux(z) − 1)/z · (1 − R(−z))/(1 − e^{−z}) over log₁₀ z,
 /// 0.1 ≤ z ≤ 300.
 condition_list band_terms(std::size_t stages, int steps = 1);
 
 /// Returns terms whose residuals measure the other errors of size ε where ε ~ Δt (docs/plateaus.md, the
-/// band): in the initial layer, b̂·λ(z) − (1 − R(−z))/z, and of the deviation from equilibrium at the end of a
-/// step, (last(z) − 1)/z · (1 − R(−z))/(1 − e^{−z}). Their 2-norm is that over log₁₀ z, 0.1 ≤ z ≤ 300. Of
-/// two-step methods the second alone, since the layer belongs to their first steps.
+/// band):
+/// - in the initial layer: b̂·λ(z) − (1 − R(−z))/z, only for one step (starters integrate the layer);
+/// - of the deviation from equilibrium at the end of a step: (last(z) − 1)/z · (1 − R(−z))/(1 − e^{−z}).
+/// Their 2-norm is that over log₁₀ z, 0.1 ≤ z ≤ 300.
 condition_list layer_terms(std::size_t stages, int steps = 1);
 
-/// Returns (|R(ζ)|² − 1)/min(1, |ζ|)⁴ on the ray at angle `degrees` from the negative axis, which must be ≤ 0
-/// for A(α)-stability of the implicit part. 24 radii per decade, 0.1 ≤ |ζ| ≤ 300.
+/// Returns (|R(ζ)|² − 1)/min(1, |ζ|)⁴ on the ray at angle `degrees` from the negative axis, for 24 radii per
+/// decade, 0.1 ≤ |ζ| ≤ 300. A(α)-stability of the implicit part requires values ≤ 0.
 condition_list stability_limits(double degrees, std::size_t stages);
 
 /// Values and gradients of a list of conditions at a given set of coefficients.

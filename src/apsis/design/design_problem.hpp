@@ -42,8 +42,8 @@ struct design_demands {
   int most_buffers = 1000;  ///< upper bound of state-sized buffers of a step; checked after the search
   /// Prescribed first rows, together with r: only later rows are unknown.
   std::optional<shu_osher_form<double>> given_rows;
-  /// Returns the angle of the ray on which |R| ≤ 1 is imposed at discrete points, so that it holds everywhere
-  /// on the ray of `least_angle`.
+  /// Returns the angle of the ray on which |R| ≤ 1 is imposed at discrete points. It is 5 % closer to 90
+  /// degrees than `least_angle`, so that |R| ≤ 1 also holds between the points on the ray at `least_angle`.
   double aimed_angle() const;
   /// Returns the upper bound of |ḋ| of a stage with or without d.
   double largest_ddot(bool with_d) const;
@@ -90,7 +90,7 @@ class design_problem {
 
   /// Returns the method with these unknowns; r = 1 if r is not an unknown.
   shu_osher_form<double> form(const Eigen::VectorXd& x) const;
-  /// The same in `Real`: double, tangent or mp_real.
+  /// Returns the method with these unknowns in `Real`: double, tangent or mp_real.
   template <class Real>
   shu_osher_form<Real> form_of(const std::vector<Real>& x) const;
   /// Returns the unknowns of a method with the same number of stages; coefficients outside the

@@ -80,9 +80,9 @@ void draw_weights(form_type& m, const zero_pattern& pattern, bool chained, rando
   }
 }
 
-/// Draws two to four stages without T far ahead in time, mostly chained, with small weights in other stages:
-/// with c up to five they raise the high moments but hardly the low ones. From other initial points a search
-/// for order 4 ends with r at its lower bound, small d and residuals of 10⁻³.
+/// Draws two to four stages without T that lie far ahead in time. They are mostly chained and have small
+/// weights in other stages. With c up to five they raise the high moments but hardly the low ones. From other
+/// initial points a search for order 4 ends with r at its lower bound, small d and residuals of 10⁻³.
 void draw_far_stages(form_type& m, const zero_pattern& pattern, double box, random_source& random) {
   const std::size_t s = pattern.stages();
   const auto transport = pattern.transport();
@@ -118,7 +118,7 @@ void draw_far_stages(form_type& m, const zero_pattern& pattern, double box, rand
   }
 }
 
-/// Evaluates T at `more` additional random stages.
+/// Returns the pattern with T evaluated at `more` additional random stages.
 zero_pattern with_more_transport(zero_pattern pattern, std::vector<char> transport, std::size_t more,
                                  random_source& random) {
   std::vector<std::size_t> without;

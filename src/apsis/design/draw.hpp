@@ -9,10 +9,10 @@ namespace apsis {
 /// they may be required (intermediate regime, order 5 without transport).
 zero_pattern pattern_near(const design_task& task, const shu_osher_form<double>& m);
 
-/// Draws the pattern of a start: all coefficients that the task allows, with random choices where the
-/// equations depend on them (stages whose T is evaluated; stages with ḋ = 0 for the intermediate regime;
-/// stages with d = 0 for order 5 without transport). Stays close to `task.from` if given; if that has fewer
-/// evaluations of T than the task, each start frees T at other additional stages.
+/// Draws the pattern of a start. It has all coefficients that the task allows. Choices on which the equations
+/// depend are random: stages whose T is evaluated, stages with ḋ = 0 for the intermediate regime, and stages
+/// with d = 0 for order 5 without transport. The pattern stays close to `task.from`, if given. If `task.from`
+/// has fewer evaluations of T than the task, each start frees T at other additional stages.
 zero_pattern draw_pattern(const design_task& task, random_source& random);
 
 /// Draws the initial coefficients of a start: within the bounds, and in general far from satisfying the

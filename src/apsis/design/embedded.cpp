@@ -124,7 +124,7 @@ class embedded_program {
     }
   }
 
-  /// Products of the stage vectors of `factors` at a stage, and of their 1/γ.
+  /// at_stage() returns the product of the stage vectors of `factors` at a stage, at_end() that of their 1/γ.
   static mp_real at_stage(const stage_series<mp_real>& series, const std::vector<int>& factors,
                           std::size_t stage) {
     mp_real product(1);
@@ -175,7 +175,7 @@ std::pair<mp_matrix, mp_vector> weighted(const embedded_program& program, const 
 }
 
 /// Returns arg min ‖E x − goal‖² over A x = b, x ≥ least. The active set is found with a weight for which
-/// rounding errors of the 45 digits of the method stay below the gradients; with a larger weight the free
+/// rounding errors of the 45 digits of the method stay below the gradients. With a larger weight the free
 /// unknowns then satisfy the equations to all digits.
 mp_vector closest_solution(const embedded_program& program, const mp_vector& goal, const mp_vector& least) {
   const mp_vector b = program.b - program.A * least, rest = goal - program.E * least;
@@ -211,8 +211,8 @@ std::optional<candidate> better(const std::optional<candidate>& a, const candida
   return a && a->distance <= b.distance ? a : std::optional(b);
 }
 
-/// Returns the solution with weights above `least_weight` for the better sign of θ = ±1/parts, with d̃ or −d̃̇
-/// constrained to be above the margin if both would be below it.
+/// Returns the solution with weights above `least_weight` for the better sign of θ = ±1/parts. If d̃ − d̃̇ would
+/// be below the margin, d̃ or −d̃̇ is constrained to be at least the margin.
 candidate best_of(const embedded_program& program, int parts, const mp_real& least_weight,
                   const mp_real& margin) {
   const auto& implicit = program.implicit_places();

@@ -8,8 +8,8 @@
 namespace apsis {
 namespace {
 
-/// Damped steps Jᵀ (J Jᵀ + damping)⁻¹ (−c) of the free unknowns; unknowns that would cross a bound are fixed
-/// on it and their columns removed from J Jᵀ.
+/// Damped steps Jᵀ (J Jᵀ + damping)⁻¹ (−c) of the free unknowns. Unknowns that would cross a bound are fixed
+/// on it, and their columns are removed from J Jᵀ.
 class bounded_steps {
  public:
   bounded_steps(const design_problem& problem, const Eigen::VectorXd& x, Eigen::MatrixXd jacobian,

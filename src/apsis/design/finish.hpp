@@ -12,12 +12,13 @@ namespace apsis {
 method to_method(const design_task& task, const design_candidate& candidate, const std::string& name);
 
 /// Converts a candidate to a method polished to `digits` decimals by Newton's method on its order conditions
-/// and additional demands, with zeros and exact coefficients fixed (polish()). Throws numerical_error if that
-/// does not converge.
+/// and additional demands, with zeros and exact coefficients fixed (polish()). Throws numerical_error if the
+/// iteration does not converge.
 method to_polished_method(const design_task& task, const design_candidate& candidate, const std::string& name,
                           int digits = 45);
 
-/// The same for a two-step method (task.steps = 2, task.stages counts u^{n−1}).
+/// Converts a candidate for a two-step method to a polished method (task.steps = 2, task.stages counts
+/// u^{n−1}). Throws numerical_error if the iteration does not converge.
 method to_polished_two_step_method(const design_task& task, const design_candidate& candidate,
                                    const std::string& name, int digits = 45);
 

@@ -13,8 +13,8 @@
 namespace apsis {
 namespace {
 
-/// Newton's method in 60 digits on the equations of a design problem. Its matrix is that of double precision,
-/// so that each iteration gains ten digits or more.
+/// Newton's method in 60 digits on the equations of a design problem. Its Jacobian is factorized once in
+/// double precision, and each iteration gains ten digits or more.
 class exact_solution {
  public:
   exact_solution(design_problem& problem, const Eigen::VectorXd& x)
@@ -103,7 +103,7 @@ method to_polished_two_step_method(const design_task& task, const design_candida
   m.citation = "apsis design";
   m.steps = 2;
   m.claims.order = task.demands.order;
-  bool relaxes = true;  // not with a margin of 0 in general
+  bool relaxes = true;  // with a margin of 0 some row may not relax
   for (std::size_t i = 1; i < rows; ++i) relaxes = relaxes && (form.D(i, i) != 0 || form.ddot[i] != 0);
   if (relaxes) m.claims.type = "A";
   if (task.demands.regime == regime_demand::slow) m.claims.intermediate = "slow";

@@ -15,7 +15,7 @@ using Ipopt::Index;
 using Ipopt::Number;
 
 // MUMPS, the linear solver of Ipopt, keeps global state and must run on one thread at a time. The lock is
-// released while functions of a program are evaluated, which takes most of the time.
+// released while functions of a program are evaluated, because this takes most of the time.
 std::mutex& solver_guard() {
   static std::mutex guard;
   return guard;

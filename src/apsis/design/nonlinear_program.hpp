@@ -37,13 +37,14 @@ struct program_goal {
 /// 0.1, because both then cost about the same where ε(x) passes through Δt.
 constexpr double default_band_weight = 10.0;
 
-/// Returns the objective function: −r, the error, the band, or band and layer; `band_weight` is w.
+/// Returns the function to be minimized for an objective: −r, or half squares of error, band and layer.
+/// `band_weight` is w.
 program_goal goal_of(const design_problem& problem, design_objective objective,
                      double band_weight = default_band_weight);
 
 /// Finds a local optimum close to x by Ipopt (Wächter, Biegler, Math. Program. 106, 2006) with exact first
-/// and second derivatives. Equations that are linearly dependent at x, which would make the program singular,
-/// are dropped. `stop` ends the iteration when it returns true. Thread-safe.
+/// and second derivatives. Drops equations that are linearly dependent at x, because they would make the
+/// program singular. `stop` ends the iteration when it returns true. Thread-safe.
 program_result optimize(design_problem& problem, const program_goal& goal, const Eigen::VectorXd& x,
                         const std::function<bool()>& stop = {}, int most_iterations = 500);
 

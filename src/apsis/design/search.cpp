@@ -40,7 +40,8 @@ bool is_better(const design_task& task, const design_candidate& a, const design_
 bool is_acceptable(const design_task& task, const design_candidate& candidate) {
   const auto m = design_problem(candidate.pattern, task.demands).form(candidate.x);
   if (schedule(m).buffers() > task.demands.most_buffers) return false;
-  // The second root of a two-step method is the negative weight of u^{n−1}: errors of alternating sign halve.
+  // The second root of a two-step method is the negative weight of u^{n−1}. Up to 1/2, errors of alternating
+  // sign at least halve in a step.
   if (task.steps == 2 && weight_of_previous(m) > 0.5) return false;
   if (task.kind == method_kind::explicit_only) return true;
   // A tiny d hardly moves the pole.
@@ -82,8 +83,8 @@ Eigen::VectorXd with_largest_r(const design_problem& problem, const Eigen::Vecto
   return problem.unknowns_of(m);
 }
 
-/// Optimizes from a feasible point and drops coefficients that are zero. The optimization may end with an r
-/// below that of the Butcher form and is then continued from there.
+/// Optimizes from a feasible point and drops coefficients that are zero. If the optimization ends with an r
+/// below that of the Butcher form, it is repeated from the method with the larger r.
 design_candidate best_near(const design_task& task, design_problem& problem, Eigen::VectorXd x,
                            const std::function<bool()>& stop) {
   constexpr int most_rounds = 4;

@@ -19,9 +19,9 @@ struct design_task {
   design_objective objective = design_objective::largest_r;  ///< objective
   double band_weight = default_band_weight;                  ///< w of smallest_band and smallest_mixed
   std::uint64_t seed = 1;  ///< seed of all random numbers, together with the number of the start
-  /// Initial method: the first start is this method with every coefficient free that the task allows, the
-  /// others are at most a tenth away from it. It has at most the stages and the evaluations of T of the task;
-  /// each start adds the missing ones elsewhere.
+  /// Initial method. The first start is this method with every coefficient free that the task allows; the
+  /// others are at most a tenth away from it. If the method has fewer stages or evaluations of T than the
+  /// task, each start adds the missing ones elsewhere.
   std::optional<shu_osher_form<double>> from;
 };
 
@@ -40,7 +40,7 @@ struct design_candidate {
 /// Progress of a search.
 struct design_progress {
   long starts = 0;    ///< number of finished starts
-  long feasible = 0;  ///< number of starts that satisfied the equations
+  long feasible = 0;  ///< number of starts that found an acceptable method
   double best_residual =
       std::numeric_limits<double>::infinity();  ///< minimum over all starts of the largest |residual|
   std::optional<design_candidate> best;         ///< best acceptable candidate so far
@@ -55,10 +55,10 @@ struct design_search_options {
   std::function<bool()> stop;  ///< polled frequently; true ends the search. May be empty
 };
 
-/// Multi-start search on all threads: each start draws a pattern and coefficients from (seed, start),
-/// searches for a point that satisfies the equations, optimizes from there and drops coefficients that are
-/// zero. The result of a start, and thus of a search with a given number of starts, does not depend on the
-/// number of threads.
+/// Searches for methods from many starts, on all threads. Each start draws a pattern and coefficients from
+/// (seed, start) and searches for a point that satisfies the equations. It optimizes from there and drops
+/// coefficients that are zero. The result of a start, and thus of a search with a given number of starts,
+/// does not depend on the number of threads.
 design_progress search_methods(const design_task& task, const design_search_options& options);
 
 /// Whether a is better than b in the objective of the task; ties go to the earlier start.
@@ -68,11 +68,12 @@ bool is_better(const design_task& task, const design_candidate& a, const design_
 /// −√(error² + w² (band² + layer²)).
 double value_of(const design_task& task, const design_candidate& candidate);
 
-/// Whether the demands that are not part of the equations are met: angle, poles, buffers.
+/// Whether a candidate satisfies the requirements that are not equations: buffers, poles, angle and, for two
+/// steps, a weight of u^{n−1} of at most 1/2.
 bool is_acceptable(const design_task& task, const design_candidate& candidate);
 
 /// Runs one start of a search. Returns nothing if no point satisfies the equations or the resulting method is
-/// not acceptable. `residual` is set to the smallest residual reached.
+/// not acceptable. Sets `residual` to the residual that the search for such a point reached.
 std::optional<design_candidate> run_search_start(const design_task& task, int start, double& residual,
                                                  const std::function<bool()>& stop = {});
 

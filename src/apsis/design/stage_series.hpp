@@ -34,13 +34,13 @@ struct series_node {
 /// Returns the nodes of the stage vectors of trees, in the same order (rooted_trees() puts children first).
 std::vector<series_node> series_of(const std::vector<rooted_tree>& trees);
 
-/// Stage vectors of a method in Shu–Osher form with diagonal D, and by a reverse sweep the exact gradient of
-/// any weighted sum of their entries with respect to P, W, d, ḋ and r. Over `tangent` instead of double the
-/// gradient carries its own derivatives, that is, second derivatives.
+/// Computes the stage vectors of a method in Shu–Osher form with diagonal D. A reverse sweep gives the exact
+/// gradient of any weighted sum of their entries with respect to P, W, d, ḋ and r. Over `tangent` instead of
+/// double, the gradient carries second derivatives.
 ///
 /// `slow[i]` marks stages with ḋ_i = 0 by design (not by value), so that χ and λ are smooth functions.
 ///
-/// Of two-step methods the first row stands for u^{n−1}: its values are given by the nodes.
+/// The first row of a two-step method stands for u^{n−1}; the nodes give its values.
 template <class Real>
 class stage_series {
  public:

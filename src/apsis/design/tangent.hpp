@@ -5,9 +5,9 @@
 
 namespace apsis {
 
-/// A number with its derivatives in eight directions (forward-mode differentiation). One pass over an
-/// algorithm templated on `Real` gives exact derivatives in eight unknowns; over a gradient, eight columns
-/// of the Hessian.
+/// A number with its derivatives in eight directions (forward-mode differentiation). One pass of an algorithm
+/// over `tangent` gives exact derivatives in eight unknowns. One pass of a gradient gives eight columns of
+/// the Hessian.
 struct tangent {
   static constexpr std::size_t width = 8;  ///< number of directions
   double value = 0.0;                      ///< the number itself

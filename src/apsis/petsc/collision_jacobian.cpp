@@ -9,7 +9,7 @@
 namespace apsis::petsc {
 namespace {
 
-/// −Q at the time of the Jacobian, for differences.
+/// Arguments of −Q for differences: its functions and the time of the Jacobian.
 struct differenced {
   split_functions* of;
   double t;
@@ -31,7 +31,7 @@ PetscErrorCode destroy_differenced(void* context) {
 
 constexpr const char* key_of_context = "apsis_differenced";
 
-/// Attaches the arguments of −Q to an object, which destroys them.
+/// Attaches the arguments of −Q to an object of PETSc, which owns them.
 template <class Object>
 differenced& attach(Object object, split_functions& of) {
   auto* made = new differenced{&of, 0.0};
@@ -54,8 +54,8 @@ differenced& attached(Object object) {
   return *static_cast<differenced*>(found);
 }
 
-/// Returns whether the DM of a SNES provides matrices. A TS without a DM gets a DMSHELL from PETSc, which
-/// provides none.
+/// Returns whether the DM of a SNES provides matrices. PETSc gives a TS without a DM a DMSHELL, which
+/// provides no matrices.
 bool provides_matrices(SNES snes) {
   DM dm = nullptr;
   check(SNESGetDM(snes, &dm));
@@ -118,7 +118,8 @@ void collision_jacobian::make_coloring() {
   check(MatColoringDestroy(&method));
   check(MatFDColoringCreate(p, colors, coloring_.receive()));
   differenced& context = attach(coloring_.get(), of_);
-  // PETSc stores functions of several types as one; the step by void (*)() states that this is deliberate.
+  // PETSc stores functions of several types as one type. The cast through void (*)() shows that this is
+  // deliberate.
   const auto function = reinterpret_cast<void (*)()>(evaluate_for_coloring);
   check(
       MatFDColoringSetFunction(coloring_.get(), reinterpret_cast<PetscErrorCode (*)()>(function), &context));

@@ -151,7 +151,7 @@ PetscErrorCode create(TS ts) {
   });
 }
 
-/// Calls the function of a TS under a name with its arguments; returns false if the TS has another type.
+/// Calls the function that a TS stores under a name. Returns false if the TS has another type.
 template <class... Arguments>
 bool call_composed(TS ts, const char* name, Arguments... arguments) {
   void (*found)() = nullptr;

@@ -66,7 +66,8 @@ void split_functions::minus_jacobian(double t, Vec u, Mat a, Mat p) {
 }
 
 void split_functions::minus_time_derivative(double t, double dt, Vec u, Vec out) {
-  // Truncation and rounding errors are about 1e-9 of Q/Δt each if Q changes over times of the step.
+  // The truncation error is about 1e-9 Q/Δt if Q changes on the time scale of the step; rounding errors are
+  // smaller.
   const double tau = 1e-4 * std::max(std::abs(dt), 1e-6 * std::abs(t));
   const double before = t - tau, after = t + tau;
   minus_collision(after, u, out);
@@ -104,7 +105,7 @@ void split_functions::require_identity(double t, Vec u) {
   if (!std::isfinite(size))
     throw input_error(
         fmt::format("the IFunction is not finite at the start (t = {:g}); check the initial values", t));
-  // A rate as large as F, so that rounding errors of F are small, with different entries.
+  // A rate with different entries. It is as large as F, so that rounding errors of F are small.
   const double scale = std::max(size, 1.0);
   PetscInt begin = 0, end = 0;
   check(VecGetOwnershipRange(u, &begin, &end));
@@ -121,7 +122,7 @@ void split_functions::require_identity(double t, Vec u) {
   PetscInt row = 0;
   PetscReal largest = 0.0;
   check(VecMax(difference.get(), &row, &largest));
-  // Rounding errors of sums of some terms.
+  // Allow for rounding errors of sums of some terms.
   if (largest <= 1e-10 * scale) return;
   throw input_error(
       fmt::format("the TS type 'apsis' needs F(t, u, u') = u' - Q(t, u) (row {} of the IFunction has another "

@@ -91,7 +91,7 @@ stage_preconditioner::entry& stage_preconditioner::find(const collision_jacobian
 }
 
 Mat stage_preconditioner::prepare(const collision_jacobian& j, double a, double b, double stiffness) {
-  constexpr double most = 1e7;  // whose square leaves two digits of the identity
+  constexpr double most = 1e7;  // its square leaves two digits of the identity
   const bool squared = form_ == preconditioner_form::squared ||
                        (form_ == preconditioner_form::automatic && (!direct_ || stiffness > most));
   entry& to = find(j, a, b, squared);
@@ -135,7 +135,7 @@ void stage_preconditioner::assemble_polynomial(entry& to, Mat minus_j) {
   to.has_square = true;
   check(MatMatMult(minus_j, minus_j, square_ ? MAT_REUSE_MATRIX : MAT_INITIAL_MATRIX, PETSC_DEFAULT,
                    square_.place()));
-  // The first matrix finds the pattern, which contains those of J and of the identity.
+  // The first matrix determines the pattern, which contains those of J and of the identity.
   if (!to.matrix) {
     check(MatDuplicate(square_.get(), MAT_COPY_VALUES, to.matrix.receive()));
     check(MatScale(to.matrix.get(), -to.b));

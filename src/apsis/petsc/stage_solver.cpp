@@ -52,7 +52,8 @@ mat make_operator(Vec like, stage_solver* context) {
   return made;
 }
 
-/// As PETSc does for matrix-free operators; only preconditioners that the program defines remain.
+/// Removes a preconditioner that needs a matrix, as PETSc does for matrix-free operators. Preconditioners
+/// that the program defines remain.
 void use_no_preconditioner(KSP ksp) {
   PC pc = nullptr;
   PetscBool own = PETSC_FALSE;
@@ -89,7 +90,7 @@ void stage_solver::attach(Vec like) {
   jacobian_.emplace(of_, chosen, settings_.constant_jacobian || of_.has_constant_jacobian());
   operator_ = make_operator(like, this);
   check(SNESSetUseMatrixFree(snes, PETSC_FALSE, PETSC_FALSE));
-  // A matrix of the right size until the first stage is linearized.
+  // Until the first stage is linearized, the operator also serves as a matrix of the right size.
   check(SNESSetJacobian(snes, operator_.get(), operator_.get(), form_jacobian, this));
   own_test_ = snes->ops->converged == SNESConvergedDefault;
   if (own_test_) check(SNESSetConvergenceTest(snes, test_convergence, this, nullptr));
@@ -140,8 +141,8 @@ bool stage_solver::solve(const stage& now, Vec u) {
   jacobian_->evaluate(now.t, u);
   const double gamma = std::max(now.a, std::sqrt(-now.b));
   stiffness_ = gamma * jacobian_->size(u);
-  // Far from equilibrium, residuals of (Δt/ε)² Q leave no digits to slow modes. An implicit Euler step leads
-  // to a start near equilibrium.
+  // Far from equilibrium, residuals of (Δt/ε)² Q leave no digits to slow modes. An implicit Euler step gives
+  // a start near equilibrium.
   if (now.b != 0.0 && preconditioner_ && stiffness_ > most_without_start) {
     now_ = {now.t, gamma, 0.0, now.dt, false};
     if (!iterate(u)) check(VecCopy(explicit_part_.get(), u));
@@ -152,7 +153,7 @@ bool stage_solver::solve(const stage& now, Vec u) {
 
 bool stage_solver::iterate(Vec u) {
   last_correction_ = 0.0;
-  // Newton's method must not see its matrix replaced, only its entries.
+  // During Newton's method the entries of its matrix may change, but not the matrix object.
   linearize(u);
   const Mat p = matrix_ != nullptr ? matrix_ : operator_.get();
   if (p != snes_->jacobian_pre) check(SNESSetJacobian(snes_, operator_.get(), p, form_jacobian, this));
@@ -223,8 +224,8 @@ void stage_solver::begin_linear_solve(KSP ksp, Vec rhs) {
   krylov_tolerances own{};
   check(KSPGetTolerances(ksp, &own.relative, &own.absolute, &own.divergence, &own.iterations));
   tolerances_ = own;
-  // With one inverse, norms of residuals are γ‖J‖ times those of fast corrections. Corrections are measured
-  // with two.
+  // With one inverse, the norm of a residual is γ‖J‖ times that of a fast correction. Two inverses give the
+  // size of the correction.
   PetscReal size = 0.0;
   const Vec once = right_.like(rhs), twice = middle_.like(rhs);
   preconditioner_->apply(rhs, once);
@@ -276,7 +277,7 @@ SNESConvergedReason stage_solver::test(PetscInt iteration, double of_v, double o
   last_correction_ = of_correction;
   if (of_correction <= wanted) return SNES_CONVERGED_SNORM_RELATIVE;
   if (before == 0.0) return SNES_CONVERGED_ITERATING;
-  // The corrections to come, as a geometric series. Solutions of linear systems lack the digits that γJ
+  // Bound the corrections to come by a geometric series. Solutions of linear systems lack the digits that γJ
   // loses. A correction much smaller than the last may therefore be followed by one that is not.
   constexpr double epsilon = std::numeric_limits<double>::epsilon();
   const double ratio = of_correction / before;

@@ -39,8 +39,8 @@ bool is_finite(Vec u) {
 ts_apsis::ts_apsis(TS ts)
     : ts_(ts), functions_(ts), stages_(functions_, settings_.stages), problem_(functions_, stages_) {
   set_method(settings_.method);
-  // Residuals do not measure errors (stage_solver), so a line search by their norm would mislead. Options of
-  // the program, which PETSc reads later, have precedence.
+  // Residuals do not measure errors (stage_solver), so that a line search by their norm would mislead.
+  // Options of the program have precedence, because PETSc reads them later.
   const SNESLineSearch search = line_search_of(ts);
   SNESLineSearchType type = nullptr;
   check(SNESLineSearchGetType(search, &type));
@@ -122,7 +122,7 @@ double ts_apsis::limited(double dt) {
   return std::min(dt, stepper_->r() * longest);
 }
 
-/// Computes the result of a step, and the second solution with an estimate.
+/// Computes the result of a step and, if errors are estimated, the second solution.
 void ts_apsis::advance(double t, double dt, vector& u) {
   other_ = nullptr;
   if (!estimates_) return stepper_->step(t, dt, u);
@@ -185,7 +185,7 @@ bool ts_apsis::choose_next(double wanted) {
     return false;
   }
   ts_->ptime += dt;
-  // Without a controller, the length that the program chose comes back when Δt_FE allows it.
+  // Without a controller, the step returns to the length that the program chose when Δt_FE allows it.
   if (next == dt && dt < wanted && ts_->tspan == nullptr && !wants_estimate()) {
     next = wanted;
     const double left = ts_->max_time - ts_->ptime;
@@ -206,7 +206,7 @@ void ts_apsis::interpolate(double t, Vec out) {
   if (t != begin) {
     problem_.begin_step(t - begin, false);
     if (estimates_) {
-      // The estimate's own result, so that both ends of the step are those of the steps.
+      // The steps use attempt(), too, so that dense output agrees with them at both ends.
       const auto tried = stepper_->attempt(begin, t - begin, inside_);
       other_ = nullptr;
       return check(VecCopy(tried.result.get(), out));

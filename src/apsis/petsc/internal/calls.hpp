@@ -10,7 +10,7 @@
 
 namespace apsis::petsc {
 
-/// A function of PETSc, or of the user, returned an error that PETSc has recorded.
+/// Thrown when a function of PETSc or of the user returns an error. PETSc has recorded this error.
 class petsc_error : public std::exception {
  public:
   explicit petsc_error(PetscErrorCode code) : code_(code) {}
@@ -36,7 +36,8 @@ inline PetscErrorCode report(MPI_Comm comm, PetscErrorCode code, const char* mes
                     PETSC_ERROR_INITIAL, "%s", message);
 }
 
-/// Returns 0 after body(), or the error of what it throws: no exception enters PETSc.
+/// Calls body(). Returns 0, or the error code of the exception that it throws, so that no exception enters
+/// PETSc.
 template <class Body>
 PetscErrorCode guarded(MPI_Comm comm, const Body& body,
                        std::source_location at = std::source_location::current()) noexcept {

@@ -15,24 +15,25 @@ enum class jacobian_source {
   difference  ///< one difference of Q for each product
 };
 
-/// Matrices of the program for the Jacobian, as its SNES has them.
+/// Matrices that the SNES of the program has for the Jacobian, and their sources.
 struct jacobian_choice {
-  jacobian_source products = jacobian_source::callback;  ///< of the products
-  jacobian_source entries = jacobian_source::callback;  ///< of the assembled matrix; `difference` without one
-  mat a, p;                                             ///< for products and entries
+  jacobian_source products = jacobian_source::callback;  ///< source of the products
+  jacobian_source entries = jacobian_source::callback;   ///< source of the assembled matrix; `difference`
+                                                         ///< without one
+  mat a, p;                                              ///< for products and entries
 };
 
 /// Chooses the source by the callbacks of the TS and by the options -snes_fd, -snes_fd_color, -snes_mf and
 /// -snes_mf_operator of its SNES. Without an IJacobian, columns are colored if the DM provides a matrix.
 jacobian_choice choose_jacobian(const split_functions& of, SNES snes);
 
-/// J = ∂Q/∂u at one state, as the matrix −J, whose sign is that of F.
+/// J = ∂Q/∂u at one state, stored as −J, because F contains −Q.
 class collision_jacobian {
  public:
-  /// Stores a reference. With `constant`, J is evaluated at the first state alone.
+  /// Stores a reference. With `constant`, J is evaluated only at the first state.
   collision_jacobian(split_functions& of, jacobian_choice choice, bool constant);
 
-  /// Moves to a time and a state. Does nothing if it is there.
+  /// Evaluates J at a time and a state, unless this was done last.
   void evaluate(double t, Vec u);
   /// y ← −J x. Requires evaluate().
   void minus_product(Vec x, Vec y);
@@ -41,7 +42,7 @@ class collision_jacobian {
   /// Returns a number that changes with J.
   long version() const { return version_; }
   bool constant() const { return constant_; }
-  /// Returns about ‖J‖, in the maximum norm if J is assembled, by its product with x otherwise.
+  /// Returns about ‖J‖: the maximum norm if J is assembled, otherwise ‖Jx‖/‖x‖.
   double size(Vec x);
 
  private:

@@ -21,7 +21,7 @@ class handle {
   }
   ~handle() { reset(); }
 
-  /// Returns a further reference to an object that belongs to somebody else, or none for nullptr.
+  /// Returns a new reference to an object that has another owner; an empty handle for nullptr.
   static handle share(Object object) {
     handle made;
     made.object_ = object;

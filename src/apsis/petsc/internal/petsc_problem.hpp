@@ -11,7 +11,7 @@
 
 namespace apsis::petsc {
 
-/// A stage failed; the TS has its new step length, or the reason why it ends.
+/// Thrown when a stage fails. The TS then has a new step length, or the reason why it ends.
 class rejected_stage : public numerical_error {
  public:
   using numerical_error::numerical_error;
@@ -27,7 +27,8 @@ class petsc_problem {
   /// Stores references.
   petsc_problem(split_functions& of, stage_solver& stages) : of_(of), stages_(stages) {}
 
-  /// Sets the length of the step in progress, and whether failures of stages are those of a step of the TS.
+  /// Sets the length of the step in progress. If `of_ts`, it is a step of the TS, otherwise one of dense
+  /// output.
   void begin_step(double dt, bool of_ts) {
     dt_ = dt;
     of_ts_ = of_ts;
@@ -47,7 +48,7 @@ class petsc_problem {
 
  private:
   void solve(const stage& now, state& u);
-  /// For each target: acc ← (fresh ? 0 : acc) + α u + β rate(), which is evaluated if some β ≠ 0.
+  /// For each target: acc ← (fresh ? 0 : acc) + α u + β rate(). rate() is called once, if some β ≠ 0.
   template <class Rate>
   void add(const state& u, targets to, const Rate& rate);
 

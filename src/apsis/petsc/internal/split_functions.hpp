@@ -6,8 +6,8 @@
 
 namespace apsis::petsc {
 
-/// T and Q of a TS: T is its RHSFunction, Q(t, u) = −F(t, u, 0) with its IFunction F(t, u, u') = u' − Q(t,
-/// u). Where the problem is fully implicit, T = 0 and Q contains the RHSFunction.
+/// T and Q of a TS. T is its RHSFunction, and Q(t, u) = −F(t, u, 0) with its IFunction F(t, u, u') = u' −
+/// Q(t, u). If the problem is fully implicit, T = 0 and Q contains the RHSFunction.
 class split_functions {
  public:
   /// Stores the TS.
@@ -34,7 +34,7 @@ class split_functions {
   void minus_time_derivative(double t, double dt, Vec u, Vec out);
 
   /// Throws input_error unless F(t, u, u') = u' − Q(t, u), and for equations of second order, transient
-  /// variables and types of equations that are DAEs.
+  /// variables and DAEs.
   void require_form(double t, Vec u);
 
   /// Releases the work vectors.

@@ -9,7 +9,7 @@ namespace apsis::petsc {
 
 /// Preconditioners of 1 − aJ − bJ².
 enum class preconditioner_form {
-  automatic,  ///< `squared` if the Krylov method iterates, or if J² would be lost to rounding
+  automatic,  ///< `squared` if the Krylov method iterates, or if rounding of J² would swamp the identity
   squared,    ///< (1 − γJ)⁻¹ twice, γ = √|b|, by the preconditioner of the program for 1 − γJ
   assembled   ///< the preconditioner of the program for the assembled matrix 1 − aJ − bJ²
 };
@@ -17,15 +17,15 @@ enum class preconditioner_form {
 /// The preconditioner of a stage.
 ///
 /// With γ = √|b| and a ≤ 2γ, the quotient (1 − az + |b|z²)/(1 − γz)² is in [1/2, 1] for real z ≤ 0, so that
-/// the number of iterations is bounded uniformly in Δt/ε. J² is not needed, and 1 − γJ keeps its identity to
-/// Δt/ε = 1e16; that of the assembled matrix is lost to rounding at Δt/ε = 1e8. One inverse stands on each
-/// side of the operator, since both on one side would multiply rounding errors by (Δt/ε)² instead of Δt/ε. If
-/// b = 0, γ is a, and the inverse is applied once.
+/// the number of iterations is bounded uniformly in Δt/ε. The squared form needs no J². Rounding preserves
+/// the identity in 1 − γJ up to Δt/ε = 1e16, but in the assembled matrix only up to 1e8. One inverse stands
+/// on each side of the operator. Both on one side would multiply rounding errors by (Δt/ε)² instead of Δt/ε.
+/// If b = 0, γ is a, and the inverse is applied once.
 ///
 /// Where J is constant, matrices and their preconditioners are kept for every γ.
 class stage_preconditioner {
  public:
-  /// Puts itself into the place of the preconditioner of `ksp`, which prepares the matrices.
+  /// Replaces the preconditioner of `ksp` by this one, which applies the former to its matrices.
   stage_preconditioner(KSP ksp, preconditioner_form form);
   ~stage_preconditioner();
   stage_preconditioner(const stage_preconditioner&) = delete;
@@ -38,7 +38,7 @@ class stage_preconditioner {
   Mat prepare(const collision_jacobian& j, double a, double b, double stiffness);
   /// Whether the inverse belongs on both sides of the operator.
   bool has_right() const { return twice_; }
-  /// y ← (1 − γJ)⁻¹ x, approximately; the inverse of the assembled matrix without has_right().
+  /// y ← (1 − γJ)⁻¹ x, approximately; without has_right(), the inverse of the assembled matrix.
   void apply(Vec x, Vec y);
 
  private:
@@ -56,7 +56,7 @@ class stage_preconditioner {
   void assemble_shifted(entry& to, Mat minus_j);
   void assemble_polynomial(entry& to, Mat minus_j);
   void copy_pc(entry& to);
-  /// Whether -snes_lag_preconditioner keeps the present one, which SNES decides after prepare().
+  /// Keeps the present preconditioner if -snes_lag_preconditioner does. SNES decides this after prepare().
   void follow_reuse() const;
 
   KSP ksp_;

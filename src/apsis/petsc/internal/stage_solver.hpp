@@ -16,7 +16,7 @@ struct stage_settings {
   bool constant_jacobian = false;  ///< whether the program states that ∂Q/∂u is constant
 };
 
-/// A stage v = u_e + a Q(t, v) + b (J Q)(t, v) with J = ∂Q/∂u; with θ also + b ∂Q/∂t.
+/// A stage v = u_e + a Q(t, v) + b (J Q)(t, v) with J = ∂Q/∂u; if `timed`, also + b ∂Q/∂t.
 struct stage {
   double t = 0.0, a = 0.0, b = 0.0;
   double dt = 0.0;     ///< length of the step, for differences in time
@@ -29,11 +29,11 @@ struct krylov_tolerances {
   PetscInt iterations;
 };
 
-/// Solves stages by the SNES of a TS, which gets its function, matrices, convergence test and preconditioner
-/// from here while the solver exists.
+/// Solves stages by the SNES of a TS. Until detach(), this solver provides the function, matrices,
+/// convergence test and preconditioner of the SNES.
 ///
-/// Newton's method ends when its correction is small, measured against -snes_stol and -snes_rtol: residuals
-/// contain (Δt/ε)² Q, whose rounding errors exceed every useful tolerance.
+/// Newton's method ends when its correction is small, measured against -snes_stol and -snes_rtol. Residuals
+/// are unsuitable: they contain (Δt/ε)² Q, whose rounding errors exceed every useful tolerance.
 class stage_solver {
  public:
   /// Stores a reference.
@@ -42,14 +42,14 @@ class stage_solver {
   stage_solver(const stage_solver&) = delete;
   stage_solver& operator=(const stage_solver&) = delete;
 
-  /// u ← v. Returns whether Newton's method converged; u is then undefined if not.
+  /// u ← v. Returns whether Newton's method converged; if not, u is undefined.
   bool solve(const stage& now, Vec u);
   /// Returns why the last solve ended.
   SNESConvergedReason reason() const { return reason_; }
 
   /// r ← v − u_e − aQ − bJQ, as the function of the SNES.
   void residual(Vec v, Vec r);
-  /// Moves the matrices to v, as the Jacobian of the SNES.
+  /// Evaluates the matrices at v, as the function of the SNES for its Jacobian.
   void linearize(Vec v);
   /// y ← (1 − aJ − bJ²) x, or with (1 − γJ)⁻¹ x instead of x (stage_preconditioner).
   void product(Vec x, Vec y);
@@ -59,9 +59,9 @@ class stage_solver {
   void finish_linear_solve(KSP ksp, Vec x);
   /// The convergence test of the SNES.
   SNESConvergedReason test(PetscInt iteration, double of_v, double of_correction, double of_residual);
-  /// Gives the SNES its own parts back.
+  /// Restores the parts that the SNES had before.
   void detach();
-  /// The same, and releases the work vectors.
+  /// Detaches, and releases the work vectors.
   void reset();
 
  private:
@@ -80,7 +80,7 @@ class stage_solver {
   void* own_context_ = nullptr;
   std::optional<collision_jacobian> jacobian_;
   std::unique_ptr<stage_preconditioner> preconditioner_;
-  Mat matrix_ = nullptr;  ///< of the preconditioner, which owns it
+  Mat matrix_ = nullptr;  ///< owned by preconditioner_
   stage now_;
   vector explicit_part_, rate_, product_, middle_, moved_, base_, right_;
   std::optional<krylov_tolerances> tolerances_;  ///< of the program, during a linear solve with two inverses

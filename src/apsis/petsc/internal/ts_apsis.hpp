@@ -44,7 +44,7 @@ class ts_apsis {
   const method& the_method() const { return *method_; }
   ts_settings& settings() { return settings_; }
   stage_solver& stages() { return stages_; }
-  /// Ends the use of the present stepper: settings have changed.
+  /// Discards the stepper, because settings have changed.
   void forget() { stepper_.reset(); }
 
   // Operations of the TS.

@@ -37,14 +37,14 @@ class vector {
   }
   ~vector() { static_cast<void>(VecDestroy(&v_)); }
 
-  /// Copies the values of a Vec, allocated at the first call.
+  /// Copies the values of a Vec. The first call allocates.
   void assign(Vec other) {
     if (v_ == nullptr)
       *this = vector(other);
     else
       check(VecCopy(other, v_));
   }
-  /// Allocates a Vec like another, with undefined values, at the first call.
+  /// Returns the Vec. The first call allocates it like `other`, with undefined values.
   Vec like(Vec other) {
     if (v_ == nullptr) check(VecDuplicate(other, &v_));
     return v_;

@@ -30,15 +30,16 @@ struct step_tolerance {
 template <class State, class Real>
 class any_march {
  public:
-  /// Observes (step, t, dt, u), also before the first step (step 0); false ends the interval.
+  /// Called with (step, t, dt, u) before the first step (step 0) and after every step; false ends the
+  /// interval.
   using observer = std::function<bool(long, Real, Real, const State&)>;
   virtual ~any_march() = default;
 
   /// Advances u from t0 to t1. Throws like integrate() and integrate_to_tolerance().
   virtual void integrate_to(Real t0, Real t1, State& u, const step_rule<Real>& rule,
                             const observer& observe) = 0;
-  /// Advances u from t by one step of length dt, without effect on later steps: the step that a method of one
-  /// step takes, otherwise one of the starter. Throws what a step throws.
+  /// Advances u from t by one step of length dt, without effect on later steps. It is a step of a method of
+  /// one step, or of the starter of a formula of several steps. Throws what a step throws.
   virtual void part_of_step(Real t, Real dt, State& u) = 0;
   /// Returns the number of rejected steps.
   virtual long rejected() const = 0;

@@ -21,9 +21,9 @@
 
 namespace apsis {
 
-/// How the integrators of each kind step: one entry for each file of integrate/kinds/. An entry has the name
-/// of its kind and with(m, p, which, use), which returns use(march); `march` is a stepper or an
-/// equal_step_formula.
+/// The kinds of integrators that take steps: one entry for each file of integrate/kinds/. An entry has the
+/// name of its kind and a function with(m, p, which, use). The function returns use(march), where `march` is
+/// a stepper or an equal_step_formula.
 using stepper_kinds = std::tuple<runge_kutta_steps, exponential_steps, two_step_steps, imex_bdf_steps>;
 
 /// @cond
@@ -43,16 +43,17 @@ auto with_one_of(std::tuple<Kind, Others...>*, const time_integrator& m, P& p, s
 }  // namespace any_stepper_parts
 /// @endcond
 
-/// Returns use(march), `march` being the stepper or the equal_step_formula of an integrator for a problem;
-/// `use` may move it. Stores a reference to the problem, which must outlive it. Throws input_error if the
-/// problem lacks what the integrator needs.
+/// Returns use(march), where `march` is the stepper or the equal_step_formula of an integrator for a problem.
+/// `use` may move it. `march` stores a reference to the problem, which must outlive it. Throws input_error if
+/// the problem lacks what the integrator needs.
 template <problem P, class Use>
 auto with_stepper(const time_integrator& m, P& p, const Use& use, solutions which = solutions::result) {
   return any_stepper_parts::with_one_of(static_cast<stepper_kinds*>(nullptr), m, p, which, use);
 }
 
-/// Takes the steps of an integrator of any kind, with one virtual call for each step: like integrate(), but
-/// where the length of a step changes, an integrator with equal steps begins again with its starter.
+/// Takes the steps of an integrator of any kind, with one virtual call for each step. The steps are those of
+/// integrate(), except where their length changes: there an integrator with equal steps begins again with its
+/// starter.
 template <problem P>
 class any_stepper {
  public:
@@ -65,13 +66,14 @@ class any_stepper {
   /// are those of the starter.
   virtual void step(const time_marcher<real>& march, real dt, state& u) = 0;
 
-  /// Calls visit(v, w) for every v that later steps need in addition to u: the sum of earlier u, with weights
-  /// that add up to w, and of their transport.
+  /// Calls visit(v, w) for every state v that later steps need in addition to u. v is a sum of earlier u,
+  /// with weights that add up to w, and of their transport.
   virtual void visit_kept(const std::function<void(state&, real)>& visit) = 0;
 
   /// Returns the state for a checkpoint; nothing if later steps need u alone.
   virtual std::optional<history_position<real>> save() const = 0;
-  /// Continues from `saved`; visit_kept() then gives the places of the kept values, states like `like`.
+  /// Continues from `saved`. visit_kept() then gives the places of the kept values, which are states like
+  /// `like`.
   virtual void restore(const history_position<real>& saved, const state& like) = 0;
 
   /// Returns the stepper of a method of one step, for steps by tolerance; otherwise nullptr.
@@ -140,14 +142,14 @@ class dependent_steps final : public any_stepper<P> {
 
  private:
   void take(const time_marcher<real>& march, real dt, state& u) {
-    // The initial data, which may be far from equilibrium, are not in the history.
+    // The history omits the initial data, because they may be far from equilibrium.
     const bool first = march.starting() || march.step() == 0;
     if (!first && formula_.known() + 1 >= formula_.first_steps()) return formula_.step(march.t(), dt, u);
     if (!first) formula_.add(march.t(), dt, u);
     formula_.starter().step(march.t(), dt, u);
   }
 
-  /// Not for the last step to the end, which has no successor.
+  /// Warns of a change of length in the next step, so that a shorter last step causes no warning.
   void warn_of_change() {
     const int steps = formula_.first_steps() - 1;  // u itself is in the history
     if (changed_at_ < real(0) || warned_ || steps == 0) return;
@@ -167,7 +169,7 @@ class dependent_steps final : public any_stepper<P> {
 }  // namespace any_stepper_parts
 /// @endcond
 
-/// Returns the stepper of an integrator. `p` must outlive it. `which`: with result_and_embedded, a method of
+/// Returns the stepper of an integrator. `p` must outlive it. If `which` is result_and_embedded, a method of
 /// one step can estimate the errors of its steps. Throws like with_stepper().
 template <problem P>
 std::unique_ptr<any_stepper<P>> make_stepper(const time_integrator& m, P& p,

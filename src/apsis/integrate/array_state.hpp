@@ -65,7 +65,7 @@ bool is_zero(const Row& row) {
   return true;
 }
 
-/// Cold path of require_finite, kept out of line so that the check itself is a few instructions.
+/// Throws the error of require_finite(). Out of line, so that the check itself takes a few instructions.
 template <class Row>
 [[noreturn, gnu::noinline, gnu::cold]] void throw_not_finite(const Row& row, const char* what) {
   using size_type = decltype(row.size());

@@ -17,18 +17,18 @@ using dual = boost::math::differentiation::autodiff_fvar<Real, 1>;
 template <class Real>
 using nested_dual = boost::math::differentiation::autodiff_fvar<Real, 1, 1>;
 
-/// Whether g(t, u, out) can be called: G depends on time.
+/// Whether g(t, u, out) can be called, that is, whether G depends on time.
 template <class G, class Real>
 concept function_of_time =
     requires(G& g, const Real& t, std::span<const Real> in, std::span<Real> out) { g(t, in, out); };
 
-/// Exact derivatives of u' = G(u) along given directions, where g(u, out) sets out ← G(u) for any scalar
-/// type: both are std::span of Real, dual<Real> or nested_dual<Real>. Elementary functions must be called
-/// so that they are found for these types: `using std::sin; out[0] = sin(u[0]);`.
+/// Exact derivatives of u' = G(u) along given directions. g(u, out) sets out ← G(u) for any scalar type; both
+/// arguments are std::span of Real, dual<Real> or nested_dual<Real>. Elementary functions must be called so
+/// that they are found for these types: `using std::sin; out[0] = sin(u[0]);`.
 ///
 /// If G depends on time, g is g(t, u, out), where t has the scalar type of u, and set_time() gives t. Time is
-/// then a further unknown with derivative θ, which is 1 where time passes along the flow of G, and 0 where it
-/// stands still: Ġ = G'G + θ ∂G/∂t.
+/// then a further unknown with derivative θ, so that Ġ = G'G + θ ∂G/∂t. θ is 1 where time advances along the
+/// flow of G, and 0 where it is constant.
 template <class Real, class G>
 class vector_field {
  public:
@@ -133,9 +133,9 @@ class vector_field {
 
 /// Derivatives written by hand, for G whose code does not accept dual numbers:
 ///   value(u, out)              out ← G(u)
-///   jacobian_product(u, x, jx)   jx ← G'(u) x; it enters Ġ = G'G, so its error is one of the solution
+///   jacobian_product(u, x, jx)   jx ← G'(u) x; it enters Ġ = G'G, so that its error affects the solution
 ///   curvature(u, k, x, hx)       hx ← G''(u)[k, x]; its error only slows Newton's method
-/// A G that depends on time has two functions more:
+/// A G that depends on time has two more functions:
 ///   set_time(t)                  sets the time of all evaluations that follow
 ///   time_derivative(u, out)      out ← ∂G/∂t; it enters Ġ as well
 template <class G, class Real>

@@ -17,10 +17,10 @@ namespace apsis {
 
 /// Relative and absolute tolerances of the unknowns u_i, with which errors are compared one by one:
 ///   τ_i(u) = rtol_i |u_i| + atol_i.
-/// It is the distance of error control, with 1 as the tolerance of the controller,
-///   distance(u, v) = max_i |u_i − v_i| / (rtol_i max(|u_i|, |v_i|) + atol_i),
-/// so that no unknown has an estimated error above its own tolerance: step_controller control(1.0, order).
-/// rtol is dimensionless, atol_i has the unit of u_i.
+/// An object of this class is the distance of error control, with 1 as the tolerance of the controller:
+///   distance(u, v) = max_i |u_i − v_i| / (rtol_i max(|u_i|, |v_i|) + atol_i).
+/// No unknown then has an estimated error above its own tolerance. The controller is step_controller
+/// control(1.0, order). rtol is dimensionless, atol_i has the unit of u_i.
 template <class Real>
 class component_tolerances {
  public:
@@ -59,8 +59,8 @@ class component_tolerances {
   /// atol_i.
   Real absolute(std::size_t i) const { return absolute_[absolute_.size() == 1 ? 0 : i]; }
 
-  /// The distance of u and v as above; +infinity or NaN if a number is. 0 of 0 counts as 0.
-  /// Throws input_error if u has another number of unknowns than the tolerances.
+  /// Returns the distance of u and v as above; +infinity or NaN if one of them contains such a number. A
+  /// ratio 0/0 counts as 0. Throws input_error if u has another number of unknowns than the tolerances.
   template <array_state State>
   Real operator()(const State& u, const State& v) const {
     using size_type = decltype(u.size());
@@ -75,7 +75,7 @@ class component_tolerances {
     return largest;
   }
 
-  /// max_i |δ_i|/τ_i(v) of a change δ of v. Throws like the distance.
+  /// Returns max_i |δ_i|/τ_i(v) for a change δ of v. Throws like the distance.
   Real of_change(std::span<const Real> v, std::span<const Real> delta) const {
     require_length(v.size());
     Real largest(0);

@@ -14,14 +14,15 @@ namespace apsis {
 
 /// Derivatives by central differences (`differentiated`), for a g(u, out) or g(t, u, out) that accepts
 /// numbers of type Real only. A product G'(u) x has about two thirds of the digits of Real and takes two
-/// calls of g. It enters Ġ = G'G and thus the solution: for G much faster than a step choose a method without
-/// second derivatives, such as extrapolated-euler-S, in which differences only slow Newton's method.
-/// Differences change unknown i by small parts of max(|u_i|, 1e-6 max|u|), and t by such parts of
+/// calls of g. It enters Ġ = G'G and thus the solution. For G much faster than a step, choose a method
+/// without second derivatives, such as extrapolated-euler-S: there errors of differences only slow Newton's
+/// method. Differences change unknown i by small parts of max(|u_i|, 1e-6 max|u|), and t by such parts of
 /// max(|t|, time_scale).
 template <class G, class Real = double>
 class difference_derivatives {
  public:
-  /// Stores g as above. time_scale > 0 is a time in which G changes little; of use at t = 0 only.
+  /// Stores g as above. time_scale > 0 is a time in which G changes little; it is used for t closer to 0 than
+  /// time_scale.
   explicit difference_derivatives(G g, Real time_scale = Real(1))
       : g_(std::move(g)), time_scale_(time_scale) {}
 
@@ -95,7 +96,7 @@ class difference_derivatives {
     for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += weight * value_[i];
   }
 
-  /// The h with which hx changes no unknown by more than `part` of its size; 1 for x = 0.
+  /// Returns the h with which hx changes no unknown by more than `part` of its size; 1 for x = 0.
   static Real length(std::span<const Real> u, std::span<const Real> x, Real part) {
     Real largest(0), h = std::numeric_limits<Real>::infinity();
     for (const Real value : u) largest = std::max(largest, std::abs(value));

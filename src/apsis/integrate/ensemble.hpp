@@ -60,9 +60,9 @@ class lane_problem {
   bool has_transport(double t, const state& u) { return !is_zero(evaluate(*f_, t, u)); }
   double forward_euler_step(double, const state&) const { return std::numeric_limits<double>::infinity(); }
 
-  /// Newton's method, whose matrix is that of an earlier iteration while corrections shrink eightfold. A
-  /// correction below a thousandth of the tolerance ends it: extrapolation multiplies errors of solves by up
-  /// to 300.
+  /// Solves a stage by Newton's method. The matrix of an earlier iteration is kept while corrections shrink
+  /// eightfold. The iteration ends with a correction of at most a thousandth of the tolerance, because
+  /// extrapolation multiplies errors of solves by up to 300.
   void solve_collision(double t, double a, double, state& u) {
     if (a == 0.0) return;
     ++counts_.solves;
@@ -91,7 +91,7 @@ class lane_problem {
         "reduce the step");
   }
 
-  /// The largest difference of two states in units of the tolerances.
+  /// Returns the largest difference of two states in units of the tolerances.
   double distance(const state& u, const state& v) const {
     largest_ratio largest;
     for (std::size_t i = 0; i < N; ++i) {
@@ -215,24 +215,23 @@ struct no_lane_transport {
 };
 
 /// Integrates many systems u' = F(t, u, p) + G(t, u, p) of N unknowns each from t0 to t1, eight side by side
-/// in the lanes of vectors: cells of a reacting flow or of a plasma. F is explicit and G implicit. All
-/// quantities are dimensionless.
+/// in the lanes of vectors, such as cells of a reacting flow or of a plasma. F is explicit and G implicit.
+/// All quantities are dimensionless.
 ///   u            N numbers of each system, one system after the other; replaced by those at t1
 ///   parameters   Parameters numbers of each system, in the same order
-///   f, g         called as g(t, u, p, out) for eight systems: u and out are spans of N `lanes` or `jet<N>`,
-///   p is
-///                one of lanes; written once for both: [](double, auto u, auto p, auto out) { … }. They
-///                must not branch on numbers. f is called with lanes alone
+///   f, g         called as g(t, u, p, out) for eight systems. u and out are spans of N `lanes` or `jet<N>`,
+///                p is a span of lanes; [](double, auto u, auto p, auto out) { … } accepts all of them. They
+///                must not branch on numbers. f is called with lanes only
 /// Steps keep the estimated error of every unknown of every system below its tolerance. The systems of a
-/// group share their steps, so that a system depends, within its tolerance, on the seven others of its group,
-/// and on nothing else. Disjoint parts of an ensemble may be integrated by different threads; parts of
-/// multiples of eight systems have the bits of the whole. Stages are solved by Newton's method with exact
-/// derivatives (jets), to a thousandth of the tolerance. The method has no second derivatives:
-/// extrapolated-euler-S, ark-436, ars-443, ….
+/// group share their steps. A system therefore depends, within its tolerance, on the seven others of its
+/// group, and on no other system. Different threads may integrate disjoint parts of an ensemble. If the parts
+/// are multiples of eight systems, the results are bitwise those of the whole. Stages are solved by Newton's
+/// method with exact derivatives (jets), to a thousandth of the tolerance. The method has no second
+/// derivatives: extrapolated-euler-S, ark-436, ars-443, ….
 ///
-/// Throws input_error for another method, for numbers that do not fit together or are not finite, and for
-/// t1 < t0; numerical_error with the number of a system as the cell if its steps fail, the systems before its
-/// group being at t1 and the others at t0.
+/// Throws input_error for another method, for numbers that do not fit together or are not finite, and for t1
+/// < t0. Throws numerical_error with the number of a system as the cell if its steps fail. Systems before its
+/// group are then at t1, the others at t0.
 template <std::size_t N, std::size_t Parameters = 0, class F, class G>
 ensemble_counts integrate_ensemble(const method& m, const F& f, const G& g, std::span<double> u,
                                    std::span<const double> parameters, double t0, double t1,

@@ -9,7 +9,7 @@
 
 namespace apsis {
 
-/// Position of a formula in the history that it keeps between steps.
+/// Position of a formula in its history, the values that it stores between steps.
 template <class Real>
 struct history_position {
   Real dt{};       ///< length of its steps
@@ -23,9 +23,9 @@ struct history_position {
   }
 };
 
-/// A formula of several equal steps. add(t, Δt, u) records a value of the start-up, Δt after the last one;
-/// step(t, Δt, u) requires first_steps() − 1 of them before u, known() counts them, and restart() discards
-/// them.
+/// A formula of several equal steps. add(t, Δt, u) records a value of the start-up, Δt after the last one.
+/// step(t, Δt, u) requires first_steps() − 1 such values before u. known() counts these values, and restart()
+/// discards them.
 template <class Formula>
 concept equal_step_formula = requires(Formula f, typename Formula::real t, typename Formula::state u) {
   { f.first_steps() } -> std::convertible_to<int>;

@@ -13,11 +13,13 @@
 namespace apsis {
 
 /// Step-size controller: keeps the estimated error err of a step below a tolerance. A step is rejected if err
-/// > tol. L_n = Δt_n (tol/err_n)^{1/k} is the longest step that would have been accepted; the next step is
-/// 0.9 L_n after a rejected step, and that of a step_law after an accepted one, between 0.2 times and twice
-/// the last one, and not longer right after a rejection. err ~ Δt^k: k is the order of the embedded solution
-/// plus one. The usual law is Gustafsson's predictive controller: with it a decrease of L, as where steps
-/// approach ε, is expected to continue, an increase, as after a layer, is not.
+/// > tol. Errors grow like err ~ Δt^k, where k is the order of the embedded solution plus one. The longest
+/// step that would have been accepted is L_n = Δt_n (tol/err_n)^{1/k}. The next step is
+/// - 0.9 L_n after a rejected step, but at least 0.2 times the last one;
+/// - that of a step_law after an accepted one, between 0.2 times and twice the last one, and not longer right
+/// after a rejection.
+/// The default law is Gustafsson's predictive controller. It expects a decrease of L to continue, as where
+/// steps approach ε, but not an increase, as after a layer.
 template <class Real>
 class step_controller {
  public:
@@ -91,7 +93,7 @@ class step_controller {
   Real factor_before() const {
     return now_.longest > Real(0) ? Real(0.9) * now_.longest / now_.length : Real(1);
   }
-  /// Returns Δt_{n+1} of the law, of the accepted step n with this L_n.
+  /// Returns the Δt_{n+1} of the law after an accepted step n of length dt with this L_n.
   Real by_law(Real dt, Real longest) const {
     using std::pow;
     const bool first = !(now_.longest > Real(0));
@@ -121,10 +123,10 @@ void require_admissible(P& p, const typename P::state& u) {
   }
 }
 
-/// Takes one accepted step of length `limit` at most: u ← u^{n+1}; returns its length. distance(u, v) is a
-/// norm of u − v chosen by the caller, and `estimate` computes the error in it. A step that fails with a
-/// numerical_error, or whose result is not admissible, is rejected like one with infinite error; once steps
-/// are too small to advance time, that numerical_error is thrown and u is still u^n.
+/// Takes one accepted step of length `limit` at most: u ← u^{n+1}. Returns its length. The caller chooses
+/// distance(u, v), a norm of u − v, and `estimate` computes the error in it. A step is rejected, like one
+/// with infinite error, if it fails with a numerical_error or its result is not admissible. Once steps are
+/// too small to advance time, that numerical_error is thrown, and u is still u^n.
 template <problem P, class Distance>
 typename P::real step_within_tolerance(stepper<P>& method_stepper,
                                        const time_marcher<typename P::real>& march,
@@ -156,9 +158,9 @@ typename P::real step_within_tolerance(stepper<P>& method_stepper,
   }
 }
 
-/// Sets the first step of a controller without a proposed step: first_step_length(), and with startup::graded
-/// at most longest_first_step(ε/C), so that the initial layer is resolved to the tolerance. `longest` limits
-/// every step. Throws input_error for a graded start of a problem without relaxation_time.
+/// Sets the first step of a controller without a proposed step to first_step_length(). With startup::graded
+/// it is at most longest_first_step(ε/C), so that steps resolve the initial layer to the tolerance. `longest`
+/// limits every step. Throws input_error for a graded start of a problem without relaxation_time.
 template <problem P, class Distance>
 void start_control(P& p, typename P::real t, const typename P::state& u, typename P::real longest,
                    const step_rule<typename P::real>& rule, step_controller<typename P::real>& control,
@@ -171,10 +173,10 @@ void start_control(P& p, typename P::real t, const typename P::state& u, typenam
   control.start_with(dt);
 }
 
-/// Integrates u from t0 to t1 like integrate(), with steps chosen by `control`; the rule, including a
-/// given dt, is an upper limit, and step_rule::unlimited() sets none. start_control() sets the first step
-/// of a controller without one. The stepper must compute solutions::result_and_embedded. Throws like
-/// integrate() and step_within_tolerance().
+/// Integrates u from t0 to t1 like integrate(), with steps chosen by `control`. The rule, including a given
+/// dt, is an upper limit; step_rule::unlimited() sets no limit. start_control() sets the first step of a
+/// controller without one. The stepper must compute solutions::result_and_embedded. Throws like integrate()
+/// and step_within_tolerance().
 template <problem P, class Distance, class Observer = no_observer>
 integration_result<typename P::real> integrate_to_tolerance(stepper<P>& method_stepper, typename P::state& u,
                                                             typename P::real t0, typename P::real t1,

@@ -18,16 +18,17 @@ struct error_target {
   int order;       ///< q; the estimate is of size Δt^{q+1}
 };
 
-/// Estimated error of a step: the distance between u^{n+1} and the embedded solution ũ, in which the
-/// component off the equilibrium manifold has less weight where it relaxes within the step or belongs to an
-/// initial layer (docs/methods.md, "Embedded solutions"). With e = u^{n+1} − ũ and P(x) = x + aQ(P(x)), a →
-/// ∞, the projection to the manifold,
+/// Estimated error of a step: the distance between u^{n+1} and the embedded solution ũ. The component off the
+/// equilibrium manifold has less weight where it relaxes within the step or belongs to an initial layer
+/// (docs/methods.md, "Embedded solutions"). With e = u^{n+1} − ũ and P(x) = x + aQ(P(x)), a → ∞, the
+/// projection to the manifold,
 ///   estimate = W ‖(w e + v(u^{n+1}) − v(ũ))/(1 + w)‖,   v(x) = x + (Δt/ρ²) Q(v(x)),   w = ρ/(10 W),
-///   ρ = ‖P(u^{n+1}) − P(u^n)‖/‖u^{n+1} − u^n‖, between 1/100 and 1,
-/// and the weight W of the method (embedded_certificate). To first order the component along the manifold has
-/// weight W, and the rest W (w + 1/(1 + z/ρ²))/(1 + w) with z = CΔt/ε: W for z → 0, about 1/10 for z → ∞
-/// while u follows its moments (ρ = 1), and 1/1000 at least in a layer, where the moments hardly change. For
-/// problems without relaxation_time, and for steps that resolve collisions, the estimate is W ‖e‖.
+///   ρ = ‖P(u^{n+1}) − P(u^n)‖/‖u^{n+1} − u^n‖, between 1/100 and 1.
+/// W is the weight of the method (embedded_certificate). To first order the component along the manifold has
+/// weight W, and the rest W (w + 1/(1 + z/ρ²))/(1 + w) with z = CΔt/ε. The latter is W for z → 0. For z → ∞
+/// it is about 1/10 while u follows its moments (ρ = 1), and at least 1/1000 in a layer, where the moments
+/// hardly change. For problems without relaxation_time, and for steps that resolve collisions, the estimate
+/// is W ‖e‖.
 template <problem P>
 class error_estimate {
  public:
@@ -82,13 +83,13 @@ class error_estimate {
   std::optional<bool> relaxes_;
 };
 
-/// Returns the length of the first step: that in which u changes by tol^{1/(q+1)}, relative to u, at the rate
-/// of the moments at equilibrium and, unless the initial layer changes the moments by less than tol, at the
-/// rate D₀/(ε/C) of the layer, D₀ = u − E(ℛu) and ε/C the smallest. The layer changes the moments by
-/// (ε/C) ℛ(T(u) − T(E(ℛu))). For problems without relaxation_time the rate is that of T + Q, or of T if Q
-/// cannot be evaluated. The rate is that of a change much shorter than the step: over a long one the distance
-/// may no longer grow, as where it is relative to the larger state. At most `longest`, which is also the
-/// result if nothing changes. Dimensionless.
+/// Returns the length of the first step, in which u changes by tol^{1/(q+1)}, relative to u. The rate of
+/// change is the larger of two: that of the moments at equilibrium, and the rate D₀/(ε/C) of the initial
+/// layer, with D₀ = u − E(ℛu) and the smallest ε/C. The layer counts only if it changes the moments by more
+/// than tol; their change is (ε/C) ℛ(T(u) − T(E(ℛu))). For problems without relaxation_time the rate is that
+/// of T + Q, or of T if Q cannot be evaluated. The rate is measured over a time much shorter than the step.
+/// Over a long time the distance may no longer grow, as where it is relative to the larger state. The result
+/// is at most `longest`, and `longest` if nothing changes. Dimensionless.
 template <problem P, class Distance>
 typename P::real first_step_length(P& p, typename P::real t, const typename P::state& u,
                                    typename P::real longest, const error_target<typename P::real>& wanted,

@@ -22,7 +22,7 @@ struct event_functions {
   std::vector<int> directions{};  ///< of each: 1 for increasing g, −1 for decreasing, 0 for both; empty: both
   std::vector<bool> ends{};       ///< of each: whether an event ends the integration; empty: it does
 
-  /// Whether a change of g_k from one sign to another is an event; a sign is −1, 0 or 1. g_k = 0 is one
+  /// Whether a change of g_k from one sign to another is an event; a sign is −1, 0 or 1. g_k = 0 is an event
   /// unless g_k was 0 before.
   bool is_event(std::size_t k, int before, int after) const {
     if (before == 0 || before == after) return false;
@@ -48,9 +48,10 @@ int sign_of_event(std::size_t k, Real g, Real t) {
   return g > Real(0) ? 1 : g < Real(0) ? -1 : 0;
 }
 
-/// Returns a time b at most `width` > 0 after a change of the sign of g, which is g_a ≠ 0 at a and has
-/// another sign at b, g_b: g(b) does not have the sign of g_a. By the Illinois method (Dowell, Jarratt, BIT
-/// 11 (1971) 168–174), with bisection where that is slow; g need not be continuous.
+/// Returns a time at most `width` > 0 after a change of the sign of g between a and b. At this time g does
+/// not have the sign of g_a. Requires g(a) = g_a ≠ 0 and g(b) = g_b of another sign; g need not be
+/// continuous. Uses the Illinois method (Dowell, Jarratt, BIT 11 (1971) 168–174), with bisection where this
+/// is slow.
 template <class Real, class G>
 Real time_after_sign_change(const G& g, Real a, Real g_a, Real b, Real g_b, Real width) {
   const bool positive = g_a > Real(0);

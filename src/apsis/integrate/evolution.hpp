@@ -20,7 +20,7 @@ namespace apsis {
 /// Why an evolution ended.
 enum class evolution_end {
   reached,  ///< at the requested time
-  stopped,  ///< where the observer wanted
+  stopped,  ///< the observer returned false
   event     ///< at an event
 };
 
@@ -36,13 +36,15 @@ void require_increasing(const std::vector<Real>& times) {
 
 /// A solution that advances from one time to the next by an integrator of any kind, with the steps that
 /// integrate() and integrate_to_tolerance() take over each interval, bit for bit. The controller of the steps
-/// continues from one interval to the next; a formula of several equal steps begins each with its starter.
+/// continues from one interval to the next; a formula of several equal steps begins each interval with its
+/// starter.
 ///
 /// Dense output: the solution at t + θ Δt inside the last step is that of a step of length θ Δt from its
 /// beginning. It has the order p of the method and the properties that steps preserve for every Δt or for
 /// short ones: positivity, bounds, conservation, the limit ε → 0. Each evaluation costs a step. At θ = 0 and
-/// 1 it is the solution itself, bit for bit; for a formula of several equal steps, whose starter takes the
-/// step, it jumps by the local error at θ = 1. Events are zeros of functions of this solution, to rounding.
+/// 1 it is the solution itself, bit for bit. For a formula of several equal steps the starter takes this
+/// step, so that dense output jumps by the local error at θ = 1. Events are zeros of functions of this
+/// solution, to rounding.
 template <problem P>
 class evolution {
  public:
@@ -61,7 +63,7 @@ class evolution {
   evolution(const time_integrator& m, P& p, step_rule<real> rule,
             const std::optional<tolerance>& tolerated = std::nullopt)
       : rule_(rule), march_(make_march(m, p, tolerated)) {}
-  /// The same for a method of one step, which need not be registered.
+  /// Uses a method of one step, which need not be registered, like the constructor above.
   evolution(const method& m, P& p, step_rule<real> rule,
             const std::optional<tolerance>& tolerated = std::nullopt)
       : rule_(rule), march_(make_march(m, p, tolerated)) {}
@@ -78,8 +80,8 @@ class evolution {
     observe_event_ = std::move(observe);
   }
 
-  /// Sets times at which steps end exactly, such as discontinuities of T: increasing numbers. Throws
-  /// input_error if they are not.
+  /// Sets increasing times at which steps end exactly, such as discontinuities of T. Throws input_error if
+  /// they do not increase or are not finite.
   void set_stops(std::vector<real> times) {
     require_increasing(times);
     stops_ = std::move(times);
@@ -96,7 +98,7 @@ class evolution {
   }
 
   /// Integrates from the time reached to t1, or to the first event that ends the integration. Throws like
-  /// integrate(), time and state then being those of the last accepted step. Requires start().
+  /// integrate(); time and state are then those of the last accepted step. Requires start().
   evolution_end advance(real t1, const observer& observe = {}) {
     try {
       const auto first = std::upper_bound(stops_.begin(), stops_.end(), t_);
@@ -121,8 +123,8 @@ class evolution {
     return step_from(before_t_, before_, t);
   }
 
-  /// Returns the solution at t of one step that begins with u at t0 ≤ t: at() of an earlier step, whose
-  /// beginning the caller kept. Throws input_error for t < t0, and what a step throws.
+  /// Returns the solution at t of one step that begins with u at t0 ≤ t. This is at() for an earlier step,
+  /// whose beginning the caller stored. Throws input_error for t < t0, and what a step throws.
   state step_from(real t0, state u, real t) {
     if (!(t0 <= t))
       throw input_error(
@@ -210,7 +212,7 @@ class evolution {
       evaluate_events(t, at(t), g);
       return g[k];
     };
-    // As precise as times are: some roundings.
+    // The precision of times: some roundings.
     const real width = real(100) * std::numeric_limits<real>::epsilon() * (std::abs(t_) + (t_ - before_t_));
     return time_after_sign_change(value, before_t_, g_[k], t_, next_g_[k], width);
   }
@@ -222,7 +224,7 @@ class evolution {
   std::vector<real> stops_;
   real t_ = std::numeric_limits<real>::quiet_NaN(), before_t_ = t_;
   state u_{}, before_{},
-      last_{};  ///< before_: at the begin of the last step; last_: a copy of u_ for the next
+      last_{};  ///< before_: at the beginning of the last step; last_: a copy of u_ for the next step
   std::vector<real> g_, next_g_;  ///< values of the event functions at t_
   std::vector<found_event<real>> found_;
   long steps_ = 0;

@@ -21,15 +21,15 @@ struct extrapolation_options {
                               ///< is below rounding
 };
 
-/// Computes a reference solution of u' = T(t, u) + Q(u) that shares no coefficients with any method of the
-/// catalogue, by extrapolation of implicit–explicit Euler steps v = u + h T(u) + h Q(v). A step of length H
-/// is taken with n = 1, 2, …, K substeps, and Σ_n w_n u_n with w_n = Π_{m≠n} n/(n − m) has order K, because
-/// the error of Euler's method has an expansion in powers of 1/n. The difference to the result without the
-/// last column controls the step length, so that an initial layer is resolved; outside the layer accuracy
-/// alone limits the step, whatever ε is. `distance(u, v)` is a norm of u − v. Returns the number of accepted
-/// steps; u is then the solution at t1. Rounding errors are amplified by Σ|w_n| ≈ 4e3 for K = 8. Throws
-/// numerical_error if steps become too small or too many. (Deuflhard 1983; for IMEX: Constantinescu & Sandu,
-/// SIAM J. Sci. Comput. 31 (2010) 4452.)
+/// Computes a reference solution of u' = T(t, u) + Q(u) by extrapolation of implicit–explicit Euler steps v =
+/// u + h T(u) + h Q(v). It shares no coefficients with any method of the catalogue. A step of length H is
+/// taken with n = 1, 2, …, K substeps. Their combination Σ_n w_n u_n with w_n = Π_{m≠n} n/(n − m) has order
+/// K, because the error of Euler's method has an expansion in powers of 1/n. The difference to the result
+/// without the last column controls the step length, so that steps resolve an initial layer. Outside the
+/// layer accuracy alone limits the step, whatever ε is. `distance(u, v)` is a norm of u − v. Returns the
+/// number of accepted steps; u is then the solution at t1. Rounding errors are amplified by Σ|w_n| ≈ 4e3 for
+/// K = 8. Throws numerical_error if steps become too small or too many. (Deuflhard 1983; for IMEX:
+/// Constantinescu & Sandu, SIAM J. Sci. Comput. 31 (2010) 4452.)
 template <problem P, class Distance>
 long extrapolate(P& p, typename P::state& u, typename P::real t0, typename P::real t1,
                  extrapolation_options<typename P::real> options, const Distance& distance) {

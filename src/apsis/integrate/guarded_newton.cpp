@@ -111,8 +111,8 @@ template <class Real>
 using square = Eigen::Matrix<Real, Eigen::Dynamic, Eigen::Dynamic>;
 
 /// Returns the largest stiffness of a stage that is solved for v alone. Rounding errors of stiff directions,
-/// times the stiffness, reach the others: at most 2e-10 with Ġ in double precision. Without Ġ both solvers
-/// lose the same digits, but only the other one estimates the loss.
+/// times the stiffness, reach the others: at most 2e-10 with Ġ in double precision. Without Ġ this solver and
+/// unsquared_newton() lose the same digits, but only the latter estimates the loss.
 template <class Real>
 Real stiffest(const stage_equation<Real>& equation) {
   return equation.terms().b != Real(0) ? Real(1e6) : Real(1e8);
@@ -273,8 +273,8 @@ class newton {
       const bool admissible = equation_.admissible(as_span<Real>(std::as_const(trial_)));
       if (inside_ && !admissible) continue;
       const Real norm = evaluate(trial_, trial_r_);
-      // If G is stiff, a step along its slow manifold leaves the manifold by O(Δ²), which R amplifies by
-      // (Δt/ε)² and the next step corrects: progress shows in the next step with the same R'.
+      // If G is stiff, a step along its slow manifold leaves the manifold by O(Δ²). R amplifies this by
+      // (Δt/ε)², but the next step corrects it. Progress therefore shows in the next step with the same R'.
       const bool natural = !small && correct && norm < std::numeric_limits<Real>::infinity() &&
                            largest<Real>(correct(trial_r_)) <= (Real(1) - t / Real(2)) * largest<Real>(delta);
       if (natural || norm <= (Real(1) - Real(1e-4) * t) * norm_) {
@@ -327,7 +327,7 @@ class newton {
     return true;
   }
 
-  /// Adds the last correction, unless that leaves the admissible set or what is finite.
+  /// Adds the last correction, unless the result is not admissible or its residual is not finite.
   bool end_with(const column<Real>& delta) {
     trial_ = v_ + delta;
     const bool admissible = equation_.admissible(as_span<Real>(std::as_const(trial_)));

@@ -15,7 +15,7 @@ struct stage_terms {
   Real a,                               ///< a ≥ 0
       b;                                ///< b ≤ 0
   std::span<const Real> explicit_part;  ///< u_e
-  Real size = Real(0);                  ///< a size of the state, for v and u_e that are parts of it
+  Real size = Real(0);                  ///< a size of the whole state if v and u_e are parts of it
 };
 
 /// Interface of a stage equation R(v) = v − u_e − a G(v) − b Ġ(v) = 0 to Newton's method;
@@ -31,7 +31,7 @@ class stage_equation {
   virtual const mass_matrix<Real>* mass() const { return nullptr; }  ///< M; null for the unit matrix
   /// Sets g ← G(v).
   virtual void rate(std::span<const Real> v, std::span<Real> g) = 0;
-  /// Sets jk ← G'(v) k, the derivative of G along a flow with the rate k; plus ∂G/∂t where time flows too.
+  /// Sets jk ← G'(v) k, the derivative of G along a flow with the rate k, plus ∂G/∂t if time advances, too.
   virtual void rate_product(std::span<const Real> v, std::span<const Real> k, std::span<Real> jk) = 0;
   /// Sets jx ← G'(v) x and hx ← G''(v)[k, x], the derivative of rate_product in the direction x for a given
   /// k.
@@ -46,8 +46,8 @@ class stage_equation {
                             std::span<Real> z) = 0;
   /// Whether v is admissible; Newton iterates never leave the admissible set once they are inside.
   virtual bool admissible(std::span<const Real> v) = 0;
-  /// Size of a correction δ of v in units of the accuracy that is needed: the root is accurate enough after a
-  /// correction of at most 1. +infinity, the default, asks for the root to rounding errors.
+  /// Returns the size of a correction δ of v in units of the accuracy that is needed. After a correction of
+  /// at most 1 the root is accurate enough. The default, +infinity, requires the root to rounding errors.
   virtual Real size_of_correction(std::span<const Real> v, std::span<const Real> delta) {
     (void)v;
     (void)delta;
@@ -80,17 +80,20 @@ struct newton_report {
   int factorizations = 0;  ///< matrices of the solve, or systems solved without matrices
 };
 
-/// Solves R(v) = 0 to round-off, starting from the given v: Newton's method with exact derivatives and
-/// backtracking on the maximum norm of R, until no further improvement is possible. With LU, a step is also
+/// Solves R(v) = 0 to round-off, starting from the given v, by Newton's method with exact derivatives.
+/// Backtracks on the maximum norm of R until no further improvement is possible. With LU, a step is also
 /// accepted if the next step with the same R' is shorter (the natural monotonicity test: Deuflhard, Newton
-/// Methods for Nonlinear Problems, section 3.3). If the equation states the accuracy that is needed,
-/// iterations end there, and repeat corrections with the same R' while each is at most 1/8 of the one before.
-/// Instantiated for double and long double.
+/// Methods for Nonlinear Problems, section 3.3). If the equation states the accuracy that is needed, the
+/// iteration ends with it. In this case corrections with the same R' are repeated while each is at most 1/8
+/// of the one before. Instantiated for double and long double.
 ///
-/// Throws numerical_error if R(v) is not finite at the start, if R'(v) is singular to working precision
-/// (smallest singular value, relative to the terms of R' before they cancel, below about 1e-14 in double: for
-/// a stage with d = 0 that is Δt λ near ±i/√|ḋ|, λ an eigenvalue of G'), if no step reduces the norm inside
-/// the admissible set, if the root is not admissible, or after max_iterations.
+/// Throws numerical_error
+/// - if R(v) is not finite at the start;
+/// - if R'(v) is singular to working precision: its smallest singular value, relative to the terms of R'
+/// before they cancel, is below about 1e-14 in double. For a stage with d = 0, this occurs for Δt λ near
+/// ±i/√|ḋ|, λ an eigenvalue of G';
+/// - if no step reduces the norm inside the admissible set, if the root is not admissible, or after
+/// max_iterations.
 template <class Real>
 newton_report guarded_newton(stage_equation<Real>& equation, std::span<Real> v,
                              const newton_options& options = {});

@@ -30,7 +30,7 @@ struct step_rule {
   /// Returns the rule of unlimited steps, for integrate_to_tolerance().
   static step_rule unlimited() { return fixed(std::numeric_limits<Real>::infinity()); }
   /// Returns the same rule with the given start-up. `ratio`, from 2 to largest_growth, is that of successive
-  /// times of a graded start: 4 or 8 saves methods of order 5 and more half or two thirds of its steps.
+  /// times of a graded start. For methods of order 5 and more, 4 or 8 saves half or two thirds of its steps.
   step_rule with(startup first, int ratio = default_growth) const { return {dt, safety, first, ratio}; }
 };
 
@@ -108,8 +108,8 @@ integration_result<typename P::real> integrate_with(const Take& take, stepper<P>
 
 /// Integrates u from t0 to t1. observer(step, t, dt, u) is called for the initial state (step 0, dt 0) and
 /// after every step; if it returns a bool, false ends the integration. Throws numerical_error with step and
-/// time if a step fails, u then being the last accepted state; input_error if the rule cannot be applied, or
-/// for a graded start-up of a problem without relaxation_time.
+/// time if a step fails; u is then the last accepted state. Throws input_error if the rule cannot be applied,
+/// or for a graded start-up of a problem without relaxation_time.
 template <problem P, class Observer = no_observer>
 integration_result<typename P::real> integrate(stepper<P>& method_stepper, typename P::state& u,
                                                typename P::real t0, typename P::real t1,

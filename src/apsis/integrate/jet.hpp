@@ -7,8 +7,8 @@
 
 namespace apsis::lane_arithmetic {
 
-/// A number and its derivatives by N unknowns, in lanes: x + Σ x_i s_i with s_i s_j = 0. One evaluation of a
-/// function on jets gives its value and all columns of its derivative.
+/// A number and its derivatives with respect to N unknowns, in lanes: x + Σ x_i s_i with s_i s_j = 0. One
+/// evaluation of a function on jets gives its value and all columns of its derivative.
 template <std::size_t N>
 struct jet {
   lanes value;              ///< x

@@ -7,9 +7,9 @@
 
 namespace apsis {
 
-/// Eight matrices of N × N numbers side by side, and the solution of their linear systems by LU factors with
-/// row exchanges, which every lane chooses for itself (partial pivoting: Golub, Van Loan, Matrix
-/// Computations, section 3.4). A singular matrix gives numbers that are not finite, in its lane alone.
+/// Eight matrices of N × N numbers side by side. LU factors with row exchanges solve their linear systems
+/// (partial pivoting: Golub, Van Loan, Matrix Computations, section 3.4). Every lane chooses its own
+/// exchanges. A singular matrix gives numbers that are not finite, in its lane only.
 template <std::size_t N>
 class lane_matrix {
  public:

@@ -4,13 +4,13 @@
 #include <cstddef>
 #include <cstring>
 
-// The vectors are values of inlined functions alone, so that no call of another object file passes one.
+// Vectors are values of inlined functions only, so that no call between object files passes one.
 #if defined(__GNUC__) && !defined(__clang__)
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wpsabi"
 #endif
 
-// A namespace of its own, since log is one of apsis.
+// A namespace of its own, because apsis::log is a namespace.
 namespace apsis::lane_arithmetic {
 
 /// One number of each of eight systems. Arithmetic is that of eight doubles, which compilers carry out in the
@@ -50,7 +50,7 @@ class lanes {
   friend lanes abs(const lanes& x) { return lanes(x.all_ < 0.0 ? -x.all_ : x.all_); }
   /// The larger number of each lane; x where y is NaN.
   friend lanes larger(const lanes& x, const lanes& y) { return lanes(y.all_ > x.all_ ? y.all_ : x.all_); }
-  /// Some of the lanes.
+  /// A selection of lanes.
   class choice {
     friend class lanes;
     friend choice where_larger(const lanes& x, const lanes& y);
@@ -58,13 +58,13 @@ class lanes {
     using mask [[gnu::vector_size(8 * sizeof(double))]] = long long;
     mask chosen_;
   };
-  /// The lanes in which |y| > |x|.
+  /// Returns the lanes in which |y| > |x|.
   friend choice where_larger(const lanes& x, const lanes& y) {
     choice of;
     of.chosen_ = abs(y).all_ > abs(x).all_;
     return of;
   }
-  /// Exchanges x and y in some lanes.
+  /// Exchanges x and y in the selected lanes.
   friend void exchange(const choice& of, lanes& x, lanes& y) {
     const vector first = x.all_;
     x.all_ = of.chosen_ ? y.all_ : first;
@@ -110,7 +110,7 @@ class lanes {
   vector all_;
 };
 
-/// ln x, declared again where its name would be that of the namespace of messages.
+/// ln x, declared again, because otherwise `log` would name the namespace of messages.
 inline lanes log(const lanes& x);
 
 }  // namespace apsis::lane_arithmetic

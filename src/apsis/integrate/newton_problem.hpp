@@ -23,8 +23,8 @@
 
 namespace apsis {
 
-/// u' = F(t, u) + G(u) for any smooth G: G' and Ġ = G'G come from automatic differentiation and the stage v =
-/// u + a G(v) + b Ġ(v) from a guarded Newton method (guarded_newton.hpp). F is explicit, G implicit; all
+/// u' = F(t, u) + G(u) for any smooth G. Automatic differentiation gives G' and Ġ = G'G. A guarded Newton
+/// method (guarded_newton.hpp) solves the stages v = u + a G(v) + b Ġ(v). F is explicit, G implicit; all
 /// quantities are dimensionless. The functions, with N = u.size():
 ///   f(t, u, out)   out ← F(t, u) on states; no_transport{} if F = 0
 ///   g(u, out)      out ← G(u) for any scalar type, on std::span of N numbers:
@@ -53,17 +53,18 @@ class newton_problem {
     return *this;
   }
 
-  /// Sets the admissible set, e.g. positive states, which Newton iterates do not leave; a stage outside it
-  /// is an error.
+  /// Sets the admissible set, such as that of positive states. Newton iterates do not leave it; a stage
+  /// outside it is a numerical_error.
   newton_problem& with_admissible(std::function<bool(std::span<const real>)> admissible) {
     equation_.admissible_set = std::move(admissible);
     return *this;
   }
 
   /// Ends the stage solves as soon as Newton's correction is below `share` of the tolerance of every unknown,
-  /// instead of at rounding errors; what G conserves stays conserved to rounding. Stages with b = 0 then
-  /// share the derivative of their step (simplified_newton.hpp). Extrapolated Euler steps multiply errors of
-  /// their solves by up to 300, hence the default. Throws input_error unless 0 < share ≤ 1.
+  /// instead of at rounding errors. Quantities that G conserves stay conserved to rounding. Stages with b = 0
+  /// then share the derivative of their step (simplified_newton.hpp). The default allows for extrapolated
+  /// Euler steps, which multiply errors of their solves by up to 300. Throws input_error unless 0 < share ≤
+  /// 1.
   newton_problem& with_tolerances(component_tolerances<real> tolerances, real share = real(1e-3)) {
     if (!(share > real(0) && share <= real(1)))
       throw input_error(
@@ -201,7 +202,7 @@ class newton_problem {
     unload(v_, u);
   }
 
-  /// Solves the stage by simplified_newton, where its errors have a tolerance and factors are matrices.
+  /// Solves the stage by simplified_newton if its errors have a tolerance and the solver factorizes matrices.
   /// Returns whether that is possible and succeeds.
   bool solve_by_kept_derivative() {
     if (!equation_.tolerances || equation_.b != real(0)) return false;

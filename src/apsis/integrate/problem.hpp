@@ -36,8 +36,8 @@ struct linear_term {
 ///   add_transport(t, u, targets)   for each target: acc ← (fresh ? 0 : acc) + α u + β T(t, u); T is
 ///                                  evaluated once, and not at all if every β is 0
 ///   solve_collision(t, a, b, u)    in place: u ← v with v = u + a Q(v) + b Q̇(v), a ≥ 0, b ≤ 0
-///   forward_euler_step(t, u)       forward Euler step Δt_FE of T for the property to be preserved; +infinity
-///   if T sets no limit
+///   forward_euler_step(t, u)       forward Euler step Δt_FE of T for the property to be preserved;
+///                                  +infinity if T sets no limit
 template <class P>
 concept problem = requires(P p, const typename P::state& u, typename P::state& v, typename P::real x,
                            std::span<const target<typename P::state, typename P::real>> targets) {
@@ -121,7 +121,7 @@ concept problem_with_transport_check =
     };
 
 /// A problem whose states belong to an admissible set, such as that of positive states:
-///   is_admissible(u)   whether u does. A step to a tolerance is rejected where its result does not
+///   is_admissible(u)   whether u is admissible; a step to a tolerance is rejected if its result is not
 template <class P>
 concept problem_with_admissible_set = problem<P> && requires(P p, const typename P::state& u) {
   { p.is_admissible(u) } -> std::convertible_to<bool>;
@@ -154,7 +154,7 @@ concept problem_with_fused_stages =
 template <class P>
 concept problem_with_late_errors = problem<P> && requires(P p) { p.throw_late_errors(); };
 
-/// Throws the late errors of a problem, if it has such.
+/// Throws the late errors of a problem that may have them.
 template <problem P>
 void throw_late_errors(P& p) {
   if constexpr (problem_with_late_errors<P>) p.throw_late_errors();
@@ -169,7 +169,7 @@ concept problem_with_steps = problem<P> && requires(P p, const typename P::state
   p.end_step();
 };
 
-/// Tells a problem, if it wants to know, that a step begins, and at the end of the scope that it has ended.
+/// Notifies a problem_with_steps that a step begins and, at the end of the scope, that it has ended.
 template <problem P>
 class step_scope {
  public:

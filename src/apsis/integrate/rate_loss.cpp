@@ -6,7 +6,7 @@ namespace apsis {
 namespace {
 
 constexpr double large_error = 1e-3, small_error = 1e-5;
-/// Part of all changes of the moments that a loss may be before it matters.
+/// Largest harmless error of the moments, as a part of all their changes.
 constexpr double large_part = 0.1;
 /// A method is fit where its terms of size ε are wrong by less than this part.
 constexpr double fit_part = 0.05;

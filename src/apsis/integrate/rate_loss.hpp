@@ -12,7 +12,7 @@
 
 namespace apsis {
 
-/// Loss of a method in the terms of size ε in steps Δt (docs/plateaus.md), relative to the state. All
+/// Loss of a method with steps Δt in the terms of size ε (docs/plateaus.md), relative to the state. All
 /// values are estimates of first order in the deviation D from equilibrium.
 template <class Real>
 struct rate_loss {
@@ -27,7 +27,7 @@ struct rate_loss {
 /// @cond
 namespace rate_loss_parts {
 
-/// Estimates the loss at one state. Every state-sized buffer is released with it.
+/// Estimates the loss at one state. It owns all state-sized buffers.
 template <problem P, class Distance>
 class probe {
  public:
@@ -51,7 +51,7 @@ class probe {
     if (!find_size(part)) return loss;
     loss.deviation = size(part);
     loss.diffusion = effect(part, moved) / dt_;
-    add(real(-1), equilibrium_, spare_);  // of the moments after a step with D
+    add(real(-1), equilibrium_, spare_);  // the change of the moments in a step with D
     loss.change = size(spare_) / dt_;
     part = deviations(base, moved, response.flux, true);
     loss.rate = effect(part, moved) / dt_;
@@ -94,8 +94,8 @@ class probe {
     return sum;
   }
 
-  /// Stores the size of u, or that of the slow solution M − D where it is larger, as u may vanish at the
-  /// start. Returns false if both vanish.
+  /// Stores the larger of the sizes of u and of the slow solution M − D, because u may vanish at the start.
+  /// Returns false if both vanish.
   bool find_size(const state& deviation) {
     state zero = u_, slow = equilibrium_;
     combine(p_, {{real(0), &u_}}, zero);
@@ -113,8 +113,8 @@ class probe {
     return distance_(from_, shifted) / size_;
   }
 
-  /// Returns the size of the change of the equilibrium after Δt by a deviation x, and leaves the equilibrium
-  /// after Δt with it in spare_.
+  /// Returns the size of the change that a deviation x causes in the equilibrium after Δt. Leaves the changed
+  /// equilibrium in spare_.
   real effect(const state& x, const state& moved) {
     state deviating = equilibrium_;
     add(real(-1), x, deviating);
@@ -135,11 +135,11 @@ class probe {
 }  // namespace rate_loss_parts
 /// @endcond
 
-/// Estimates at state u the error of the O(ε) terms of a method with this response in steps dt. It takes two
-/// to four evaluations of T and repeated implicit Euler solves: M + Δt T(M), with the equilibrium M of u,
-/// deviates from equilibrium by zD, and every solve divides that by 1 + z. `distance` as for error_estimate;
-/// `with_layer`: includes the initial layer of u. Returns nothing where a solve fails: the run itself reports
-/// invalid data.
+/// Estimates at state u the error of the O(ε) terms of a method with this response and steps dt. It takes up
+/// to four evaluations of T and repeated implicit Euler solves. With the equilibrium M of u, M + Δt T(M)
+/// deviates from equilibrium by zD, and every solve divides this by 1 + z. `distance` is that of
+/// error_estimate; `with_layer` includes the initial layer of u. Returns nothing if a solve fails: the run
+/// itself reports invalid data.
 template <problem P, class Distance>
 std::optional<rate_loss<typename P::real>> compute_rate_loss(P& p, typename P::real t,
                                                              const typename P::state& u, typename P::real dt,
@@ -155,15 +155,16 @@ std::optional<rate_loss<typename P::real>> compute_rate_loss(P& p, typename P::r
 /// Consequence of a loss for a run.
 struct loss_verdict {
   double expected = 0.0,  ///< estimated relative error
-      rate = 0.0;         ///< rate_loss::rate where it counts
+      rate = 0.0;         ///< rate_loss::rate if it counts, otherwise 0
   bool large = false;     ///< whether it is worth a warning
 };
 
-/// Judges a loss from now on, `done` being the error of the moments so far. It counts where the terms of size
-/// ε are wrong by more than a twentieth, over the rest of the time, or until the moments have changed by
-/// their own size if that is shorter: later states have other losses. It is large if the expected error
-/// exceeds 10⁻³, and 30 tolerances of a run to a tolerance; or if it exceeds 10⁻⁵ and the moments are wrong
-/// by a tenth of all that changes them.
+/// Judges a loss from now on, for a `rest` of the time; `done` is the error of the moments so far. A loss
+/// counts if the terms of size ε are wrong by more than a twentieth. It accumulates over the rest of the
+/// time, or until the moments have changed by their own size if that is shorter: later states have other
+/// losses. It is large if the expected error exceeds 10⁻³ and, in a run to a tolerance, 30 tolerances. It is
+/// also large if the error of the moments exceeds 10⁻⁵ and their rate is wrong by a tenth of all that changes
+/// them.
 loss_verdict judge_loss(const rate_loss<double>& loss, double done, double rest,
                         std::optional<double> tolerance);
 

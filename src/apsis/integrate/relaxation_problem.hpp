@@ -21,13 +21,13 @@
 
 namespace apsis {
 
-/// u' = T(t, u) + C(ω) (E(ω) − u)/ε with conserved moments ω = ℛu, ℛE(ω) = ω (paper, Properties 3–5), the
-/// simplest problem to define. Every stage v = u + a Q(v) + b Q̇(v) is a convex combination of u and E, in
-/// closed form, because Q̇ = −(C/ε) Q and ω does not change: v = (u + μE)/(1 + μ), μ = a C/ε + |b| (C/ε)². It
-/// is nonnegative wherever u and E are, in floating point too, and equals E for ε = 0.
+/// u' = T(t, u) + C(ω) (E(ω) − u)/ε with conserved moments ω = ℛu, ℛE(ω) = ω (paper, Properties 3–5). This is
+/// the simplest problem to define. Since Q̇ = −(C/ε) Q and ω does not change, every stage v = u + a Q(v) + b
+/// Q̇(v) is a convex combination of u and E in closed form: v = (u + μE)/(1 + μ), μ = a C/ε + |b| (C/ε)². v is
+/// nonnegative wherever u and E are, in floating point too, and equals E for ε = 0.
 ///
-/// The first two stage solves check ℛE(ω) = ω to 1e-8 of the largest moment if ω is a number or a range of
-/// numbers: an E that does not have the moments ω ends the step with an input_error.
+/// The first two evaluations of E check ℛE(ω) = ω to 1e-8 of the largest moment if ω is a number or a range
+/// of numbers. An E that does not have the moments ω ends the step with an input_error.
 ///
 /// All quantities are dimensionless. The functions, with N = u.size():
 ///   transport(t, u, out)   out ← T(t, u); `out` has size N and undefined content
@@ -227,7 +227,7 @@ class relaxation_problem {
   }
 
   /// Rounding errors of sums over N numbers stay far below 1e-8 of ω or, where ω cancels, 1e-12 of `size` =
-  /// Σ|E|; a wrong formula for E does not.
+  /// Σ|E|. Errors of a wrong formula for E do not.
   static void require_kept(real defect, real largest, real size) {
     if (defect <= real(1e-8) * largest || defect <= real(1e-12) * size || !(largest > real(0))) return;
     char text[32];

@@ -12,11 +12,10 @@ class time_integrator;
 /// Execution order of a step, derived once from the zero pattern of the Shu–Osher form, such that no T(u_j)
 /// is ever stored and as few state-sized buffers as possible are in use.
 ///
-/// Scatter form: as soon as u_j is known, T(u_j) is evaluated once and added to the accumulator of every
-/// later stage that uses it. A multiple p_kj u_j alone does not open an accumulator: it waits until some
-/// T(u_i) opens that of stage k (or until stage k itself is due), and then the buffer of a u_j with no
-/// other use becomes the accumulator. u^n is kept until the step is complete, so that a failed step
-/// leaves it unchanged.
+/// As soon as u_j is known, T(u_j) is evaluated once and added to the accumulator of every later stage that
+/// uses it. A multiple p_kj u_j alone does not open an accumulator. It waits until some T(u_i) opens that of
+/// stage k, or until stage k itself is due. The buffer of a u_j with no other use then becomes the
+/// accumulator. u^n is kept until the step is complete, so that a failed step leaves it unchanged.
 class schedule {
  public:
   /// Coefficients of a contribution from stage j (0 is u^n) to accumulator k.
@@ -43,9 +42,9 @@ class schedule {
     std::vector<contribution> to;  ///< empty for a stage solve
   };
 
-  /// Builds the schedule. With `embedded`, the last row of m is an embedded solution and u^{n+1} the row
-  /// before it; the stages are then computed by the same sums in the same order as without it, and the counts
-  /// below include the additional row.
+  /// Builds the schedule. With `embedded`, the last row of m is an embedded solution, and u^{n+1} is the row
+  /// before it. The sums of the stages and their order do not depend on this row. The counts below include
+  /// it.
   template <class Real>
   explicit schedule(const shu_osher_form<Real>& m, bool embedded = false);
 

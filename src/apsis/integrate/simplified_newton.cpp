@@ -15,11 +15,12 @@
 namespace apsis {
 namespace {
 
-/// Estimated remaining error of a stage, in units of what it needs: errors of stages add up in a step.
+/// Largest accepted estimate of the remaining error of a stage, in units of the accuracy that it needs. It is
+/// below 1, because errors of stages add up in a step.
 template <class Real>
 constexpr Real accepted_rest = Real(0.125);
 
-/// Largest last correction in these units: contractions of stiff systems in the maximum norm may seem far
+/// Largest last correction in these units. In stiff systems the contraction in the maximum norm may seem far
 /// better in one correction than in the next.
 template <class Real>
 constexpr Real accepted_correction = Real(8);
@@ -47,7 +48,7 @@ class simplified_stage {
   bool solve() {
     if (!equation_.admissible(view(v_)) || !residual(v_, r_)) return false;
     if (!kept_.provide(equation_, t_, view(v_))) return false;
-    // With J at an iterate, Newton's method gains digits by itself; where three such J do not help, steps
+    // With J at an iterate, Newton's method gains digits by itself. If three such J do not suffice, steps
     // need the guards of guarded_newton().
     for (int matrices = 0; matrices < 3; ++matrices) {
       if (matrices > 0 && !kept_.refresh(equation_, t_, view(v_))) return false;
@@ -82,7 +83,8 @@ class simplified_stage {
       ++corrections_;
       const Real size = size_of(delta_);
       if (!(size < std::numeric_limits<Real>::infinity())) return end::failed;
-      // Both in the units of the same v: the tolerances of a v that jumps are no measure of a contraction.
+      // Both sizes are in the units of the same v: tolerances of a v that jumps would distort the
+      // contraction.
       const Real theta = k > 0 ? size / size_of(before_) : expected_contraction();
       if (k > 0) {
         // A correction that rounding errors dominate says nothing about the matrix.
@@ -101,7 +103,8 @@ class simplified_stage {
 
   Real size_of(const column& delta) { return equation_.size_of_correction(view(v_), view(delta)); }
 
-  /// θ of a first correction: that of the stages before, which may have been nearer to where J was taken.
+  /// Returns the expected θ of a first correction. It exceeds that of the stages before, because these may
+  /// have been nearer to the state of J.
   Real expected_contraction() const {
     const auto known = kept_.contraction();
     return known ? std::pow(std::max(*known, std::numeric_limits<Real>::epsilon()), Real(0.8)) : Real(1);
@@ -111,13 +114,14 @@ class simplified_stage {
   static Real corrections_to_go(Real theta, Real rest) {
     return std::ceil(std::log(rest / accepted_rest<Real>) / -std::log(theta));
   }
-  /// A new matrix costs its products, and takes about three corrections.
+  /// Returns the number of corrections that a new matrix is worth: its products, and about three corrections
+  /// with it.
   Real affordable() const {
     return static_cast<Real>(
         std::min<std::size_t>(3 + kept_.products(static_cast<std::size_t>(v_.size())), 8));
   }
 
-  /// Adds the correction and ends; without a residual there, since nothing follows.
+  /// Adds the correction and ends. No residual is evaluated, because no correction follows.
   end accept() {
     trial_ = v_ + delta_;
     if (!trial_.allFinite() || !equation_.admissible(view(trial_))) return end::failed;
@@ -125,7 +129,7 @@ class simplified_stage {
     return end::solved;
   }
 
-  /// Adds the correction; returns false if that leaves the admissible set or what is finite.
+  /// Adds the correction. Returns false if the result is not admissible or its residual is not finite.
   bool advance() {
     trial_ = v_ + delta_;
     if (!equation_.admissible(view(trial_)) || !residual(trial_, trial_r_)) return false;

@@ -10,7 +10,7 @@
 
 namespace apsis {
 
-/// A stage equation whose derivative can be taken elsewhere.
+/// A stage equation that also gives its derivative at other times and states.
 template <class Real>
 class timed_stage_equation : public stage_equation<Real> {
  public:
@@ -45,14 +45,14 @@ class simplified_newton {
   simplified_newton& operator=(simplified_newton&& other) noexcept;  ///< moves
   ~simplified_newton();
 
-  /// A step begins with u at the time t.
+  /// States that a step begins with u at the time t.
   void begin_step(Real t, std::span<const Real> u);
-  /// The step has ended: the next stage is no part of one, and J is that at its explicit part.
+  /// States that the step has ended. A stage outside of a step uses J at its explicit part.
   void end_step();
 
-  /// Solves the stage at time t, starting from v. Returns nothing, and leaves v as it is, where the iteration
-  /// does not converge, leaves the admissible set or meets a number that is not finite; then the stage is one
-  /// for guarded_newton(). Requires b = 0 and a pattern, if there is one, of v.size() unknowns.
+  /// Solves the stage at time t, starting from v. Returns nothing, and leaves v unchanged, if the iteration
+  /// does not converge, leaves the admissible set or yields a number that is not finite. guarded_newton() may
+  /// then solve the stage. Requires b = 0, and v.size() unknowns in the pattern, if there is one.
   std::optional<newton_report> solve(timed_stage_equation<Real>& equation, Real t, std::span<Real> v);
 
  private:

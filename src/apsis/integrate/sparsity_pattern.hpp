@@ -7,10 +7,10 @@
 
 namespace apsis {
 
-/// Where the derivative G' of n unknowns may differ from 0, and groups of its columns that one product G'x
-/// reveals together: no two columns of a group have an entry in the same row (Curtis, Powell & Reid, J. Inst.
-/// Maths Applics 13 (1974) 117). The diagonal always belongs to the pattern. Columns join the first group
-/// that fits, in their order; a banded pattern then has lower + upper + 1 groups, the fewest possible.
+/// Places where the derivative G' of n unknowns may differ from 0, and groups of its columns. One product G'x
+/// reveals a group, because no two columns of a group have an entry in the same row (Curtis, Powell & Reid,
+/// J. Inst. Maths Applics 13 (1974) 117). The diagonal always belongs to the pattern. In their order, columns
+/// join the first group that fits. A banded pattern then has lower + upper + 1 groups, the fewest possible.
 class sparsity_pattern {
  public:
   /// A place (row, column), from 0.

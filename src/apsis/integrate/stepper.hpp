@@ -33,10 +33,10 @@ class stepper {
   using real = typename P::real;    ///< type of time and coefficients
 
   /// Copies the method and stores a reference to the problem, which must outlive the stepper. Throws
-  /// input_error if the method evaluates Q explicitly and the problem cannot, if the method needs exact
-  /// collisions and the problem does not solve them exactly, or the reverse. A step of an implicit-only
-  /// method throws input_error if the problem has transport (problem_with_transport_check). With
-  /// result_and_embedded, a method without an embedded solution doubles steps: see step_estimate.
+  /// input_error if the method evaluates Q explicitly and the problem cannot, or if only one of method and
+  /// problem solves collisions exactly. A step of an implicit-only method throws input_error if the problem
+  /// has transport (problem_with_transport_check). With result_and_embedded, a method without an embedded
+  /// solution doubles steps: see step_estimate.
   stepper(const method& m, P& p, solutions which = solutions::result)
       : stepper(which == solutions::result_and_embedded && m.embedded
                     ? m.with_embedded_row().coefficients<real>()
@@ -46,8 +46,8 @@ class stepper {
     doubles_ = which == solutions::result_and_embedded && !m.embedded;
   }
 
-  /// The same for coefficients that are not in a file (a method under design); with result_and_embedded, the
-  /// last row is the embedded solution.
+  /// Takes coefficients that are not in a file, such as those of a method under design. With
+  /// result_and_embedded, the last row is the embedded solution.
   stepper(shu_osher_form<real> coefficients, method_kind kind, P& p, const std::string& name = "method",
           solutions which = solutions::result)
       : problem_(p),
@@ -58,8 +58,8 @@ class stepper {
         initial_(initial_weights(m_)),
         convex_(is_convex(m_, kind, m_.stages() - (which == solutions::result_and_embedded ? 1 : 0))) {
     const auto butcher = to_butcher(m_);
-    // Abscissae: time is a component of u with derivative 1, integrated as part of T if there is one (then Q̇
-    // has no ∂_t term), otherwise as part of Q (problem_with_timed_collision).
+    // Abscissae: time is a component of u with derivative 1. It is integrated as part of T if there is a T,
+    // so that Q̇ has no ∂_t term, otherwise as part of Q (problem_with_timed_collision).
     const auto& a = kind == method_kind::implicit_only ? butcher.A : butcher.A_hat;
     for (std::size_t i = 0; i < m_.stages(); ++i) {
       real c(0);
@@ -82,8 +82,8 @@ class stepper {
     accept(u);
   }
 
-  /// Computes u^{n+1} and the second solution from u = u^n, which does not change: accept(u) takes the
-  /// step, the next attempt discards it. Requires solutions::result_and_embedded.
+  /// Computes u^{n+1} and the second solution from u = u^n without changing u. accept(u) takes the step; the
+  /// next attempt discards it. Requires solutions::result_and_embedded.
   attempted_step<state> attempt(real t, real dt, state& u) {
     carry_out(whole_step_, t, dt, u);
     if (!doubles_) return {buffer(plan_.result_buffer(), u), buffer(plan_.embedded_buffer(), u)};
@@ -148,7 +148,7 @@ class stepper {
     }
   };
 
-  /// Coefficients of implicit stages are no times of exact collisions, and the reverse.
+  /// Throws input_error if only one of method and problem solves collisions exactly.
   void require_suitable_collisions() const {
     const bool exact = collides_exactly(problem_);
     if (exact == solves_exactly(kind_)) return;
@@ -163,7 +163,7 @@ class stepper {
                     "exact_collisions, or choose an IMEX method");
   }
 
-  /// Implicit-only methods ignore T.
+  /// Throws input_error if the problem has a T that the method would ignore.
   void require_no_transport(real t, const state& u) {
     if constexpr (problem_with_transport_check<P>) {
       if (kind_ == method_kind::implicit_only && problem_.has_transport(t, u))

@@ -23,12 +23,12 @@ long multiples_until(Real t, Real every) {
   return k;
 }
 
-/// Divides the time from t0 to t1 into steps. With a given dt, times are t0 + n dt (no accumulation of
-/// rounding errors); a dt that does not divide t1 − t0 to within 1e-12 is reduced until it does, see
-/// adjusted(). Otherwise the rule limits the steps, and they divide the time to the next stop of stop_every()
-/// evenly, as do the last shared_steps to t1: no sliver is left, whose rates would not be those of the other
-/// steps. An interval of length zero has no steps. A graded start-up divides the first step and changes no
-/// later time, unless the rule shortens steps during it.
+/// Divides the time from t0 to t1 into steps. With a given dt, times are t0 + n dt, so that rounding errors
+/// do not accumulate. A dt that does not divide t1 − t0 to within 1e-12 is reduced until it does, see
+/// adjusted(). Otherwise the rule limits the steps. They divide the time to the next stop of stop_every()
+/// evenly, and the last shared_steps divide the time to t1 evenly: no much shorter step remains. An interval
+/// of length zero has no steps. A graded start-up divides the first step. It changes no later time, unless
+/// the rule shortens steps during it.
 template <class Real>
 class time_marcher {
  public:
@@ -57,8 +57,8 @@ class time_marcher {
     }
   };
 
-  /// Number of steps before t1 that share its remainder. Each is shortened by 1/64 at most; earlier steps do
-  /// not depend on t1, so that a run can be continued to a later one.
+  /// Number of steps before t1 that share its remainder. Each is shortened by 1/64 at most. Earlier steps do
+  /// not depend on t1, so that a run can be continued to a later t1.
   static constexpr long shared_steps = 64;
 
   /// `growth` is the ratio of the times of a graded start-up. Throws input_error unless t0 ≤ t1 are finite,
@@ -112,7 +112,8 @@ class time_marcher {
   void start_up(Real proposed, Real relaxation_time) {
     if (n_ > 0 || done()) return;
     startup_length_ = next(proposed);
-    // Not shortened to meet the end, unless it is the only step: a run to a later end has the same start-up.
+    // The end does not shorten the start-up, unless it is the only step: a run to a later end has the same
+    // one.
     if (!fixed_)
       startup_length_ =
           std::min(every_ > Real(0) ? equal_part(next_multiple(), proposed) : proposed, t1_ - t_);
@@ -150,7 +151,7 @@ class time_marcher {
       throw input_error(
           "nothing limits the time step (the transport sets no forward Euler step, or the method is "
           "unconditionally stable); give dt");
-    // Halves of a subnormal step are 0, so that nothing would notice that steps lead nowhere.
+    // Halves of a subnormal step are 0: time would not advance, and no check would detect this.
     if (!(t_ + proposed > t_) || proposed < std::numeric_limits<Real>::min())
       throw numerical_error(
           "the time step does not advance time (it is not positive, or smaller than the rounding of t); "
@@ -173,7 +174,7 @@ class time_marcher {
       if (whole_steps() + 1 < count_ || starting()) return false;
       longer.count_ = count_ + 1;
     }
-    // Late enough not to affect the next step.
+    // An end that is late enough not to affect the next step.
     longer.t1_ = t1_ + Real(4) * (Real(shared_steps) * proposed + (t1_ - t_) + every_);
     const Real dt = next(proposed);
     if (longer.next(proposed) != dt) return true;
@@ -233,8 +234,8 @@ class time_marcher {
     // A remainder of the size of rounding errors is not a step.
     if (t_ >= t1_ || t1_ - t_ <= rounding(t1_)) t_ = t1_;
   }
-  /// Returns the length of the fewest equal steps that reach `target` within the limit `proposed`: the last
-  /// length where it differs from that by rounding alone.
+  /// Returns the length of the fewest equal steps that reach `target` within the limit `proposed`. If it
+  /// differs from the last length by rounding alone, returns the last length.
   Real equal_part(Real target, Real proposed) const {
     using std::abs, std::ceil;
     const Real rest = target - t_, allowed = rounding(target);
@@ -244,7 +245,7 @@ class time_marcher {
       return anchor_dt_;
     return part < proposed ? part : proposed;
   }
-  /// Sets t to the stop that the step was to end at.
+  /// Sets t to the stop at which the step was to end.
   void snap_to(Real stop) {
     using std::abs;
     if (!(stop > Real(0)) || t_ == t1_) return;

@@ -18,8 +18,8 @@ struct tolerance_forecast {
 
 namespace forecast {
 
-/// Returns the step length at which a new controller settles at u, neither growing nor rejecting;
-/// at most `longest`.
+/// Returns the step length at which a new controller settles at u: steps neither grow nor are rejected. At
+/// most `longest`.
 template <problem P, class Distance>
 typename P::real settled_step(stepper<P>& method_stepper, typename P::real t, typename P::state& u,
                               typename P::real longest, const error_target<typename P::real>& target,
@@ -55,7 +55,7 @@ struct deviations {
 };
 
 /// Computes the deviations from a step dt of implicit–explicit Euler from the equilibrium `u` with repeated
-/// solves: u + dt T(u) is off equilibrium by zD, and each solve divides that by 1 + z.
+/// solves: u + dt T(u) deviates from equilibrium by zD, and each solve divides this by 1 + z.
 template <problem P, class Distance>
 deviations<typename P::real> compute_deviations(P& p, typename P::real t, const typename P::state& u,
                                                 typename P::real dt, const Distance& distance) {
@@ -87,9 +87,10 @@ deviations<typename P::real> compute_deviations(P& p, typename P::real t, const 
 }  // namespace forecast
 
 /// Forecasts a run of length `interval` from u at time t with steps of at most `longest`; `bounds` are those
-/// of the method. The error is the part of the deviation from equilibrium that plateau_bounds leave, once in
-/// u and once through the moments, over the time in which they change by their own size, or the interval if
-/// that is shorter. If a step fails, returns what is known so far.
+/// of the method. The error has two parts, both fractions of the deviation from equilibrium by
+/// plateau_bounds: one in u, and one in the moments. The latter accumulates over the time in which the
+/// moments change by their own size, or over the interval if that is shorter. If a step fails, returns the
+/// values computed so far.
 template <problem P, class Distance>
 tolerance_forecast<typename P::real> forecast_tolerance(stepper<P>& method_stepper, typename P::real t,
                                                         const typename P::state& u, typename P::real interval,

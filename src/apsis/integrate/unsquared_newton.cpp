@@ -118,7 +118,7 @@ class unsquared {
     return true;
   }
 
-  /// Adds the last correction, unless that leaves the admissible set or what is finite.
+  /// Adds the last correction, unless the result is not admissible or its residual is not finite.
   bool end_with(const column& delta) {
     trial_ = x_ + delta;
     const bool inside = admissible(trial_);
@@ -165,7 +165,7 @@ class unsquared {
   /// Factorizes S at x_ and estimates the rounding errors of its unknowns.
   void linearize() {
     if (!system_.linearize(equation_, x_)) fail("has no finite derivative");
-    // Sizes of the terms of the residual, G being a sum of terms about |G'| |v|.
+    // Sizes of the terms of the residual. Those of G are about |G'| |v|.
     column terms(2 * n_);
     terms.head(n_) = mass_sizes(x_.head(n_).cwiseAbs() + explicit_part_.cwiseAbs() +
                                 std::abs(a_) * x_.tail(n_).cwiseAbs()) +
@@ -174,8 +174,8 @@ class unsquared {
     terms.tail(n_) =
         mass_sizes(x_.tail(n_).cwiseAbs()) + g_.cwiseAbs() + system_.sizes_times(x_.head(n_).cwiseAbs());
     noise_ = rounding * (system_.spread(terms) + x_.cwiseAbs());
-    // A rate need not be more accurate than the residual shows: one that vanishes has no terms, but rounding
-    // errors of the linear solve.
+    // A rate need not be more accurate than the residual shows. A rate that vanishes has no terms, but
+    // rounding errors of the linear solve.
     const column invisible = rounding * system_.changes_of_rates(terms.head(n_));
     for (Eigen::Index i = 0; i < n_; ++i)
       if (invisible[i] < std::numeric_limits<Real>::infinity())
@@ -184,7 +184,7 @@ class unsquared {
 
   column correction(const column& r) const { return -system_.solve(r); }
 
-  /// max |δ_i| in units of the rounding error of unknown i; +infinity if an entry is NaN.
+  /// Returns max |δ_i| in units of the rounding error of unknown i; +infinity if an entry is NaN.
   Real level(const column& delta) const {
     Real largest(0);
     for (Eigen::Index i = 0; i < delta.size(); ++i) {

@@ -9,17 +9,18 @@
 
 namespace apsis {
 
-/// Operations on states that error estimates need and a time step does not. A problem may define them; the
-/// defaults stand here and nowhere else.
+/// Operations on states that error estimates need and a time step does not. A problem may define them. This
+/// file has their defaults.
 
 /// A problem whose states are arrays of its number type.
 template <class P>
 concept array_of_reals = problem<P> && array_state<typename P::state> &&
                          std::same_as<typename P::real, state_real<typename P::state>>;
 
-/// sum ← Σ_k α_k u_k, one term at least, added in their order. `sum` may be the state of the first term, and
-/// of no other; it must have the size of the states. If the problem has no combine(): by arithmetic for an
-/// array_state, otherwise by add_transport() with β = 0, which does not evaluate T.
+/// sum ← Σ_k α_k u_k for at least one term, added in their order. `sum` may be the state of the first term,
+/// and of no other; it must have the size of the states. If the problem has no combine(), an array_state is
+/// combined by arithmetic. Other states are combined by add_transport() with β = 0, which does not evaluate
+/// T.
 template <problem P>
 void combine(P& p, std::initializer_list<linear_term<typename P::state, typename P::real>> terms,
              typename P::state& sum) {
@@ -50,9 +51,10 @@ Real time_to_equilibrium() {
   return Real(1e100);
 }
 
-/// u ← E(ℛu), the equilibrium with the moments of u, where collisions lead after a long time; u where nothing
-/// relaxes. If the problem has no project_to_equilibrium(): up to rounding, by a stage v = u + a Q(v) with a
-/// = time_to_equilibrium. Throws what the stage solve of the problem throws.
+/// u ← E(ℛu), the equilibrium with the moments of u, to which collisions lead after a long time. u does not
+/// change where nothing relaxes. If the problem has no project_to_equilibrium(), a stage v = u + a Q(v) with
+/// a = time_to_equilibrium gives the equilibrium up to rounding. Throws what the stage solve of the problem
+/// throws.
 template <problem P>
 void project_to_equilibrium(P& p, typename P::real t, typename P::state& u) {
   using real = typename P::real;

@@ -31,8 +31,8 @@ class band_factors {
   Real& at(std::size_t i, std::size_t j) { return entries_[i * width_ + (j + lower_ - i)]; }
   Real at(std::size_t i, std::size_t j) const { return entries_[i * width_ + (j + lower_ - i)]; }
 
-  /// Replaces the entries by the factors. Rows are scaled by powers of 2, so that their units choose no
-  /// pivot.
+  /// Replaces the entries by the factors. Rows are scaled by powers of 2, so that their units do not
+  /// influence the pivots.
   void factorize() {
     for (std::size_t i = 0; i < n_; ++i) scale_row(i);
     for (std::size_t j = 0; j < n_; ++j) {

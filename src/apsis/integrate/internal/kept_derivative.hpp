@@ -23,8 +23,8 @@ namespace apsis {
 template <class Real>
 class derivative_entries {
  public:
-  /// Sets them by one product for each column, or group of columns, with unit vectors scaled to the sizes of
-  /// the unknowns, as differences need. Returns whether all are finite.
+  /// Sets the entries by one product for each column, or group of columns. Unit vectors are scaled to the
+  /// sizes of the unknowns, as differences need. Returns whether all entries are finite.
   bool evaluate(timed_stage_equation<Real>& equation, const sparsity_pattern* pattern, Real t,
                 std::span<const Real> v) {
     const std::size_t n = v.size();
@@ -153,8 +153,8 @@ struct pattern_band {
       lower = std::max(lower, std::max(j, of.rows(j).back()) - j);
     }
   }
-  /// Whether a band takes no more operations than a sparse factorization, which has an overhead of some ten
-  /// operations for each.
+  /// Whether factors of the band take no more time than sparse factors, whose overhead is about ten
+  /// operations for each operation.
   bool is_narrow() const { return lower * (lower + upper) <= 256; }
 };
 
@@ -211,7 +211,8 @@ class kept_derivative {
   std::optional<Real> contraction() const { return contraction_; }
   void measured(Real theta) { contraction_ = std::max(theta, contraction_.value_or(Real(0))); }
 
-  /// A step begins with u. The derivative there is known if the last step that needed one began there too.
+  /// States that a step begins with u at t. The derivative there is known if the last step that needed one
+  /// began there, too.
   void begin_step(Real t, std::span<const Real> u) {
     const bool same = has_base_ && t == t_ && std::equal(u.begin(), u.end(), u_.begin(), u_.end());
     if (!same) {
@@ -234,7 +235,7 @@ class kept_derivative {
     return has_base_;
   }
 
-  /// Takes the derivative at v. Returns false if it is not finite.
+  /// Evaluates the derivative at v and uses it from now on. Returns false if it is not finite.
   bool refresh(timed_stage_equation<Real>& equation, Real t, std::span<const Real> v) {
     use(nullptr);
     if (!fresh_.evaluate(equation, pattern(pattern_), t, v)) return false;
@@ -279,7 +280,7 @@ class kept_derivative {
   bool inside_ = false;                            ///< whether a step has begun
   Real t_ = Real(0);                               ///< time at which it began
   std::vector<Real> u_;                            ///< its beginning
-  derivative_entries<Real> base_, fresh_;          ///< J there, and of a later iterate
+  derivative_entries<Real> base_, fresh_;          ///< J there, and at a later iterate
   bool has_base_ = false;                          ///< whether base_ is J at t_ and u_
   const derivative_entries<Real>* now_ = nullptr;  ///< base_, fresh_ or nothing
   std::vector<std::pair<Real, std::unique_ptr<kept_factors<Real>>>> all_;

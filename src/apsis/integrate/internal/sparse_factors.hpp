@@ -29,7 +29,7 @@ class sparse_factors {
     ordered_ = true;
     lu_.factorize(scaled_);
   }
-  /// +infinity if the matrix is singular.
+  /// Returns the solution; +infinity if the matrix is singular.
   column solve(const column& r) const {
     if (lu_.info() != Eigen::Success)
       return column::Constant(r.size(), std::numeric_limits<Real>::infinity());

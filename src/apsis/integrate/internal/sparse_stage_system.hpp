@@ -77,8 +77,8 @@ class sparse_stage_system final : public stage_system<Real> {
     return least;
   }
 
-  /// Root mean square over errors with signs of a fixed pseudo-random sequence, times 4 for those that add
-  /// up.
+  /// Returns 4 times the root mean square over errors with signs of a fixed pseudo-random sequence. The
+  /// factor covers errors that add up.
   column spread(const column& sizes) const override {
     constexpr int probes = 6;
     std::uint64_t bits = 0x9e3779b97f4a7c15u;
@@ -105,7 +105,7 @@ class sparse_stage_system final : public stage_system<Real> {
     }
   }
 
-  /// Sets J and, with b, H from one product for each group, with unit vectors scaled to the sizes of the
+  /// Sets J and, if b ≠ 0, H from one product for each group. Unit vectors are scaled to the sizes of the
   /// unknowns, as differences need. Returns whether all entries are finite.
   bool differentiate(stage_equation<Real>& equation, const column& x) {
     const std::size_t n = pattern_.size();

@@ -28,8 +28,8 @@ class owning_stepper : private wrapped<P>, public stepper<exact_collisions<P>> {
 }  // namespace exponential_parts
 /// @endcond
 
-/// Entry of stepper_kinds: a stepper of a problem with exact collisions. A problem that has an exact
-/// collision and solves stages otherwise is wrapped.
+/// Entry of stepper_kinds: a stepper of a problem with exact collisions. A problem with a known collision
+/// that solves stages in another way is wrapped in exact_collisions.
 struct exponential_steps {
   static constexpr const char* kind = "exponential";  ///< integrator_kind_entry::name
   /// Returns use(march).

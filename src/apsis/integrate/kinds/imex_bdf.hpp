@@ -62,8 +62,8 @@ class imex_bdf {
   void restart() { known_ = 0; }
 
   long known() const { return known_; }  ///< number of values in the history since restart()
-  /// Calls visit(v, w) for every v that later steps need in addition to u: the sum of earlier u, with weights
-  /// that add up to w, and of their transport.
+  /// Calls visit(v, w) for every state v that later steps need in addition to u. v is a sum of earlier u,
+  /// with weights that add up to w, and of their transport.
   template <class Visit>
   void visit_kept(const Visit& visit) {
     for (int i = 1; i < order() && known_ > 0; ++i) {
@@ -85,8 +85,8 @@ class imex_bdf {
     return &accumulators_[static_cast<std::size_t>(known_ + i) % accumulators_.size()];
   }
 
-  /// Sets the targets of the next known value, for which the accumulators of the next k values exist. That of
-  /// the last is the one of the value itself, which is no longer used.
+  /// Sets the targets of the next known value: the accumulators of the k values after it. The last of these
+  /// reuses the accumulator of the known value itself.
   void set_targets(real dt, const state& u) {
     allocate(u);
     targets_.clear();

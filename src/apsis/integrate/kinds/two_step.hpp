@@ -98,8 +98,8 @@ class two_step {
     problem_.add_transport(t, u, targets_);
   }
 
-  /// Adds (p_ij + w_ij) u_j + (w_ij Δt/r) T(u_j) to the accumulators of the rows i that use u_j, and solves
-  /// row j + 1 at the same time if the problem can and that row is complete by this.
+  /// Adds (p_ij + w_ij) u_j + (w_ij Δt/r) T(u_j) to the accumulators of the rows i that use u_j. Solves row j
+  /// + 1 in the same pass if the problem can and this completes the row.
   void add_row(std::size_t j, real t, real dt) {
     targets_.clear();
     bool next = false;

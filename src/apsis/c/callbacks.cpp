@@ -26,7 +26,7 @@ void callbacks::evaluate_block(std::size_t block, std::span<const double> u, std
 
 void callbacks::evaluate_rate(const std::vector<double>& u, std::vector<double>& out) {
   out.resize(u.size());
-  if (rate == nullptr) {  // Q = 0: nothing else was accepted
+  if (rate == nullptr) {  // Q = 0: make_run() accepts nothing else without a rate
     std::fill(out.begin(), out.end(), 0.0);
     return;
   }

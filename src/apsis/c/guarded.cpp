@@ -6,7 +6,7 @@
 namespace apsis::c {
 namespace {
 
-/// The last error of this thread; `fixed` where memory was lacking for the text.
+/// The last error of this thread. `fixed` replaces the text if memory is lacking for it.
 struct last_error {
   std::string text;
   const char* fixed = "";

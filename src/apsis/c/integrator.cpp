@@ -29,7 +29,7 @@ apsis_integrator& idle(apsis_integrator* integrator) {
 
 namespace {
 
-/// Keeps an integrator for the time of an integration.
+/// Marks an integrator as busy during an integration.
 class in_use {
  public:
   explicit in_use(apsis_integrator* integrator) : held_(require(integrator, handle)) {
@@ -84,7 +84,7 @@ int integrate(apsis_integrator& s, double t1) {
   }
 }
 
-/// Writes dense output, or the state alone without a step of the present settings.
+/// Writes dense output. Without a step of the present settings, only the state at the time reached is known.
 int write_state(apsis_integrator& s, double t, double* out) {
   require_started(s);
   if (!s.run && t != s.t)
@@ -147,7 +147,7 @@ int apsis_state_at(apsis_integrator* integrator, double t, double* u) {
   return guarded([=] {
     double* out = &require(u, "the place of the state");
     if (require(integrator, handle).of.observing) {
-      // Between two steps, but callbacks of this one may not ask again.
+      // The observer runs between two steps. Callbacks of this dense output must not ask for more.
       integrator->of.observing = false;
       const int status = guarded([=] { return write_state(*integrator, t, out); });
       integrator->of.observing = true;

@@ -29,7 +29,7 @@ const method& file_of(const apsis_method& m) {
   return *m.integrator->file();
 }
 
-/// Like file_of(), for what a method of one step alone has.
+/// Like file_of(), but throws input_error for a method of several steps, which has no `what`.
 const method& one_step_of(const apsis_method& m, const char* what) {
   const method& file = file_of(m);
   if (file.steps > 1)

@@ -15,7 +15,7 @@ namespace {
 
 using fact = integrator_certificate::fact;
 
-/// The certificate of a method of one step, by the keys of `apsis check --json`.
+/// Returns the certificate of a method of one step, with the keys of `apsis check --json`.
 std::vector<fact> facts_of(const method& m, const certificate& c) {
   const auto number = [](const mp_real& x) { return x.convert_to<double>(); };
   std::vector<fact> out = {{"kind", to_string(m.kind)},

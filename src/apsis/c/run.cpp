@@ -14,7 +14,7 @@
 namespace apsis::c {
 namespace {
 
-/// Returns max_i |u_i − v_i|/(absolute_i + relative |u_i|), NaN if one is.
+/// Returns max_i |u_i − v_i|/(absolute_i + relative |u_i|), NaN if a quotient is NaN.
 double weighted_difference(const step_limits& limits, const numbers& u, const numbers& v) {
   double largest = 0.0;
   for (std::size_t i = 0; i < u.size(); ++i) {
@@ -77,7 +77,7 @@ bool has_collision(const callbacks& of) {
   return of.stage != nullptr || of.rate != nullptr || of.flow != nullptr;
 }
 
-/// Whether no stage of a method is solved.
+/// Whether a method solves no stages.
 bool is_explicit(const time_integrator& m) {
   return m.file() != nullptr && m.file()->kind == method_kind::explicit_only;
 }

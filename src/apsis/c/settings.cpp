@@ -16,7 +16,7 @@
 namespace apsis::c {
 namespace {
 
-/// Ends a run: other settings need another one.
+/// Ends a run, because other settings need another one.
 void end_run(apsis_integrator& s) {
   if (!s.run) return;
   s.t = s.run->t();
@@ -27,7 +27,7 @@ void end_run(apsis_integrator& s) {
   s.run.reset();
 }
 
-/// Changes settings by change(integrator).
+/// Changes settings by change(integrator), and ends the run.
 template <class Change>
 int set(apsis_integrator* integrator, const Change& change) {
   return guarded([&] {

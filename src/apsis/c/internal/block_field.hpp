@@ -14,8 +14,8 @@ struct stage_position {
   long long solve = 0;    ///< number of the solve
 };
 
-/// A Jacobian matrix and where it was evaluated: a dense linear system asks for it column by column. It is
-/// not kept for later solves, before which a program may change its data.
+/// A Jacobian matrix and the state at which it was evaluated, because a dense linear system uses it column by
+/// column. It is not kept for later solves, because a program may change its data before them.
 class known_jacobian {
  public:
   /// jx ← Q'(u) x. Throws numerical_error if Q' is not finite.
@@ -39,7 +39,7 @@ class block_field {
   void jacobian_product(std::span<const double> u, std::span<const double> x, std::span<double> jx) {
     product(middle_, u, x, jx);
   }
-  /// hx ← Q''(u)[k, x], by differences to a few digits unless the program has the function.
+  /// hx ← Q''(u)[k, x], by differences, to a few digits, unless the program has a function for it.
   void curvature(std::span<const double> u, std::span<const double> k, std::span<const double> x,
                  std::span<double> hx);
 

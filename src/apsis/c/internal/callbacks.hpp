@@ -40,11 +40,11 @@ struct callbacks {
   void evaluate_transport(double t, const std::vector<double>& u, std::vector<double>& out);
   /// out ← Q(u), block by block; 0 without a rate. Throws numerical_error if Q is not finite.
   void evaluate_rate(const std::vector<double>& u, std::vector<double>& out);
-  /// Sets q ← Q(u) of one block, which may be a state that Newton's method tries and leaves.
+  /// Sets q ← Q(u) of one block. Newton's method may only try this state and abandon it.
   void evaluate_block(std::size_t block, std::span<const double> u, std::span<double> q);
   /// Whether a block is admissible.
   bool is_admissible(std::size_t block, std::span<const double> u) const;
-  /// The first block that is not admissible; none if all are.
+  /// Returns the first block that is not admissible; nothing if all are.
   std::optional<std::size_t> first_inadmissible(const std::vector<double>& u) const;
   /// Throws numerical_error unless all blocks of a stage are admissible and finite.
   void require_valid(const std::vector<double>& u) const;

@@ -11,15 +11,15 @@
 
 namespace apsis::c {
 
-/// A callback returned a negative number.
+/// Thrown if a callback returns a negative number.
 class callback_error : public error {
  public:
-  /// `problem` says which callback and what it returned.
+  /// `problem` states which callback failed and what it returned.
   explicit callback_error(const std::string& problem) : error(exit_code::internal, problem) {}
 };
 
-/// Throws what a nonzero result of a callback means: numerical_error if it is positive, callback_error if it
-/// is negative.
+/// Throws the error for a nonzero result of a callback: numerical_error if it is positive, callback_error if
+/// it is negative.
 [[noreturn]] inline void throw_refusal(const char* name, int returned) {
   if (returned < 0)
     throw callback_error(
@@ -59,7 +59,8 @@ inline int store_exception() noexcept {
   }
 }
 
-/// Returns body(), or the apsis_status of what it throws: no exception leaves a function of the C interface.
+/// Returns body(), or the apsis_status of an exception that it throws. No exception leaves a function of the
+/// C interface.
 template <class Body>
 int guarded(const Body& body) noexcept {
   try {
@@ -69,14 +70,14 @@ int guarded(const Body& body) noexcept {
   }
 }
 
-/// Returns the object of a pointer. Throws input_error for NULL, which `what` names.
+/// Returns the object of a pointer. Throws input_error for NULL; `what` names the object.
 template <class T>
 T& require(T* pointer, const char* what) {
   if (pointer == nullptr) throw input_error(std::string(what) + " is NULL (a pointer is needed); give one");
   return *pointer;
 }
 
-/// Throws input_error for a function that is NULL, which `what` names.
+/// Throws input_error for a function that is NULL; `what` names it.
 template <class Function>
 void require_function(Function* function, const char* what) {
   if (function == nullptr) throw input_error(std::string(what) + " is NULL (it is called); give one");

@@ -25,7 +25,7 @@ struct step_limits {
   std::optional<double> dt;
   double safety = 1.0, relative = 0.0;
   numbers absolute;  ///< of each unknown; empty without a tolerance
-  int growth = 0;    ///< of a graded start; 0 without
+  int growth = 0;    ///< of a graded start; 0 without one
   std::string controller{usual_step_law};
 };
 
@@ -39,10 +39,10 @@ struct event_settings {
 /// A problem with the evolution that integrates it.
 class any_run {
  public:
-  /// evolution::observer
+  /// Like evolution::observer.
   using observer = std::function<bool(long step, double t, double dt, const numbers& u)>;
   virtual ~any_run() = default;
-  /// evolution::advance(), as an apsis_status.
+  /// Calls evolution::advance() and returns its apsis_status.
   virtual int advance(double t1, const observer& observe) = 0;
   virtual numbers at(double t) = 0;
   virtual double t() const = 0;
@@ -52,8 +52,8 @@ class any_run {
   virtual const std::vector<found_event<double>>& found() const = 0;
 };
 
-/// Makes the run of a problem from time and state; `fresh` without a step before. Throws input_error if
-/// settings are missing or contradict each other.
+/// Makes the run of a problem from time and state; `fresh` states that no step precedes. Throws input_error
+/// if settings are missing or contradict each other.
 std::unique_ptr<any_run> make_run(const time_integrator& m, callbacks& of, const step_limits& limits,
                                   const event_settings& events, double t, const numbers& u, bool fresh);
 
@@ -66,7 +66,7 @@ struct apsis_integrator {
   apsis::c::step_limits limits{};
   apsis::c::event_settings events{};
   bool started = false;
-  /// Time, state and counts when `run` was made, or without one.
+  /// Time, state and counts at the beginning of `run`; the present ones without a run.
   double t = std::numeric_limits<double>::quiet_NaN();
   apsis::c::numbers u{};
   long long steps = 0, rejected = 0;

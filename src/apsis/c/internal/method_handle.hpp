@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-/// Texts and facts are made at their first use, by one of several threads.
+/// A method of the C interface. The first thread that uses its texts and facts makes them.
 struct apsis_method {
   const apsis::time_integrator* integrator;  ///< lives to the end of the program
   std::string requested;                     ///< its name, or the path of its file

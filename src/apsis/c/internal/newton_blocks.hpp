@@ -16,8 +16,8 @@
 
 namespace apsis::c {
 
-/// u' = T(t, u) + Q(u), where Q couples the unknowns of a block and Newton's method solves the stages, block
-/// by block. With one block it is a newton_problem, bit for bit.
+/// u' = T(t, u) + Q(u), where Q couples only unknowns of the same block. Newton's method solves the stages
+/// block by block. With one block the results are those of a newton_problem, bit for bit.
 class newton_blocks {
  public:
   using state = std::vector<double>;
@@ -29,8 +29,8 @@ class newton_blocks {
     local_.with_admissible([this](std::span<const double> v) { return of_.is_admissible(now_.block, v); });
   }
   /// Ends the stage solves of a single block of n unknowns at a share of the tolerances. Its stages with b =
-  /// 0 then share the derivative of a step. Several blocks solve to rounding errors: each would need a
-  /// derivative of its own.
+  /// 0 then share the derivative of a step. Stages of several blocks are solved to rounding errors, because
+  /// each block would need a derivative of its own.
   void set_tolerances(const component_tolerances<double>& tolerances, std::size_t n) {
     if (of_.block_size == n) local_.with_tolerances(tolerances);
   }

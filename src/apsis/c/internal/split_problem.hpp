@@ -11,7 +11,7 @@
 
 namespace apsis::c {
 
-/// u' = T(t, u) + Q(u) with the stage solver of the program, or with Q = 0 without one.
+/// u' = T(t, u) + Q(u) with the stage solver or the flow of the program. Without them Q = 0.
 class split_problem {
  public:
   using state = std::vector<double>;

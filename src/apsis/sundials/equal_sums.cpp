@@ -13,7 +13,7 @@ namespace {
 using dot_product = sunrealtype (*)(N_Vector, N_Vector);
 using clone = N_Vector (*)(N_Vector);
 
-/// The scalar product of each type of vectors before it was replaced. Types differ in how they are cloned.
+/// The original scalar product of each type of vectors. The operation nvclone identifies the type.
 class replaced_products {
  public:
   void add(N_Vector v) {
@@ -43,10 +43,10 @@ replaced_products& replaced() {
   return all;
 }
 
-/// Of this thread: see sums_without_allocation.
+/// Work vectors of this thread, see sums_without_allocation.
 thread_local std::array<N_Vector, 3> kept{};
 
-/// Three vectors like v, the last of ones: those of sums_without_allocation, or new ones.
+/// Three vectors like v: those of sums_without_allocation, or new ones. The elements of the last are 1.
 class work_vectors {
  public:
   explicit work_vectors(N_Vector v) : owned_(kept[0] == nullptr || kept[0]->ops->nvclone != v->ops->nvclone) {
@@ -89,7 +89,7 @@ double sum_of_terms(const work_vectors& work, dot_product original) {
   std::frexp(largest, &exponent);
   while (std::ldexp(1.0, bits) < n) ++bits;
   constexpr int digits = std::numeric_limits<double>::digits;
-  // Infinities have no parts, and their sum is the same in any order. NaN, which the norm may ignore, is in
+  // Infinities have no parts, and their sum is the same in any order. NaN, which the norm may ignore, enters
   // every part.
   if (!std::isfinite(largest)) return original(terms, work.ones());
   int scale = 0;  // so that σ does not overflow
@@ -100,7 +100,8 @@ double sum_of_terms(const work_vectors& work, dot_product original) {
   }
   double total = 0.0, sigma = std::ldexp(1.0, exponent + bits);
   for (int left = digits + bits; left > 0; left -= digits - bits) {
-    // Multiples of 2^−53 σ, at most 2^−bits σ in size: every partial sum is such a multiple, at most σ.
+    // Parts are multiples of 2^−53 σ, at most 2^−bits σ in size. Every partial sum is such a multiple, at
+    // most σ.
     N_VAddConst(terms, sigma, part);
     N_VAddConst(part, -sigma, part);
     N_VLinearSum(1.0, terms, -1.0, part, terms);
@@ -110,8 +111,8 @@ double sum_of_terms(const work_vectors& work, dot_product original) {
   return std::ldexp(total, scale);
 }
 
-/// Returns the sum of the products x_i y_i, or of their squares; NaN if memory is lacking, since the callers
-/// are functions of C.
+/// Returns the sum of the products x_i y_i, or of their squares; NaN if memory is lacking, because the
+/// callers are functions of C.
 double sum_of_products(N_Vector x, N_Vector y, bool squared) noexcept {
   try {
     const work_vectors work(x);
@@ -132,7 +133,7 @@ void use_equal_sums(N_Vector v) {
   ops->nvdotprod = equal_dot_product;
   ops->nvwrmsnorm = equal_wrms_norm;
   ops->nvwl2norm = equal_wl2_norm;
-  // Without these, SUNDIALS calls those above.
+  // Without the following operations, SUNDIALS calls those above.
   ops->nvdotprodmulti = nullptr;
   ops->nvdotprodlocal = nullptr;
   ops->nvdotprodmultilocal = nullptr;

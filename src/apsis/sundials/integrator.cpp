@@ -22,7 +22,7 @@ void require_free(bool free) {
         "after the integration, or use another integrator");
 }
 
-/// Keeps an integrator for the time of an integration.
+/// Marks an integrator as busy during an integration.
 class in_use {
  public:
   explicit in_use(apsis_sundials* integrator) : held_(c::require(integrator, handle)) {
@@ -37,7 +37,7 @@ class in_use {
   apsis_sundials& held_;
 };
 
-/// The operations of a vector that integrations and sums call.
+/// Throws input_error unless a vector has the operations that integrations and sums call.
 void require_operations(N_Vector y) {
   const auto& has = *c::require(y, "the initial state").ops;
   const std::pair<const char*, bool> operations[] = {{"nvclone", has.nvclone != nullptr},
@@ -76,7 +76,7 @@ bool observe(apsis_sundials& s, long long step, double t, double dt, const nvect
   return returned == 0;
 }
 
-/// Integrates to t1, or for one step.
+/// Integrates to t1, or for one step if `once`.
 int advance(apsis_sundials& s, double t1, bool once) {
   if (!std::isfinite(t1) || t1 < apsis_sundials_time(&s))
     throw input_error(fmt::format(
@@ -99,7 +99,7 @@ int advance(apsis_sundials& s, double t1, bool once) {
   }
 }
 
-/// The same for an integrator that is not in use, whose time and state are copied also after an error.
+/// Calls advance() for an integrator that is not in use. Copies its time and state, also after an error.
 int integrate(apsis_sundials* integrator, double t1, N_Vector y, double* reached, bool once) {
   const in_use kept(integrator);
   apsis_sundials& s = *kept;
@@ -117,7 +117,7 @@ int integrate(apsis_sundials* integrator, double t1, N_Vector y, double* reached
   }
 }
 
-/// Writes dense output, or the state alone without a step of the present settings.
+/// Writes dense output. Without a step of the present settings, only the state at the time reached is known.
 int write_state(apsis_sundials& s, double t, N_Vector out) {
   if (!s.running && t != s.t)
     throw input_error(
@@ -213,7 +213,7 @@ int apsis_sundials_state_at(apsis_sundials* integrator, sunrealtype t, N_Vector 
   return guarded([=] {
     require(y, "the place of the state");
     if (require(integrator, handle).of.observing) {
-      // Between two steps, but callbacks of this one may not ask again.
+      // The observer runs between two steps. Callbacks of this dense output must not ask for more.
       integrator->of.observing = false;
       const int status = guarded([=] { return write_state(*integrator, t, y); });
       integrator->of.observing = true;

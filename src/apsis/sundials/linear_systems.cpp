@@ -94,7 +94,7 @@ int linear_systems::multiply(void* self, N_Vector x, N_Vector z) {
 }
 
 void linear_systems::require_solvable(double most) const {
-  // A slow component loses this factor times the rounding of the fast ones, which are themselves errors of
+  // A slow component loses this factor times the rounding errors of the fast ones. These are themselves
   // roundings times this factor.
   if (amplification_ > most)
     throw numerical_error(

@@ -62,7 +62,7 @@ bool nvector_problem::is_admissible(const state& u) {
 void nvector_problem::solve(double t, bool timed, double a, double b, state& u) {
   if (of_.stage != nullptr && (a != 0.0 || b != 0.0)) {
     of_.count(APSIS_SUNDIALS_STAGE_SOLVES);
-    // A stage that fails leaves u as it was.
+    // A stage that fails leaves u unchanged.
     other_ = u;
     c::require_success("stage", of_.stage(t, a, b, other_.get(), of_.data));
     u.swap(other_);

@@ -17,7 +17,7 @@ event_functions<nvector, double> functions_of(apsis_sundials& s) {
           s.events.directions, std::vector<bool>(s.events.ends.begin(), s.events.ends.end())};
 }
 
-/// Whether no stage of a method is solved.
+/// Whether a method solves no stages.
 bool is_explicit(const time_integrator& m) {
   return m.file() != nullptr && m.file()->kind == method_kind::explicit_only;
 }

@@ -13,7 +13,7 @@
 namespace apsis::sundials {
 namespace {
 
-/// Changes settings by change(integrator).
+/// Changes settings by change(integrator), and ends the run.
 template <class Change>
 int set(apsis_sundials* integrator, const Change& change) {
   return c::guarded([&] {

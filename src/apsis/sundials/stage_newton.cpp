@@ -19,7 +19,7 @@ constexpr double rounding = std::numeric_limits<double>::epsilon();
 /// solves by up to 300.
 constexpr double share = 1e-3;
 
-/// Stages for which a Jacobian serves as preconditioner, unless Newton's method becomes slow.
+/// Number of stages for which a Jacobian serves as preconditioner, unless Newton's method becomes slow.
 constexpr int oldest = 20;
 
 constexpr int most_iterations = 100;
@@ -60,7 +60,7 @@ void stage_newton::require(int returned, const char* problem) {
                     problem, returned));
 }
 
-/// Sets k and r. Returns whether Q accepts the state and is finite; throws what a failed callback means.
+/// Sets k and r. Returns whether Q accepts the state and is finite; throws the error of a failed callback.
 bool stage_newton::evaluate(const stage& s, iterate& at) {
   N_Vector v = at.v.get(), k = at.k.get(), r = at.r.get();
   at.admissible = satisfies(accuracy_.constraints, v, work_.get());
@@ -89,7 +89,7 @@ void stage_newton::add_time_derivative(const stage& s, iterate& at) {
   }
 }
 
-/// Prepares the preconditioner where J is, with new or with earlier data of it.
+/// Prepares the preconditioner, with new data of J at its present state or with earlier data.
 void stage_newton::prepare(const stage& s, bool fresh) {
   require(systems_.prepare(s.a, s.b, fresh), "the matrix of Newton's method cannot be factorized");
   known_a_ = s.a;
@@ -98,8 +98,8 @@ void stage_newton::prepare(const stage& s, bool fresh) {
   if (fresh) age_ = 1;
 }
 
-/// Sets δ for the residual of an iterate, where J is, to a hundredth of its size or a tenth of the accuracy.
-/// `expected` is the size that δ may have.
+/// Sets δ for the residual of an iterate, the present state of J. Its error is at most a tenth of its size or
+/// of the accuracy. `expected` is the size that δ may have.
 void stage_newton::correct(const stage& s, iterate& at, double expected) {
   constexpr double least = 0.1;
   // J² has the square of the stiffness: (I − γJ)⁻² of another state would mix slow and fast components by
@@ -112,7 +112,7 @@ void stage_newton::correct(const stage& s, iterate& at, double expected) {
     const int returned = systems_.solve(at.r.get(), at.delta.get(), weights_.get(), unit_ * tolerance);
     at.size = N_VWrmsNorm(at.delta.get(), weights_.get()) / unit_;
     if (linear_systems::is_progress(returned) && std::isfinite(at.size)) {
-      // A solver does nothing where the residual is below its tolerance.
+      // A solver does nothing if the residual is below its tolerance.
       if (systems_.is_exact() || tolerance <= std::max(least, 0.1 * at.size)) return;
       tolerance = std::max(least, std::min(1e-2 * at.size, 1e-4 * tolerance));
       continue;
@@ -138,8 +138,9 @@ bool stage_newton::is_small(const iterate& at) const {
          (!accuracy_.absolute && N_VMaxNorm(at.delta.get()) <= 1e-12 * N_VMaxNorm(at.v.get()));
 }
 
-/// Whether the iterate is accurate after its correction: the error of a sequence of corrections that decrease
-/// by θ is θ/(1 − θ) of the last one; or corrections are rounding errors, which no longer decrease.
+/// Whether the iterate is accurate after its correction. The error of a sequence of corrections that decrease
+/// by θ is θ/(1 − θ) of the last one. Corrections that no longer decrease may be rounding errors; these
+/// suffice, too.
 bool stage_newton::is_done(double before) const {
   if (!std::isfinite(before)) return now_.size <= 1.0;
   const double theta = now_.size / before;
@@ -163,7 +164,8 @@ bool stage_newton::advance(const stage& s) {
   return false;
 }
 
-/// Adds the last correction, unless that leaves the constraints.
+/// Adds the last correction, unless the result violates the constraints. Throws numerical_error if v violates
+/// them.
 void stage_newton::finish(const stage& s) {
   N_VLinearSum(1.0, now_.v.get(), 1.0, now_.delta.get(), next_.v.get());
   next_.admissible = satisfies(accuracy_.constraints, next_.v.get(), work_.get());
@@ -175,8 +177,8 @@ void stage_newton::finish(const stage& s) {
         s.t));
 }
 
-/// Whether rounding errors of r, whose stiff part has the square of the stiffness, would hide the slow
-/// components of v.
+/// Whether rounding errors of r would hide the slow components of v. The stiff part of r has the square of
+/// the stiffness.
 bool stage_newton::is_far_from_equilibrium() const {
   constexpr double most = 1e6;
   return N_VMaxNorm(now_.r.get()) > most * N_VMaxNorm(now_.v.get());
@@ -191,7 +193,7 @@ void stage_newton::start_at(const stage& s) {
                     s.t));
 }
 
-/// Throws numerical_error: Newton's method `does` something.
+/// Throws numerical_error. `does` completes the sentence "Newton's method …".
 void stage_newton::fail(const stage& s, const std::string& does) const {
   systems_.require_solvable(stiff);
   throw numerical_error(

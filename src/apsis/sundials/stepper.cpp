@@ -1,4 +1,4 @@
-// Compiled where SUNDIALS has steppers (version 7.5 and later), which others of its integrators can combine.
+// Compiled if SUNDIALS has steppers (version 7.5 and later). Other integrators of SUNDIALS can combine them.
 #include "internal/integrator_handle.hpp"
 
 #include <apsis/c/internal/guarded.hpp>
@@ -17,7 +17,7 @@ apsis_sundials* content_of(SUNStepper stepper) {
   return static_cast<apsis_sundials*>(content);
 }
 
-/// Keeps the apsis_status as the last flag of the stepper, and returns success or failure.
+/// Stores the apsis_status as the last flag of the stepper. Returns success or failure.
 SUNErrCode outcome(SUNStepper stepper, int status) {
   SUNStepper_SetLastFlag(stepper, status);
   return status >= 0 ? SUN_SUCCESS : SUN_ERR_EXT_FAIL;

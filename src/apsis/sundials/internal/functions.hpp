@@ -36,7 +36,8 @@ struct functions {
   void evaluate_transport(double t, N_Vector y, N_Vector out);
   /// out ← Q(t, y); 0 without Q. Throws numerical_error if Q is not finite.
   void evaluate_collision(double t, N_Vector y, N_Vector out);
-  /// The same for a state that Newton's method tries: whether Q is finite there and accepts the state.
+  /// Like evaluate_collision(), for a state that Newton's method tries. Returns whether Q accepts the state
+  /// and is finite. Throws callback_error if the callback fails.
   bool try_collision(double t, N_Vector y, N_Vector out);
   /// Returns the result of a time_function; +infinity without one.
   double time_of(apsis_sundials_time_function* function, const char* name, double t, N_Vector y) const;
@@ -46,7 +47,8 @@ struct functions {
                 double t, N_Vector y, N_Vector out);
 };
 
-/// Whether all elements are finite, up to sums of 1e308.
+/// Whether all elements are finite. Elements whose absolute values add up to more than 1e308 count as
+/// infinite.
 bool is_finite(N_Vector v);
 
 }  // namespace apsis::sundials

@@ -22,7 +22,7 @@ namespace apsis::sundials {
 struct step_limits {
   std::optional<double> dt, first_step;
   double safety = 1.0;
-  int growth = 0;  ///< of a graded start; 0 without
+  int growth = 0;  ///< of a graded start; 0 without one
   std::string controller{usual_step_law};
 };
 
@@ -47,16 +47,16 @@ struct run {
 std::unique_ptr<run> make_run(apsis_sundials& s);
 /// Returns an integrator that no callback and no other thread uses. Throws input_error if one does.
 apsis_sundials& idle(apsis_sundials* integrator);
-/// Keeps time, state and counts of the run, and ends it: other settings need another one.
+/// Copies time, state and counts from the run and ends it, because other settings need another one.
 void end_run(apsis_sundials& s);
 
 }  // namespace apsis::sundials
 
 struct apsis_sundials {
   const apsis::time_integrator* method;
-  apsis::sundials::nvector u;  ///< state when `running` was made, or without one
+  apsis::sundials::nvector u;  ///< state at the beginning of `running`; the present one without a run
   double t = std::numeric_limits<double>::quiet_NaN();
-  std::array<apsis::sundials::nvector, 3> work{};  ///< of the sums
+  std::array<apsis::sundials::nvector, 3> work{};  ///< work vectors of the sums
   apsis::sundials::functions of{};
   apsis::sundials::stage_accuracy accuracy{};
   apsis::sundials::step_limits limits{};

@@ -18,7 +18,7 @@ struct refusal {
   }
 };
 
-/// A matrix of SUNDIALS and its destruction.
+/// Owns a matrix of SUNDIALS.
 class owned_matrix {
  public:
   owned_matrix() = default;
@@ -44,8 +44,8 @@ class jacobian {
   /// Stores a reference; vectors are made like `like`.
   jacobian(functions& of, const nvector& like);
 
-  /// Moves to the state v at t, with k = Q(t, v), which both must stay as they are. Evaluates a matrix that
-  /// products need. Returns 0, or what a callback returned.
+  /// Moves to the state v at t with k = Q(t, v). Neither v nor k may change afterwards. Lets the program
+  /// prepare its products. Returns 0, or what a callback returned.
   int move_to(double t, N_Vector v, N_Vector k);
   /// Evaluates the matrix at this state unless it is known. Returns 0, or what a callback returned.
   int evaluate_matrix();
@@ -69,7 +69,7 @@ class jacobian {
 
   functions& of_;
   owned_matrix matrix_, moved_matrix_;
-  nvector inverse_size_, moved_, moved_rate_, first_, second_, third_;  ///< the last three for any use
+  nvector inverse_size_, moved_, moved_rate_, first_, second_, third_;  ///< the last three: work vectors
   double t_ = 0.0;
   N_Vector v_ = nullptr, k_ = nullptr;
   bool matrix_is_here_ = false, sizes_are_here_ = false;

@@ -9,8 +9,8 @@
 
 namespace apsis::sundials {
 
-/// A state: an N_Vector of any kind, copied by its operations, with sums that do not depend on its division
-/// among threads or processes. Throws std::bad_alloc where a vector cannot be cloned.
+/// A state: an N_Vector of any kind, copied by its operations. Its sums do not depend on its division among
+/// threads or processes. Throws std::bad_alloc if a vector cannot be cloned.
 class nvector {
  public:
   nvector() = default;  ///< no vector

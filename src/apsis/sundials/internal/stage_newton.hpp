@@ -6,10 +6,10 @@
 
 namespace apsis::sundials {
 
-/// Accuracy of stage solves, and the states that they may pass.
+/// Accuracy of stage solves, and constraints on their states.
 struct stage_accuracy {
   double relative = 0.0;
-  nvector absolute;     ///< of each unknown; without it roots are found to rounding errors
+  nvector absolute;     ///< of each unknown; without it stages are solved to rounding errors
   nvector constraints;  ///< ±1, ±2 or 0 of each unknown, as ARKODE defines them; none without it
 };
 
@@ -18,11 +18,12 @@ void set_weights(double relative, N_Vector absolute, N_Vector y, N_Vector w);
 /// Whether y satisfies constraints; true without them. `mask` is overwritten.
 bool satisfies(const nvector& constraints, N_Vector y, N_Vector mask);
 
-/// Newton's method for stages v = u + a Q(t, v) + b (J Q(t, v) + ∂Q/∂t), J = ∂Q/∂y. Its derivative contains
-/// the second derivatives of Q only where it converges slowly without them. A step is halved until the next
-/// one or the residual is smaller (the natural monotonicity test: P. Deuflhard, Newton Methods for Nonlinear
-/// Problems, 2004, section 3.3). Far from equilibrium a stage starts from v = u + √|b| Q(t, v). It ends when
-/// the error that the rate of convergence predicts is below a share of the tolerance.
+/// Newton's method for stages v = u + a Q(t, v) + b (J Q(t, v) + ∂Q/∂t), J = ∂Q/∂y. Its matrix contains
+/// second derivatives of Q only if the iteration converges slowly without them. A step is halved until the
+/// next step or the residual is smaller (the natural monotonicity test: P. Deuflhard, Newton Methods for
+/// Nonlinear Problems, 2004, section 3.3). Far from equilibrium a stage starts from the solution of v = u +
+/// √|b| Q(t, v). The iteration ends when the error that the rate of convergence predicts is below a share of
+/// the tolerance.
 class stage_newton {
  public:
   /// Stores references; vectors are made like `like`.

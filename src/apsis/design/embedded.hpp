@@ -75,8 +75,8 @@ struct embedded_search {
 /// covers the trees of each colour, weights down to −θ · negative are admitted for q ≥ 2 and kind imex. The
 /// signs d̃ ≥ 0 ≥ d̃̇ remain. An order q without a solution of either kind is skipped. u^{n+1} does not depend
 /// on ũ. The bound only keeps ũ itself admissible where stages differ by less than that. Throws input_error
-/// for methods with a nondiagonal D, with an update, or of order 1, for orders not below p, and for the cost
-/// of a solve in explicit methods.
+/// for methods with a nondiagonal D, with an update, or of order 1, and for orders not below p. Throws it
+/// also for an explicit method if the cost allows a solve.
 embedded_search search_embedded(const method& m, const embedded_task& task);
 
 }  // namespace apsis

@@ -11,9 +11,9 @@ namespace apsis {
 /// are exact, all others decimals. Claims the order of the task, and r.
 method to_method(const design_task& task, const design_candidate& candidate, const std::string& name);
 
-/// Converts a candidate to a method polished to `digits` decimals by Newton's method on its order conditions
-/// and additional demands, with zeros and exact coefficients fixed (polish()). Throws numerical_error if the
-/// iteration does not converge.
+/// Converts a candidate to a method polished to `digits` decimals. polish() solves the order conditions and
+/// additional demands with zeros and exact coefficients fixed. Throws numerical_error if the iteration does
+/// not converge.
 method to_polished_method(const design_task& task, const design_candidate& candidate, const std::string& name,
                           int digits = 45);
 

@@ -41,7 +41,7 @@ Eigen::Vector<Real, Eigen::Dynamic> nonnegative_least_squares(
       for (std::size_t k = 0; k < positive.size(); ++k) {
         Real& value = x(positive[k]);
         value += step * (best(static_cast<Eigen::Index>(k)) - value);
-        // The blocking entry is zero, whatever its step rounds to, so every round removes an entry.
+        // The blocking entry is zero, whatever its step rounds to, so that every round removes an entry.
         if (k == blocking || value <= Real(0)) {
           value = Real(0);
         } else {

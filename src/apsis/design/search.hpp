@@ -12,7 +12,7 @@ namespace apsis {
 /// A design task: kind, order, stages, demands and objective of the method to be found.
 struct design_task {
   method_kind kind = method_kind::imex;  ///< class of equations
-  std::size_t stages = 3;                ///< number of stages, s; with two steps u^{n−1} is one of them
+  std::size_t stages = 3;                ///< number of stages, s, including u^{n−1} with two steps
   int steps = 1;                         ///< 2: stages also depend on u^{n−1} and its T, in the first row
   std::optional<int> transports;         ///< evaluations of T, n_F; if not given, each start draws a number
   design_demands demands;                ///< order, bounds and further requirements

@@ -101,7 +101,7 @@ class dependent_march final : public any_march<State, Real> {
 /// @endcond
 
 /// Returns the march of a method of one step, which need not be registered. `p` must outlive it. Throws
-/// input_error if the problem lacks what the method needs.
+/// input_error if the problem lacks a function that the method needs.
 template <problem P>
 std::unique_ptr<any_march<typename P::state, typename P::real>> make_march(
     const method& m, P& p,
@@ -112,8 +112,8 @@ std::unique_ptr<any_march<typename P::state, typename P::real>> make_march(
       tolerated ? estimate_of(m).order : 0);
 }
 
-/// Returns the march of an integrator. `p` must outlive it. Throws input_error if the problem lacks what the
-/// method needs, or if a tolerance is given for a method that needs equal steps.
+/// Returns the march of an integrator. `p` must outlive it. Throws input_error if the problem lacks a
+/// function that the method needs, or if a tolerance is given for a method that needs equal steps.
 template <problem P>
 std::unique_ptr<any_march<typename P::state, typename P::real>> make_march(
     const time_integrator& m, P& p,

@@ -45,7 +45,7 @@ auto with_one_of(std::tuple<Kind, Others...>*, const time_integrator& m, P& p, s
 
 /// Returns use(march), where `march` is the stepper or the equal_step_formula of an integrator for a problem.
 /// `use` may move it. `march` stores a reference to the problem, which must outlive it. Throws input_error if
-/// the problem lacks what the integrator needs.
+/// the problem lacks a function that the integrator needs.
 template <problem P, class Use>
 auto with_stepper(const time_integrator& m, P& p, const Use& use, solutions which = solutions::result) {
   return any_stepper_parts::with_one_of(static_cast<stepper_kinds*>(nullptr), m, p, which, use);

@@ -15,7 +15,8 @@
 
 namespace apsis {
 
-/// Relative and absolute tolerances of the unknowns u_i, with which errors are compared one by one:
+/// Relative and absolute tolerances of the unknowns u_i. The error of every unknown is compared with its own
+/// tolerance:
 ///   τ_i(u) = rtol_i |u_i| + atol_i.
 /// An object of this class is the distance of error control, with 1 as the tolerance of the controller:
 ///   distance(u, v) = max_i |u_i − v_i| / (rtol_i max(|u_i|, |v_i|) + atol_i).
@@ -29,8 +30,8 @@ class component_tolerances {
       : component_tolerances(std::vector<Real>{relative}, std::vector<Real>{absolute}) {}
 
   /// Each list has one number, for all unknowns, or one for every unknown. Throws input_error if a list is
-  /// empty, if a number is negative or not finite, if both tolerances of an unknown are 0, or if the lists
-  /// have different lengths above one.
+  /// empty, a number is negative or not finite, or both tolerances of an unknown are 0. Throws it also if the
+  /// lists have different lengths above one.
   component_tolerances(std::vector<Real> relatives, std::vector<Real> absolutes)
       : relative_(std::move(relatives)), absolute_(std::move(absolutes)) {
     const std::size_t n = std::max(relative_.size(), absolute_.size());

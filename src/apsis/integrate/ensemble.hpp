@@ -214,9 +214,9 @@ struct no_lane_transport {
   }
 };
 
-/// Integrates many systems u' = F(t, u, p) + G(t, u, p) of N unknowns each from t0 to t1, eight side by side
-/// in the lanes of vectors, such as cells of a reacting flow or of a plasma. F is explicit and G implicit.
-/// All quantities are dimensionless.
+/// Integrates many systems u' = F(t, u, p) + G(t, u, p) of N unknowns each from t0 to t1, such as the cells
+/// of a reacting flow or of a plasma. Eight systems advance side by side in the lanes of vectors. F is
+/// explicit and G implicit. All quantities are dimensionless.
 ///   u            N numbers of each system, one system after the other; replaced by those at t1
 ///   parameters   Parameters numbers of each system, in the same order
 ///   f, g         called as g(t, u, p, out) for eight systems. u and out are spans of N `lanes` or `jet<N>`,

@@ -34,8 +34,8 @@ void require_increasing(const std::vector<Real>& times) {
           i));
 }
 
-/// A solution that advances from one time to the next by an integrator of any kind, with the steps that
-/// integrate() and integrate_to_tolerance() take over each interval, bit for bit. The controller of the steps
+/// A solution that advances from one time to the next by an integrator of any kind. Over each interval the
+/// steps are those of integrate() or integrate_to_tolerance(), bit for bit. The controller of the steps
 /// continues from one interval to the next; a formula of several equal steps begins each interval with its
 /// starter.
 ///

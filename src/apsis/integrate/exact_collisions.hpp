@@ -12,8 +12,8 @@ template <class P>
 concept problem_with_known_collision =
     problem<P> && requires(P p, typename P::state& u, typename P::real x) { p.advance_collision(x, x, u); };
 
-/// A problem for methods with exact collisions (method/resolved_flows.hpp): its stage solves are exact
-/// solutions of the collision of another problem, to which it stores a reference.
+/// A problem for methods with exact collisions (method/resolved_flows.hpp). Its stage solves are exact
+/// solutions of the collision of another problem.
 template <problem_with_known_collision P>
 class exact_collisions {
  public:

@@ -81,8 +81,8 @@ class schedule::builder {
     bool fresh = true;
     for (int j = 1; j < known_; ++j) {  // a stage with no further use hands over its buffer
       const bool waits = weighs(k, j) && !done(k, j) && buffer_[index(j)] > 0;
-      // A stage that only the embedded solution still needs comes first, too, so that the order of the sum is
-      // the same with and without it.
+      // A stage that only the embedded solution still needs comes first, too: the order of the sum does not
+      // depend on the embedded solution.
       const int last = k <= p_.result ? p_.result : p_.stages;
       if (!waits || carries_transport(k, j) || carries_collision(k, j) || needed_by(last, j, k)) continue;
       const bool is_last_use = !needed_after(j, k);

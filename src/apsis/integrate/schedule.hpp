@@ -9,8 +9,8 @@ namespace apsis {
 
 class time_integrator;
 
-/// Execution order of a step, derived once from the zero pattern of the Shu–Osher form, such that no T(u_j)
-/// is ever stored and as few state-sized buffers as possible are in use.
+/// Execution order of a step, derived once from the zero pattern of the Shu–Osher form. No T(u_j) is ever
+/// stored, and as few state-sized buffers as possible are in use.
 ///
 /// As soon as u_j is known, T(u_j) is evaluated once and added to the accumulator of every later stage that
 /// uses it. A multiple p_kj u_j alone does not open an accumulator. It waits until some T(u_i) opens that of

@@ -87,7 +87,7 @@ class simplified_stage {
       // contraction.
       const Real theta = k > 0 ? size / size_of(before_) : expected_contraction();
       if (k > 0) {
-        // A correction that rounding errors dominate says nothing about the matrix.
+        // A correction that rounding errors dominate does not measure the quality of the matrix.
         if (size > accepted_rest<Real>) kept_.measured(theta);
         if (!(theta < slowest)) return size <= accepted_rest<Real> ? accept() : end::slow;
       }

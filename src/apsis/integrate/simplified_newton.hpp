@@ -27,11 +27,11 @@ class timed_stage_equation : public stage_equation<Real> {
 /// θ = |δ_k|/|δ_{k−1}|, in the units of stage_equation::size_of_correction(), is the measured contraction. A
 /// stage is accepted where the estimated remaining error θ/(1 − θ) |δ_k| is at most 1/8 of the accuracy that
 /// the equation needs. |δ_k| must also be at most 8 times this accuracy (Hairer & Wanner, Solving Ordinary
-/// Differential Equations II, section IV.8). Where more corrections are expected than a new matrix costs, J
-/// is taken at the present v, for this stage and the rest of the step.
+/// Differential Equations II, section IV.8). If more corrections are expected than a new matrix costs, J is
+/// evaluated at the present v. It then serves this stage and the rest of the step.
 ///
 /// A step depends on its t, Δt and u alone, not on earlier solves: J of an earlier attempt is reused only if
-/// that began with the same t and u.
+/// that attempt began with the same t and u.
 template <class Real>
 class simplified_newton {
  public:

@@ -97,7 +97,7 @@ class stepper {
     carry_out(second_half_, t + half, half, middle);
     return {buffer(plan_.result_buffer(), u), single};
   }
-  /// Sets u to the u^{n+1} of the last attempt, which was made from the same u.
+  /// Sets u to the u^{n+1} of the last attempt. Requires that the attempt began with this u.
   void accept(state& u) {
     using std::swap;
     if (plan_.result_buffer() > 0) swap(u, buffer(plan_.result_buffer(), u));

@@ -113,7 +113,7 @@ class time_marcher {
     if (n_ > 0 || done()) return;
     startup_length_ = next(proposed);
     // The end does not shorten the start-up, unless it is the only step: a run to a later end has the same
-    // one.
+    // start-up.
     if (!fixed_)
       startup_length_ =
           std::min(every_ > Real(0) ? equal_part(next_multiple(), proposed) : proposed, t1_ - t_);

@@ -7,8 +7,8 @@
 namespace apsis {
 
 /// Whether the first `rows` rows of the Shu–Osher form are convex combinations of forward Euler steps of T
-/// (and Q, for explicit methods) and implicit steps of Q. Under this hypothesis of the paper's theorems, r is
-/// an SSP coefficient.
+/// and implicit steps of Q. Explicit methods have forward Euler steps of T and Q. Under this hypothesis of
+/// the paper's theorems, r is an SSP coefficient.
 template <class Real>
 bool is_convex(const shu_osher_form<Real>& m, method_kind kind, std::size_t rows) {
   const auto initial = initial_weights(m);

@@ -23,7 +23,8 @@ struct family_entry {
 /// Returns all families, in the order of the registry.
 std::vector<const family_entry*> family_entries();
 
-/// Returns the family whose pattern matches `name`, whatever stands in place of S; nullptr without one.
+/// Returns the family whose pattern matches `name`, with any text in place of S; nullptr if there is no such
+/// family.
 const family_entry* try_find_family(std::string_view name);
 
 /// Returns why the family has no member of this name, such as "md-imex-chain-S-2 has S from 3 to 64"; "" if

@@ -66,15 +66,15 @@ struct embedded_row {
   double weight = 1.0;  ///< factor of the estimated error, set by its certificate (embedded_certificate)
 };
 
-/// A time integrator as data. Coefficients are stored as the strings of the method file (exact rationals
-/// "p/q" or decimals of up to 200 characters) and converted to the precision requested.
+/// A time integrator as data. Coefficients are stored as the strings of the method file: exact rationals
+/// "p/q" or decimals of up to 200 characters. coefficients() converts them to the precision requested.
 class method {
  public:
   std::string name,                      ///< as in the method file, or that of a member of a family
       title,                             ///< one line
       citation;                          ///< publication
-  std::string origin;                    ///< how its coefficients were found; "" if the citation says so
-  std::string purpose;                   ///< what it is recommended for, in a few words; "" if nothing
+  std::string origin;                    ///< how its coefficients were found; "" if the citation states it
+  std::string purpose;                   ///< its recommended use, in a few words; "" if there is none
   method_kind kind = method_kind::imex;  ///< class of equations
   int steps = 1;                      ///< 2: the first row of `exact` stands for u^{n−1} (kinds/two_step.hpp)
   method_claims claims;               ///< verified by certify()
@@ -102,7 +102,7 @@ class method {
 
   /// Returns the Shu–Osher form in `Real` (double, long double or mp_real), each coefficient correctly
   /// rounded from its exact value. In double and long double the convex weights are then rounded to a common
-  /// grid, so that r_i + Σ_j (p_ij + w_ij) is exactly 1 in floating point and no step drifts.
+  /// grid. r_i + Σ_j (p_ij + w_ij) is thus exactly 1 in floating point, and no step drifts.
   template <class Real>
   shu_osher_form<Real> coefficients() const;
 };
@@ -117,7 +117,7 @@ const method& find_method(std::string_view name);
 /// Returns the names of the methods of one step of the catalogue, sorted; members of families are not listed.
 std::vector<std::string> method_names();
 
-/// Whether `name` is one of method_names() or matches the pattern of a family.
+/// Whether method_names() contains `name`, or `name` matches the pattern of a family.
 bool is_method_name(std::string_view name);
 
 /// Parses the text of a method file without certifying the method; `file` appears in messages. Throws

@@ -31,8 +31,8 @@ std::optional<matrix<mp_real>> stage_matrix(const butcher_form<mp_real>& b, cons
 
 /// Computes the radius of absolute monotonicity of a tableau K whose last row is the update (Kraaijevanger,
 /// BIT 31, 1991): the largest r with K(I + rK)⁻¹ ≥ 0 and (I + rK)⁻¹ e ≥ 0. It is the SSP coefficient of an
-/// explicit method, and of a DIRK method if the property is known for forward Euler steps of Q only. A
-/// correct `guess` (from below, to within 10⁶·zero) saves the bisection.
+/// explicit method. It is also that of a DIRK method if the property is known for forward Euler steps of Q
+/// only. A correct `guess` (from below, to within 10⁶·zero) saves the bisection.
 mp_real monotonicity_radius(const matrix<mp_real>& tableau, const mp_real& zero,
                             const mp_real& guess = mp_real(0));
 

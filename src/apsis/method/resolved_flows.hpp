@@ -51,7 +51,7 @@ shu_osher_form<Real> with_resolved_flows(const shu_osher_form<Real>& m) {
   return all;
 }
 
-/// Returns the largest r for which the rows of a convex form are convex combinations of u^n, of stages and of
+/// Returns the largest r for which the rows of a convex form are convex combinations of u^n, stages and
 /// forward Euler steps of length Δt/r. It is the least r_m (p_ij + w_ij)/w_ij over w_ij > 0, where r_m is the
 /// r of the form. Returns 0 for a form without transport, which sets no limit.
 template <class Real>

@@ -7,9 +7,9 @@
 
 namespace apsis {
 
-/// A law by which error control chooses the next step from the last three accepted ones. Estimated errors
-/// grow like err ~ Δt^k. A step of length Δt_n with the error err_n could have been ℓ_n Δt_n long, where ℓ_n
-/// = 0.9 (tol/err_n)^{1/k}. After an accepted step
+/// A law of error control: it chooses the next step from the last three accepted ones. Estimated errors grow
+/// like err ~ Δt^k. A step of length Δt_n with the error err_n could have been ℓ_n Δt_n long, where ℓ_n = 0.9
+/// (tol/err_n)^{1/k}. After an accepted step
 ///   Δt_{n+1} = Δt_n ℓ_n^{β₁} ℓ_{n−1}^{β₂} ℓ_{n−2}^{β₃} (Δt_n/Δt_{n−1})^{−α},
 /// a digital filter of the errors (G. Söderlind, ACM Trans. Math. Softw. 29 (2003) 1–26). At the beginning, ℓ
 /// and quotients of missing steps are 1. The predictive law is Δt_{n+1} = ℓ_n Δt_n min(1, ℓ_n Δt_n/(ℓ_{n−1}

@@ -75,10 +75,9 @@ class time_integrator {
   virtual integrator_certificate certify() const = 0;
 };
 
-/// Returns the certified integrator called `name`: a method of the catalogue (methods/*.toml) or of a family,
-/// a formula of a kind such as "imex-bdf-3", or a method file given by its path, FILE.toml. A file is
-/// certified again when its contents have changed; references returned earlier stay valid. Throws like
-/// find_method().
+/// Returns the certified integrator called `name`. It is a method of the catalogue (methods/*.toml) or of a
+/// family, a formula such as "imex-bdf-3", or a method file given by its path, FILE.toml. A file is certified
+/// again when its contents have changed; references returned earlier stay valid. Throws like find_method().
 const time_integrator& find_integrator(const std::string& name);
 
 /// Returns the names of the catalogue, then those of integrators that are not methods of one step; members of

@@ -90,8 +90,8 @@ int jacobian::curvature(N_Vector x, N_Vector jk, N_Vector hx) {
   return returned;
 }
 
-/// Returns the h with which hx changes no element of v by more than `part` of its size, which is at least
-/// 1e-3 of the largest; 0 for x = 0.
+/// Returns the h with which hx changes no element of v by more than `part` of its size; 0 for x = 0. A size
+/// is at least 1e-3 of the largest.
 double jacobian::length(N_Vector x, double part) {
   if (!sizes_are_here_) {
     const double largest = N_VMaxNorm(v_);

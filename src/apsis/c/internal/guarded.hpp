@@ -34,7 +34,7 @@ inline void require_success(const char* name, int returned) {
   if (returned != 0) throw_refusal(name, returned);
 }
 
-/// Stores the exception that is being handled as the last error of this thread, and returns its apsis_status.
+/// Stores the current exception as the last error of this thread, and returns its apsis_status.
 inline int store_exception() noexcept {
   try {
     throw;

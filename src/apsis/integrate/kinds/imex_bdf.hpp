@@ -12,7 +12,7 @@
 namespace apsis {
 
 /// Advances any problem by IMEX-BDF: one evaluation of T and one stage solve for each step. As soon as u^n is
-/// known, T(u^n) is evaluated once and added to the accumulators of the next k steps, so that no T is stored.
+/// known, T(u^n) is evaluated once and added to the accumulators of the next k steps. No T is stored.
 ///
 /// The first k steps, from u⁰ to u^k, are steps of equal length of the extrapolated Euler method of order k
 /// (family extrapolated-euler-S). The formula uses u¹ … u^k but not u⁰, which may be far from equilibrium:

@@ -11,8 +11,8 @@
 namespace apsis {
 
 /// Advances any problem by a two-step method with equal steps. As soon as u_j is known, T(u_j) is evaluated
-/// once and added to the accumulators of all later rows, so that no T is stored. Buffers are allocated at the
-/// first step.
+/// once and added to the accumulators of all later rows. No T is stored. Buffers are allocated at the first
+/// step.
 ///
 /// The first two steps, from u⁰ to u², are steps of a method of one step: u⁰ may be far from equilibrium, and
 /// T(u⁰) would enter with the weight Δt, although an initial layer lasts only ε.
@@ -22,8 +22,8 @@ class two_step {
   using state = typename P::state;  ///< type of u
   using real = typename P::real;    ///< type of time and coefficients
 
-  /// Copies the method and the method of the first steps, whose order may be one below that of `m`, and
-  /// stores a reference to the problem, which must outlive this object.
+  /// Copies the method and the method of the first steps, whose order may be one below that of `m`. Stores a
+  /// reference to the problem, which must outlive this object.
   two_step(const method& m, const method& starter, P& p)
       : problem_(p),
         name_(m.name),

@@ -14,9 +14,9 @@ namespace apsis {
 // u^{n−1}. For i = 1 … s,
 //   u_i = r_i u^n + Σ_{j<i} p_ij u_j + Σ_{j<i} w_ij (u_j + (Δt/r) T(u_j)) + Δt d_i Q(u_i) + Δt² ḋ_i Q̇(u_i),
 //   r_i = 1 − Σ_j (p_ij + w_ij),    u^{n+1} = u_s.
-// If all weights and d_i are ≥ 0 and ḋ_i ≤ 0, it preserves for Δt ≤ r Δt_FE every convex property of u^{n−1}
-// and u^n that forward Euler steps of T and stage solves preserve. Multi-derivative general linear methods
-// of this form are not in the paper. Dimensionless.
+// If all weights and d_i are ≥ 0 and ḋ_i ≤ 0, the method preserves convex properties of u^{n−1} and u^n for
+// Δt ≤ r Δt_FE: those that forward Euler steps of T and stage solves preserve. Multi-derivative general
+// linear methods of this form are not in the paper. Dimensionless.
 
 /// Computes the last entries φ_s(τ) of the stage vectors of order_conditions.hpp, with φ_0(τ) =
 /// (−1)^{|τ|}/γ(τ), the value of the exact solution at t_n − Δt. The method has order p if φ_s(τ) = 1/γ(τ)

@@ -33,7 +33,7 @@ class collision_jacobian {
   /// Stores a reference. With `constant`, J is evaluated only at the first state.
   collision_jacobian(split_functions& of, jacobian_choice choice, bool constant);
 
-  /// Evaluates J at a time and a state, unless this was done last.
+  /// Evaluates J at a time and a state, unless the last evaluation was there.
   void evaluate(double t, Vec u);
   /// y ← −J x. Requires evaluate().
   void minus_product(Vec x, Vec y);

@@ -11,11 +11,10 @@ namespace apsis::sundials {
 /// inherit these functions.
 void use_equal_sums(N_Vector v);
 
-/// Returns Σ x_i y_i. The rounded products are divided into parts that are multiples of a power of two, so
-/// that sums of parts are exact in any order (S. M. Rump, T. Ogita, S. Oishi, Accurate floating-point
-/// summation, SIAM J. Sci. Comput. 31 (2008), 189–224; J. Demmel, H. D. Nguyen, ARITH 21 (2013), 163–172).
-/// The remainder is below 2^−53 max |x_i y_i| and omitted. Takes about eight passes over memory. NaN if
-/// memory is lacking.
+/// Returns Σ x_i y_i. The rounded products are divided into parts that are multiples of a power of two. Sums
+/// of parts are then exact in any order (S. M. Rump, T. Ogita, S. Oishi, Accurate floating-point summation,
+/// SIAM J. Sci. Comput. 31 (2008), 189–224; J. Demmel, H. D. Nguyen, ARITH 21 (2013), 163–172). The remainder
+/// is below 2^−53 max |x_i y_i| and omitted. Takes about eight passes over memory. NaN if memory is lacking.
 double equal_dot_product(N_Vector x, N_Vector y);
 /// Returns √(Σ (x_i w_i)²/n), summed in the same way.
 double equal_wrms_norm(N_Vector x, N_Vector w);

@@ -64,8 +64,8 @@ design_progress search_methods(const design_task& task, const design_search_opti
 /// Whether a is better than b in the objective of the task; ties go to the earlier start.
 bool is_better(const design_task& task, const design_candidate& a, const design_candidate& b);
 
-/// Returns the value of the objective, larger is better: r, r/n_F, −error, −√(error² + (w band)²), or
-/// −√(error² + w² (band² + layer²)).
+/// Returns the value of the objective; larger values are better. It is r, r/n_F, −error, −√(error² + (w
+/// band)²), or −√(error² + w² (band² + layer²)).
 double value_of(const design_task& task, const design_candidate& candidate);
 
 /// Whether a candidate satisfies the requirements that are not equations: buffers, poles, angle and, for two

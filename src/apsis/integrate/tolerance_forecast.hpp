@@ -54,8 +54,8 @@ struct deviations {
   Real change;   ///< relative change of u in the step
 };
 
-/// Computes the deviations from a step dt of implicit–explicit Euler from the equilibrium `u` with repeated
-/// solves: u + dt T(u) deviates from equilibrium by zD, and each solve divides this by 1 + z.
+/// Computes the deviations by a step dt of implicit–explicit Euler from the equilibrium `u`, with repeated
+/// solves. u + dt T(u) deviates from equilibrium by zD, and each solve divides this by 1 + z.
 template <problem P, class Distance>
 deviations<typename P::real> compute_deviations(P& p, typename P::real t, const typename P::state& u,
                                                 typename P::real dt, const Distance& distance) {

@@ -107,11 +107,11 @@ class method {
   shu_osher_form<Real> coefficients() const;
 };
 
-/// Returns the certified method of one step called `name`: of the catalogue (methods/*.toml), a member of a
-/// family (family_registry.hpp), or a method file given by its path, FILE.toml. A file is read at every call
-/// and certified again when its contents have changed; references returned earlier stay valid. Throws
-/// input_error with the closest name if there is no such method, or with the range of S if a family has no
-/// such member. Throws claim_error if a claim fails, and io_error if a file cannot be read.
+/// Returns the certified method of one step called `name`. It is a method of the catalogue (methods/*.toml),
+/// a member of a family (family_registry.hpp), or a method file given by its path, FILE.toml. A file is read
+/// at every call and certified again when its contents have changed; references returned earlier stay valid.
+/// Throws input_error with the closest name if there is no such method, or with the range of S if a family
+/// has no such member. Throws claim_error if a claim fails, and io_error if a file cannot be read.
 const method& find_method(std::string_view name);
 
 /// Returns the names of the methods of one step of the catalogue, sorted; members of families are not listed.

@@ -23,8 +23,8 @@ double layer_error(double layer, double decay, double z) {
   return z < resolved ? 0.0 : layer / (1.0 - decay) - 1.0 / z;
 }
 
-/// Computes the errors of a method with exact collisions: stage i multiplies the deviation of its explicit
-/// part by e^{−d_i z}, and that part deviates by Σ_j (p_ij + w_ij) κ_j + z Σ_j w_ij/r + r_i κ_s.
+/// Computes the errors of a method with exact collisions. Stage i multiplies the deviation of its explicit
+/// part by e^{−d_i z}. The explicit part deviates by Σ_j (p_ij + w_ij) κ_j + z Σ_j w_ij/r + r_i κ_s.
 rate_errors errors_of_exact_collisions(const shu_osher_form<double>& m, double z) {
   const std::size_t s = m.stages();
   const auto initial = initial_weights(m);

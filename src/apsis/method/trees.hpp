@@ -22,7 +22,7 @@ struct rooted_tree {
 enum class tree_colours { F_only, G_only, both };
 
 /// Returns every tree of order 1 … `order`, sorted by order, children before their parents. Numbers of trees
-/// per order: 2, 4, 14, 52, 214, … with two colours, 1, 1, 2, 4, 9, … with one.
+/// per order: 2, 4, 14, 52, 214, … with two colours; 1, 1, 2, 4, 9, … with one.
 std::vector<rooted_tree> rooted_trees(int order, tree_colours colours);
 
 }  // namespace apsis

@@ -14,8 +14,8 @@ namespace apsis {
 /// once and added to the accumulators of all later rows. No T is stored. Buffers are allocated at the first
 /// step.
 ///
-/// The first two steps, from u⁰ to u², are steps of a method of one step: u⁰ may be far from equilibrium, and
-/// T(u⁰) would enter with the weight Δt, although an initial layer lasts only ε.
+/// The first two steps, from u⁰ to u², are steps of a method of one step, because u⁰ may be far from
+/// equilibrium. T(u⁰) would enter the formula with the weight Δt, although an initial layer lasts only ε.
 template <problem P>
 class two_step {
  public:

@@ -35,8 +35,8 @@ namespace apsis {
 ///
 /// with_mass(M) makes it M u' = F(t, u) + G(u).
 ///
-/// A stage with d = 0 and ḋ < 0 is singular where Δt λ = ±i/√|ḋ| for an eigenvalue λ of G'. That cannot
-/// happen for real negative spectra (relaxation); for other G it is detected and reported.
+/// A stage with d = 0 and ḋ < 0 is singular where Δt λ = ±i/√|ḋ| for an eigenvalue λ of G'. This cannot occur
+/// for real negative spectra (relaxation). For other G it is detected and reported.
 template <class F, class G, array_state State = std::vector<double>>
 class newton_problem {
  public:
@@ -177,7 +177,7 @@ class newton_problem {
   const newton_report& report() const { return report_; }
 
  private:
-  /// The stage at time t, in which time passes at the rate θ along the flow of G.
+  /// Solves the stage at time t. Time advances at the rate θ along the flow of G.
   void solve(real t, real theta, real a, real b, State& u) {
     load(u);
     equation_.field.set_time(t, theta);

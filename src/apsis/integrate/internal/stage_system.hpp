@@ -27,8 +27,8 @@ class stage_system {
   virtual column sizes_times(const column& x) const = 0;
   /// Returns the size of S⁻¹ e for errors e of the given sizes and any signs.
   virtual column spread(const column& sizes) const = 0;
-  /// Returns for each k_i the smallest size_j/|s_ji| of the equations j of v, +infinity if k_i is in none: a
-  /// change of k_i by it changes no equation by more than its size.
+  /// Returns for each k_i the smallest size_j/|s_ji| over the equations j of v; +infinity if k_i enters no
+  /// equation. A change of k_i by this value changes no equation by more than its size.
   virtual column changes_of_rates(const column& sizes) const = 0;
   /// Returns a power of 2 near x > 0: scaling with it causes no rounding errors.
   static Real power_of_2(Real x) { return std::exp2(std::round(std::log2(x))); }

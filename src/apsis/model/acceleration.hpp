@@ -7,10 +7,10 @@
 
 namespace apsis {
 
-/// An acceleration a(t, x) of all molecules, and a bound of it. Dimensionless.
+/// An acceleration a(t, x) of all molecules, with bounds on its components. Dimensionless.
 struct acceleration {
-  /// Returns a at a time and a point of space; components beyond the directions of the velocities are not
-  /// used.
+  /// Returns a at a time and a point of space. Components beyond the directions of the velocities
+  /// are ignored.
   std::function<std::array<double, 3>(double t, const position& x)> value;
   /// |a_k| is at most largest[k] at all times and points.
   std::array<double, 3> largest{};

@@ -16,12 +16,12 @@
 namespace apsis {
 namespace {
 
-/// w₀, w₁/ν, w₂/ν² of the equation of a stage.
+/// The weights w₀, w₁/ν and w₂/ν² of the stage equation (internal/binary_collision_stages.hpp).
 struct stage_weights {
   double zeroth, first, second;
 };
 
-/// The equation of a stage in the coordinates y = Bᵀv of the reachable directions, v = u + B(y − Bᵀu).
+/// The stage equation in the coordinates y = Bᵀv of the reachable directions: v = u + B(y − Bᵀu).
 class reachable_stage final : public stage_equation<double> {
  public:
   reachable_stage(const binary_collisions& collisions, const Eigen::VectorXd& u, double a, double b)
@@ -51,7 +51,7 @@ class reachable_stage final : public stage_equation<double> {
     if (!of_rate_.is_at(k)) collisions_.derivative(lifted(k).data(), scratch_, of_rate_.move_to(k));
     vector(hx).noalias() = of_rate_.matrix * vector(x);
   }
-  // The solver of squares is used elsewhere.
+  // Only unsquared_newton() solves this equation; it calls neither of these functions.
   void residual(std::span<const double>, std::span<double>) override {}
   void differential(std::span<const double>, std::span<const double>, std::span<double>,
                     std::span<double>) override {}
@@ -62,7 +62,7 @@ class reachable_stage final : public stage_equation<double> {
   }
 
  private:
-  /// A matrix that depends on a point, and the last point it was computed at.
+  /// A matrix that depends on a point, with the point of its last evaluation.
   struct remembered {
     std::vector<double> point;
     Eigen::MatrixXd matrix;
@@ -124,7 +124,7 @@ class binary_collision_solver final : public point_collision {
                                  : "Newton's method does not converge",
              p, at);
       }
-      // Without Q̇ the solution is nonnegative, and so are its roundings.
+      // Without Q̇ the exact solution is nonnegative; this step makes the computed one nonnegative too.
       if (share == 0.0 && weights.of_u > 0.0)
         collisions_.gain_over_loss(u_.data(), of.first / of.zeroth, v_.data());
       std::copy_n(v_.data(), n_, row);
@@ -161,8 +161,8 @@ class binary_collision_solver final : public point_collision {
         {-1, std::nan(""), at.first_cell + p / at.points_per_cell, at.epsilon[p]});
   }
 
-  /// v_ ← the solution of a stage whose slow directions are lost in the rounding errors of squares; v_ is the
-  /// start if it was found.
+  /// v_ ← the solution of a stage whose slow directions are lost in the rounding errors of squares. Starts
+  /// from v_ if `found`, else from u.
   void solve_unsquared(bool found, double a, double b, int p, const point_batch& at) {
     reachable_stage equation(collisions_, u_, a, b);
     if (!found) v_ = u_;
@@ -178,8 +178,9 @@ class binary_collision_solver final : public point_collision {
     v_ = equation.state(out);
   }
 
-  /// v_ ← the solution of the stage. Newton's method starts at u where collisions are few, else at the
-  /// solution of a relaxation with the same equilibrium, then at the equilibrium and at u.
+  /// v_ ← the solution of the stage. If collisions are few, Newton's method starts at u. If that fails, or
+  /// with more collisions, it starts at the solution of a relaxation with the same equilibrium, then at the
+  /// equilibrium, then at u.
   bool solve(const stage_weights& of, double weight_of_e) {
     constexpr double few = 0.2;
     loses_directions_ = false;
@@ -199,7 +200,8 @@ class binary_collision_solver final : public point_collision {
     return newton(of, nothing);
   }
 
-  /// residual ← the left-hand side of the equation at ξ, and what its derivative needs.
+  /// residual_ ← the left-hand side of the stage equation at ξ. Also stores v_, change_, projected_ and k_
+  /// for its derivative.
   void evaluate_at(const stage_weights& of, const Eigen::VectorXd& xi) {
     v_.noalias() = u_ + basis_ * xi;
     collisions_.change(v_.data(), change_.data());
@@ -227,7 +229,8 @@ class binary_collision_solver final : public point_collision {
       if (!step.allFinite()) return false;
       const double length = step.lpNorm<Eigen::Infinity>();
       if (length <= quadratic * u_.lpNorm<Eigen::Infinity>()) {
-        // One more step with the same derivative: its error is of the size of the product of the last two.
+        // One more step with the same derivative has an error of the size of the product of the last
+        // two steps.
         evaluate_at(of, xi + step);
         v_.noalias() = u_ + basis_ * (xi + step - lu.solve(residual_));
         return v_.allFinite();

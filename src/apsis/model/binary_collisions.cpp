@@ -16,7 +16,7 @@
 namespace apsis {
 namespace {
 
-/// Allowed relative difference of sums of velocities, which a case may give with twelve digits.
+/// Allowed relative difference of sums of velocities; a case may give velocities with twelve digits.
 constexpr double same = 1e-11;
 
 std::string text_of(const std::vector<double>& v) {
@@ -33,7 +33,7 @@ double square(const std::vector<double>& v) {
   return sum;
 }
 
-/// The same collision for every order of its particles and both directions.
+/// Returns a key that is the same for every order of the particles and for both directions of a collision.
 std::array<int, 4> key_of(const binary_collision& c) {
   std::array<int, 2> a = {std::min(c.i, c.j), std::max(c.i, c.j)},
                      b = {std::min(c.k, c.l), std::max(c.k, c.l)};
@@ -129,8 +129,9 @@ void binary_collisions::check_collision(const binary_collision& c) const {
                   square(at(c.k)) + square(at(c.l))));
 }
 
-/// Pairs of velocities that may become each other have equal values of E + a·P, E and P being sums of |v|²
-/// and of v: neighbours after a sort. With numbers a that no lattice has, few others do.
+/// Two pairs of velocities that collide have equal values of E + a·P, where E and P are the sums of |v|² and
+/// of v. Sorting by this value makes them neighbours. With a vector a that fits no lattice, few other pairs
+/// have equal values.
 void binary_collisions::add_elastic_collisions() {
   struct pair {
     double value;
@@ -140,7 +141,7 @@ void binary_collisions::add_elastic_collisions() {
   double largest = 0.0;
   for (const auto& v : velocities_) largest = std::max(largest, 2.0 * square(v));
   const double speed = std::sqrt(largest),
-               window = 3.0 * same * largest;  // elastic() has differences below it
+               window = 3.0 * same * largest;  // elastic() accepts only smaller differences
   std::vector<pair> pairs;
   for (int i = 0; i < size(); ++i)
     for (int j = i + 1; j < size(); ++j) {
@@ -181,7 +182,7 @@ void binary_collisions::compute_invariants() {
   reachable_ = q.leftCols(decomposition.rank());
   projected_ = reachable_.transpose() * changes;
 
-  // An orthonormal basis grows by what each candidate adds to the span of those before.
+  // An orthonormal basis grows by the part of each candidate outside the span of earlier ones.
   std::vector<Eigen::VectorXd> basis;
   const auto add = [&](const std::string& name, const Eigen::VectorXd& weights) {
     Eigen::VectorXd rest = weights;
@@ -206,7 +207,7 @@ void binary_collisions::compute_invariants() {
     Eigen::VectorXd rest = q.col(k);
     for (int repetition = 0; repetition < 2; ++repetition)
       for (const auto& one : basis) rest -= one.dot(rest) * one;
-    // Columns in the span of the basis leave rounding errors only.
+    // Columns in the span of the basis leave only rounding errors.
     if (rest.norm() > 1e-7) add(fmt::format("spurious_{}", ++spurious), rest.normalized());
   }
   functionals_.resize(static_cast<Eigen::Index>(invariants_.size()), n);
@@ -270,7 +271,7 @@ void binary_collisions::gain_over_loss(const double* u, double alpha, double* v)
 
 namespace {
 
-/// The dual problem of the minimum of the entropy: the minimum of the convex Σ_j exp(λ·φ_j) − λ·ω.
+/// The dual of entropy minimization: the minimum over λ of the convex function Σ_j exp(λ·φ_j) − λ·ω.
 class pair_dual {
  public:
   /// `functionals`: φ_kj; `moments`: ω with ω_0 = 1.
@@ -282,8 +283,8 @@ class pair_dual {
     f_ = density(lambda_);
   }
 
-  /// Newton's method with backtracking, until rounding. Returns whether the moments are met. Where the
-  /// minimum has zeros, the densities there fall by a factor e in every iteration.
+  /// Runs Newton's method with backtracking until rounding stops it. Returns true if the densities have the
+  /// moments. Where the minimum has zeros, densities decrease by a factor e in every iteration.
   bool solve() {
     constexpr int most_iterations = 400;
     constexpr double rounding = 1e-15, accepted = 1e-14;
@@ -299,7 +300,7 @@ class pair_dual {
   Eigen::VectorXd density(const Eigen::VectorXd& at) const { return (phi_.transpose() * at).array().exp(); }
   double value(const Eigen::VectorXd& at) const { return density(at).sum() - at.dot(moments_); }
 
-  /// The largest difference of a moment relative to the largest one of the density 1.
+  /// Returns the largest difference of a moment, relative to the largest value of this moment for density 1.
   double defect() const {
     return ((phi_ * f_ - moments_).array().abs() / phi_.cwiseAbs().rowwise().maxCoeff().array()).maxCoeff();
   }
@@ -324,7 +325,7 @@ class pair_dual {
     return false;
   }
 
-  /// A linear correction, which multiplies each density by nearly 1.
+  /// Corrects the moments to first order. Each density is multiplied by nearly 1.
   void correct() {
     const Eigen::VectorXd step = newton_step();
     if (step.allFinite()) f_.array() *= 1.0 + (phi_.transpose() * step).array().max(-0.5);

@@ -9,7 +9,7 @@
 namespace apsis {
 namespace {
 
-/// all ← the weights of a direction times c^p, p = 0 … degree, one p after the other.
+/// all ← the weights of direction k times c^p for p = 0 … degree, one p after the other.
 void find_powers(const velocity_grid& grid, int k, double u, int degree, aligned_vector<double>& all) {
   const velocity_line& line = grid.line(k);
   const auto n = static_cast<std::size_t>(line.points()), count = static_cast<std::size_t>(degree) + 1;
@@ -62,7 +62,7 @@ void central_sums::add(const velocity_grid& grid, const double* g, const double*
   }
 }
 
-/// For each power c_1^p c_2^q across the axis, p + q ≤ degree, one pass over the row sums along it.
+/// For each p, one pass over the row sums all powers c_1^p c_2^q c_3^r. c_3 is the component along the axis.
 void central_sums::add_on_rings(const velocity_grid& grid, const double* g, const double* u, int degree) {
   const auto n = static_cast<std::size_t>(grid.lines()), most = static_cast<std::size_t>(degree);
   const auto first = static_cast<std::size_t>(grid.component_across(0)),

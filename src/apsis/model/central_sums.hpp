@@ -8,24 +8,25 @@
 
 namespace apsis {
 
-/// Central moments Σ_j w_j g_j Π_k c_jk^p_k, c = v − u, of a row g on a velocity grid, Σ_k p_k ≤ degree. The
-/// directions are summed one after the other. The order of sums does not depend on the instruction set.
+/// Central moments Σ_j w_j g_j Π_k c_jk^p_k of a row g on a velocity grid, with c = v − u and Σ_k p_k ≤
+/// degree. The sums run over one direction after the other. The order of sums does not depend on the
+/// instruction set.
 class central_sums {
  public:
-  static constexpr int highest_degree = 4;       ///< of all moments
-  using exponents = std::array<std::size_t, 3>;  ///< p_k, 0 from the dimensions of the grid on
+  static constexpr int highest_degree = 4;       ///< largest possible degree
+  using exponents = std::array<std::size_t, 3>;  ///< p_k; 0 for k ≥ grid.dimensions()
 
-  /// Computes those up to a degree of at most highest_degree.
+  /// Computes the moments of a row of grid.size() values about the velocity u, for degree ≤ highest_degree.
   central_sums(const velocity_grid& grid, const double* g, const double* u, int degree);
 
-  /// Returns the moment with some exponents.
+  /// Returns the moment with exponents p.
   double operator[](const exponents& p) const { return of_[p[0]][p[1]][p[2]]; }
-  /// Returns the moment with exponents p_1 … p_3.
+  /// Returns the moment with exponents p[0], p[1], p[2].
   double operator()(const int* p) const {
     return of_[static_cast<std::size_t>(p[0])][static_cast<std::size_t>(p[1])]
               [static_cast<std::size_t>(p[2])];
   }
-  /// Returns the moment of the product of c_k for some directions k.
+  /// Returns the moment of Π c_k over the given directions k, which may repeat.
   double along(std::initializer_list<std::size_t> directions) const {
     exponents p{};
     for (const std::size_t k : directions) ++p[k];

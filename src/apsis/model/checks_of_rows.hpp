@@ -5,13 +5,14 @@
 
 namespace apsis {
 
-/// Checks of a model that are faster for several rows together than for one after the other, such as those
-/// with formulas of a case. A model with them derives from this class too.
+/// Checks of a model that are faster for several rows together than row by row, such as those that evaluate
+/// formulas of a case. A model with such checks derives from this class too.
 class checks_of_rows {
  public:
   virtual ~checks_of_rows() = default;
 
-  /// model::invariant_scales() of `rows` rows, whose densities follow each other, as do the scales.
+  /// scales ← model::invariant_scales() of `rows` rows. Densities and scales of a row follow those of the
+  /// previous row.
   virtual void invariant_scales_of_rows(std::span<const double> densities, int rows,
                                         double* scales) const = 0;
   /// Returns the number of rows, `pitch` numbers apart, before the first that model::check_supported()

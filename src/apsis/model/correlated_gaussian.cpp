@@ -16,7 +16,7 @@ velocity_rows::gaussian curve_of(const scalar::gaussian_of_line& of) {
   return {of.a, of.u, of.T};
 }
 
-/// Line by line.
+/// Fills m line by line.
 template <int D>
 void fill_lines(const velocity_grid& grid, const fluid_state& state,
                 const scalar::conditional_gaussian<D>& of, double* m) {
@@ -36,7 +36,7 @@ void fill_lines(const velocity_grid& grid, const fluid_state& state,
   }
 }
 
-/// rows ← Gaussians along the direction `along`, one for each velocity of direction k.
+/// rows ← one Gaussian along the direction `along` for each velocity of direction k.
 template <class Curve>
 void find_rows(const velocity_grid& grid, int k, int along, const Curve& curve,
                aligned_vector<double>& rows) {

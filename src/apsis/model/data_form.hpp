@@ -17,12 +17,12 @@ struct data_variable {
   int size = 1;                      ///< number of components of a vector
   std::optional<double> value = {};  ///< default of every component; the variable is required without it
   apsis::dimension dimension = {};   ///< its dimension in units of a gas (gas_scales.hpp)
-  /// Whether it is a function of the velocity too, whose values at all velocities follow each other.
+  /// Whether it also depends on the velocity. Its values at all velocities are then contiguous.
   bool of_velocity = false;
-  /// Name of another variable that may be given in its place, or "". The two have no default.
+  /// Name of a variable that may replace this one, or "". Neither has a default then.
   std::string alternative = {};
-  /// Whether it is an integral over a whole surface: its area multiplies the dimension, and the value depends
-  /// on t alone.
+  /// Whether it is an integral over a whole surface. Its dimension is then `dimension` times that of an area,
+  /// and its value depends on t alone.
   bool over_surface = false;
 };
 
@@ -35,14 +35,14 @@ struct source_of_state {
       row;
 };
 
-/// One way to prescribe a row: a Maxwellian by density, velocity and temperature, or the components.
+/// One way to prescribe a row, for example as a Maxwellian by density, velocity and temperature.
 struct data_form {
   std::string description;               ///< "Maxwellian"
   std::vector<data_variable> variables;  ///< in the order of the values below, vectors component by component
-  /// u ← the row with these values of the variables. Returns why there is none ("density -1 is not
-  /// positive"), or "".
+  /// u ← the row with these values of the variables. Returns "", or the reason why no such row exists:
+  /// "density -1 is not positive".
   std::function<std::string(std::span<const double> values, std::span<double> u)> row;
-  std::optional<source_of_state> source = {};  ///< if a source may depend on the variables
+  std::optional<source_of_state> source = {};  ///< empty if sources cannot depend on the variables
 };
 
 }  // namespace apsis

@@ -16,7 +16,7 @@ constexpr std::array<std::pair<dimension, const char*>, 5> usual_units = {
      {dimensions::heat_flux, "W/m^2"},
      {dimensions::pressure * dimensions::length, "J/m^2"}}};
 
-/// Amounts in space, and what they change by in a time, whose unit has a name.
+/// Amounts in space, and their changes per unit of time, whose unit has a name.
 constexpr std::array<std::pair<dimension, const char*>, 4> named_amounts = {
     {{dimensions::mass * dimensions::velocity, "N s"},
      {dimensions::mass * dimensions::velocity / dimensions::time, "N"},
@@ -42,7 +42,7 @@ std::string in_base_units(const dimension& d) {
   return count_below == 1 ? fmt::format("{}/{}", above, below) : fmt::format("{}/({})", above, below);
 }
 
-/// "N" → "N/m".
+/// Returns a unit per `lengths` lengths: "N" becomes "N/m" or "N/m^2".
 std::string per_lengths(const std::string& unit, int lengths) {
   if (lengths == 0) return unit;
   return lengths == 1 ? unit + "/m" : fmt::format("{}/m^{}", unit, lengths);

@@ -42,11 +42,13 @@ inline constexpr dimension viscosity = pressure * time;      ///< Pa s
 
 /// Returns the SI unit of a dimension: "Pa", "W/m^2", "kg/(m^2 s)"; "dimensionless" of a number.
 std::string unit_of(const dimension& d);
-/// Returns the SI unit of mass, momentum or energy, or of what they change by in a time, in a domain that
-/// lacks this number of directions: in the plane, which lacks one, "N/m" of a force per length. The dimension
-/// alone is also that of an energy per area.
+/// Returns the SI unit of an amount of mass, momentum or energy, or of its change per unit of time. The
+/// domain has `lacking` fewer directions than space, so that amounts are per length or area. In the plane
+/// (`lacking` = 1) a force per length is in "N/m". unit_of() returns "J/m^2" for this dimension, which an
+/// energy per area has too.
 std::string unit_of_amount(const dimension& d, int lacking);
-/// Returns the SI unit of a torque in such a domain: "N m", or in the plane "N m/m".
+/// Returns the SI unit of a torque in a domain that lacks `lacking` directions: "N m" in space, "N m/m" in
+/// the plane.
 std::string unit_of_torque(int lacking);
 
 }  // namespace apsis

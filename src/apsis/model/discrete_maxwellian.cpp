@@ -16,13 +16,13 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// β_k of every direction and the τ that they share.
+/// β_k of every direction and the common τ.
 struct parameters {
   std::array<double, 3> beta{};
   double tau = 0.0;
 };
 
-/// The dual of the entropy minimisation, in units of Δv: means and Σ_k ⟨C_k⟩ = κ prescribed, κ being the
+/// The dual of entropy minimization, in units of Δv. It prescribes the means and Σ_k ⟨C_k⟩ = κ. Here κ is the
 /// distance from the boundary on which the chosen parabolas C_k vanish.
 class entropy_dual {
  public:
@@ -30,7 +30,8 @@ class entropy_dual {
                std::array<line_family, 3>& lines)
       : grid_(grid), moments_(moments), lines_(lines), d_(static_cast<std::size_t>(grid.dimensions())) {}
 
-  /// Whether some m > 0 (but for directions whose mean is an end) has the moments.
+  /// Whether the moments lie inside the realizable set, so that some m has them and is positive. In
+  /// directions whose mean is an end, m is positive at this end alone.
   bool interior() const { return std::min(moments_.above_least, moments_.below_greatest) > nothing; }
 
   void look_from(line_family::face face) {
@@ -41,8 +42,8 @@ class entropy_dual {
                        moments_.offset[k], face);
   }
 
-  /// The Gaussian with the variance of the moments, or with a tenth of the square of the gap about the mean
-  /// where that is larger.
+  /// Returns the parameters of the Gaussian with the variance of the moments. The variance is at least a
+  /// tenth of the squared gap between the points with C_k = 0.
   parameters gaussian() const {
     double variance = moments_.square;
     for (std::size_t k = 0; k < d_; ++k) variance -= moments_.z[k] * moments_.z[k];
@@ -54,8 +55,8 @@ class entropy_dual {
     return at;
   }
 
-  /// Newton's method for imbalance_k = 0 and log Σ⟨C_k⟩ = log κ in all parameters together. False where it
-  /// does not contract.
+  /// Solves imbalance_k = 0 and log Σ⟨C_k⟩ = log κ by Newton's method in all parameters together. Returns
+  /// false if the residual does not contract.
   bool newton(parameters at) {
     newton_end end;
     for (int iteration = 0; iteration < 20; ++iteration) {
@@ -69,8 +70,9 @@ class entropy_dual {
     return false;
   }
 
-  /// The same by two nested searches for zeros of monotone functions: means for given τ, and Σ⟨C_k⟩, which
-  /// falls as τ grows. False where Σ⟨C_k⟩ < κ at τ = 0: κ is then nearer to the other boundary.
+  /// Solves the same equations by two nested searches for zeros of monotone functions. The inner one adjusts
+  /// the means for given τ. The outer one adjusts Σ⟨C_k⟩, which decreases with τ. Returns false if Σ⟨C_k⟩ < κ
+  /// at τ = 0, where the other boundary is nearer.
   bool search(parameters at) {
     const double start = at.tau;
     at.tau = 0.0;
@@ -85,7 +87,7 @@ class entropy_dual {
       (residual > 0.0 ? lowest : highest) = at.tau;
       double next = at.tau - residual / slope();
       if (next == at.tau) break;
-      // The slope is a difference that cancels where nearly all mass is at two points.
+      // The slope is a difference that suffers cancellation if nearly all mass is at two points.
       const double farthest = highest < infinity ? highest : 4.0 * (1.0 + at.tau);
       if (!(next > lowest && next < farthest) || (slow && highest < infinity)) {
         if (end.close()) break;
@@ -119,7 +121,7 @@ class entropy_dual {
   }
 
  private:
-  /// A distance from the boundary that no moment resolves: it is the limit.
+  /// Moments do not resolve distances from the boundary up to this one; they count as 0.
   static constexpr double nothing = 1e-100;
   /// Residual tolerance of newton(); search() iterates further.
   static constexpr double rounding = 1e-13;
@@ -130,10 +132,11 @@ class entropy_dual {
     return sum;
   }
 
-  /// log(Σ⟨C_k⟩/κ).
+  /// Returns log(Σ⟨C_k⟩/κ).
   double excess() const { return line_family::log_of_ratio(total_energy(), energy_); }
 
-  /// Largest residual of the equations; all are logarithms. NaN or infinite where weights underflow.
+  /// Returns the largest residual of the equations, which are all logarithms. NaN or infinite if
+  /// weights underflow.
   double defect() const {
     double largest = std::abs(excess());
     for (std::size_t k = 0; k < d_; ++k) {
@@ -144,7 +147,7 @@ class entropy_dual {
     return largest;
   }
 
-  /// One step of Newton's method: the β_k are eliminated from the equation of the energy.
+  /// Takes one Newton step, which eliminates the β_k from the equation of the energy.
   void step(parameters& at) const {
     struct line {
       double imbalance = 0.0, by_tau = 0.0;  // in units of their slope in β
@@ -164,7 +167,7 @@ class entropy_dual {
     for (std::size_t k = 0; k < d_; ++k) at.beta[k] -= lines[k].imbalance + lines[k].by_tau * change;
   }
 
-  /// excess() with all means as prescribed; slopes_ are those there.
+  /// Adjusts β_k such that all means are as prescribed, and returns excess(). slopes_ ← the slopes there.
   double excess_at(parameters& at) {
     for (std::size_t k = 0; k < d_; ++k) {
       sums_[k] = lines_[k].solve(at.tau, at.beta[k]);
@@ -173,7 +176,7 @@ class entropy_dual {
     return excess();
   }
 
-  /// The derivative of excess_at() in τ where it was called last.
+  /// Returns the derivative of excess_at() with respect to τ at its last call.
   double slope() const {
     double sum = 0.0;
     for (std::size_t k = 0; k < d_; ++k)
@@ -183,7 +186,7 @@ class entropy_dual {
     return sum / total_energy();
   }
 
-  /// To another τ, and to first order along the curve on which the means are as prescribed.
+  /// Moves to another τ, to first order along the curve on which the means are as prescribed.
   void move_to(double tau, parameters& at) const {
     for (std::size_t k = 0; k < d_; ++k)
       if (!lines_[k].fixed()) {

@@ -83,7 +83,8 @@ std::string excerpt(const std::string& text, std::size_t at) {
                                                     excerpt(text, at), why, at + 1, advice));
 }
 
-/// `size`: without the points of its tables, which do not count.
+/// Throws input_error if the text is empty, too long, not plain ASCII, or has a string or an assignment.
+/// `size` does not count the points of tables.
 void check_characters(const std::string& text, const source_place& place, const formula_kind& kind,
                       std::size_t size) {
   if (text.find_first_not_of(" \t") == std::string::npos)
@@ -137,8 +138,8 @@ std::string explain(const mu::ParserError& e) {
   }
 }
 
-/// A parser with storage for its variables. It keeps their addresses and scratch memory: one thread at a
-/// time.
+/// A parser with storage for its variables. The parser stores their addresses and has scratch memory, so that
+/// only one thread may use it at a time.
 class variable_parser {
  public:
   /// `text` must outlive the object.
@@ -178,8 +179,8 @@ class variable_parser {
 };
 
 /// Parsers of one formula, each used by one thread at a time. A thread returns to the same slot, so that
-/// nobody waits unless there are more threads than slots (a lock around a single parser makes two threads 6
-/// times as slow, bench/micro/expression.cpp).
+/// threads wait only if they outnumber the slots. A lock around a single parser makes two threads 6 times as
+/// slow (bench/micro/expression.cpp).
 class parser_pool {
  public:
   parser_pool(text_of_tables text, const formula_kind& kind) : text_(std::move(text)), kind_(kind) {
@@ -187,7 +188,7 @@ class parser_pool {
   }
 
   const text_of_tables& text() const { return text_; }
-  /// The first parser, for the constructor of an expression.
+  /// Returns the first parser, for the constructor of an expression.
   variable_parser& first() { return *slots_.front().parser; }
 
   /// Evaluates the formula at results.size() points.
@@ -199,7 +200,7 @@ class parser_pool {
   }
 
  private:
-  struct alignas(64) slot {  // no two threads share a cache line
+  struct alignas(64) slot {  // slots do not share cache lines
     std::atomic_flag taken = ATOMIC_FLAG_INIT;
     std::unique_ptr<variable_parser> parser;
   };
@@ -238,7 +239,7 @@ formula_kind formula_of_position(int dimensions, bool nonnegative, const formula
 
 namespace {
 
-/// Why no variable and no constant can have this name.
+/// Returns why neither a variable nor a constant can have this name; "" if it can.
 std::string why_not_a_name(const std::string& name) {
   const auto in_name = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; };
   if (name.empty() || std::isalpha(static_cast<unsigned char>(name.front())) == 0 ||
@@ -273,7 +274,7 @@ std::string why_not_variables(const std::vector<std::string>& names, const formu
   return "";
 }
 
-/// A compiled text, which all expressions of this text share.
+/// A compiled text, shared by all expressions of this text.
 struct expression::compiled : construction_count<expression> {
   compiled(const std::string& words, const source_place& place, const formula_kind& kind)
       : text(words), parsers(without_points(words, place), kind) {
@@ -281,8 +282,8 @@ struct expression::compiled : construction_count<expression> {
       parsers.first().evaluate({std::vector<double>(kind.variables.size()).data(), 1, 0}, 0);
     } catch (const mu::ParserError& e) {
       const bool unknown = e.GetCode() == mu::ecUNASSIGNABLE_TOKEN;
-      // muParser reports the end of some tokens and the start of others, so that an unknown name is searched
-      // for.
+      // muParser reports the end of some tokens and the start of others. The text is therefore searched for
+      // an unknown name.
       std::size_t at = e.GetPos() >= 0 ? static_cast<std::size_t>(e.GetPos()) : 0;
       at = parsers.text().position_in_formula(at);
       if (unknown && text.rfind(e.GetToken(), at) != std::string::npos) at = text.rfind(e.GetToken(), at);
@@ -296,8 +297,8 @@ struct expression::compiled : construction_count<expression> {
     tape = formula_tape::of(parsers.text(), kind);
   }
 
-  /// Returns the compiled text for the variables and constants of a kind. The last ones are kept, since the
-  /// parts of a program that read, check and run a case ask for the same texts one after the other.
+  /// Returns the compiled text for the variables and constants of a kind. A cache stores recent ones, because
+  /// the parts of a program that read, check and run a case compile the same texts one after the other.
   static std::shared_ptr<const compiled> of(const std::string& text, const source_place& place,
                                             const formula_kind& kind) {
     using key = std::tuple<std::string, std::vector<std::string>, formula_constants>;
@@ -323,7 +324,7 @@ struct expression::compiled : construction_count<expression> {
   std::string text;
   std::set<std::string> used;        ///< names of its variables
   mutable parser_pool parsers;       ///< thread-safe
-  std::optional<formula_tape> tape;  ///< in place of the parsers where there is one
+  std::optional<formula_tape> tape;  ///< replaces the parsers if it exists
 };
 
 expression::expression(const std::string& text, const source_place& place, const formula_kind& kind)

@@ -24,7 +24,7 @@ void fluid_field_values(const fluid_state& state, int dimensions, double* values
 }
 
 std::vector<field_group> flow_fields(int dimensions) {
-  // ∂u_k/∂x_l: ρ is the first field, u_x the second.
+  // ∂u_k/∂x_l. Field 0 is ρ, so that u_k is field 1 + k.
   const auto slope = [](const field_point& at, int k, int l) {
     return at.gradients[1 + static_cast<std::size_t>(k)][static_cast<std::size_t>(l)];
   };

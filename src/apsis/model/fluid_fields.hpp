@@ -8,19 +8,19 @@
 
 namespace apsis {
 
-/// Macroscopic fields of a gas with `dimensions` velocity components: rho, u (u_x, u_y, u_z if there are
-/// several), T.
+/// Returns the macroscopic fields of a gas with `dimensions` velocity components: rho, u (u_x, u_y, u_z if
+/// there are several), T.
 std::vector<field_name> fluid_fields(int dimensions);
-/// values ← density, the components of the bulk velocity, temperature, in the order of fluid_fields().
+/// values ← density, bulk velocity and temperature, in the order of fluid_fields(). Dimensionless.
 void fluid_field_values(const fluid_state& state, int dimensions, double* values);
 
-/// Further fields of a gas whose default fields begin with fluid_fields(): the divergence ∇·u and, with
-/// several velocity components, the vorticity ∇×u: one number in two dimensions, x, y and z components in
-/// three.
+/// Returns further fields of a gas whose default fields begin with fluid_fields(). These are the divergence
+/// ∇·u and, with several velocity components, the vorticity ∇×u. The vorticity is one number in two
+/// dimensions and has x, y and z components in three.
 std::vector<field_group> flow_fields(int dimensions);
 
-/// Names of the invariants ρ, ρu, 𝓔: mass, momentum (momentum_x, momentum_y, momentum_z if there are
-/// several), energy.
+/// Returns the names of the invariants ρ, ρu, 𝓔: mass, momentum (momentum_x, momentum_y, momentum_z if there
+/// are several), energy.
 std::vector<std::string> fluid_invariants(int dimensions);
 
 }  // namespace apsis

@@ -3,11 +3,11 @@
 namespace apsis {
 
 /// Primitive variables of the moments ω = (ρ, ρu_1 … ρu_d, 𝓔) with 𝓔 = ½ρ|u|² + (d/2)ρT. Dimensionless. This
-/// header includes nothing, as kernels of devices need it.
+/// header includes nothing, because kernels of devices use it.
 struct fluid_state {
   double rho = 0.0;               ///< density ρ
   double u[3] = {0.0, 0.0, 0.0};  ///< bulk velocity; 0 from component d on
-  double T = 0.0;                 ///< temperature, in units in which the pressure is ρT
+  double T = 0.0;                 ///< temperature; the pressure is ρT
   /// Whether all values are finite, ρ > 0 and T > 0.
   constexpr bool admissible() const {
     const double speeds = u[0] + u[1] + u[2];
@@ -21,7 +21,7 @@ struct fluid_state {
     return factor;
   }
 };
-/// Returns the primitive variables of d + 2 moments ω without checking that they are admissible: ρ = 0 gives
+/// Returns the primitive variables of d + 2 moments ω. Does not check that they are admissible: ρ = 0 gives
 /// NaN or ±∞.
 constexpr fluid_state to_fluid_state(const double* omega, int dimensions) {
   fluid_state s;

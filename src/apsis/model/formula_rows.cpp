@@ -27,7 +27,7 @@ HWY_INLINE void combine(const A& a, const B& b, int points, double* to, const Ap
   for (int k = 0; k < points; k += lanes) apply(a(k), b(k)).store(to + k);
 }
 
-/// to ← apply(a, b). Two constants are no step.
+/// to ← apply(a, b). At most one operand is a constant.
 template <class Apply>
 HWY_INLINE void for_operands(const formula_rows::step& at, int points, double* columns, const Apply& apply) {
   const auto of = [&](int number) { return columns + number * formula_rows::most_points; };

@@ -26,7 +26,7 @@ std::size_t after_blanks(const std::string& text, std::size_t at) {
 
 /// A call of a table in a formula.
 struct table_word {
-  std::size_t at = std::string::npos;  ///< npos without one
+  std::size_t at = std::string::npos;  ///< npos if there is no call
   bool of_two = false;
 
   std::string_view text() const { return of_two ? word_of_two : word_of_one; }
@@ -37,7 +37,7 @@ struct table_word {
   }
 };
 
-/// Returns where a word of tables stands alone, from `at` on.
+/// Returns the first position from `at` on where "table" or "table2" is a whole word.
 table_word find_word(const std::string& text, std::size_t at) {
   for (at = text.find(word_of_one, at); at != std::string::npos; at = text.find(word_of_one, at + 1)) {
     const table_word found{at, text.compare(at, word_of_two.size(), word_of_two) == 0};
@@ -47,7 +47,7 @@ table_word find_word(const std::string& text, std::size_t at) {
   return {};
 }
 
-/// Returns the comma after the first argument that begins at `at`; npos without one.
+/// Returns the comma behind the argument that begins at `at`; npos without a comma.
 std::size_t end_of_argument(const std::string& text, std::size_t at) {
   for (int depth = 0; at < text.size(); ++at) {
     if (text[at] == '(') ++depth;
@@ -64,7 +64,7 @@ class reader_of_points {
   reader_of_points(const std::string& text, const table_word& call, const failure& fail)
       : text_(text), call_(call), fail_(fail) {}
 
-  /// Reads ", a_1, v_1, …)" or ", n, a_1, …)" from a comma on; end() is the parenthesis.
+  /// Reads ", a_1, v_1, …)" or ", n, a_1, …)" from a comma on. end() is then the closing parenthesis.
   formula_table read(std::size_t comma) {
     read_numbers(comma);
     return call_.of_two ? of_two() : of_one();
@@ -135,10 +135,11 @@ class reader_of_points {
   const failure& fail_;
   std::size_t at_ = 0;
   std::vector<double> numbers_;
-  std::vector<std::size_t> places_;  ///< of the numbers in the text
+  std::vector<std::size_t> places_;  ///< positions of the numbers in the text
 };
 
-/// Returns the point at or before x, and the share of the next one; the share is 0 outside.
+/// Returns the index of the last point at or before x, and the share of the next point in the interpolation.
+/// Outside the points the share is 0.
 std::pair<std::size_t, double> locate(const std::vector<double>& points, double x) {
   const auto after = std::upper_bound(points.begin(), points.end(), x);
   if (after == points.begin()) return {0, 0.0};
@@ -146,7 +147,7 @@ std::pair<std::size_t, double> locate(const std::vector<double>& points, double 
   return {k, after == points.end() ? 0.0 : (x - points[k]) / (points[k + 1] - points[k])};
 }
 
-/// Interpolates linearly between v_0 and v_1; does not evaluate v_1 where the share is 0.
+/// Interpolates linearly between v_0 and v_1. Does not evaluate v_1 if its share is 0.
 template <class Value>
 double between(double share, const Value& value) {
   return share == 0.0 ? value(0) : (1.0 - share) * value(0) + share * value(1);
@@ -185,14 +186,15 @@ text_of_tables take_tables(const std::string& formula, const reader_of_points::f
     if (out.tables.size() == most_tables)
       fail(call.at, fmt::format("more than {} tables", most_tables), "write fewer");
     reader_of_points points(formula, call, fail);
-    // As long as the word, so that places in the text stay; names of users begin with a letter.
+    // The name has the length of the word, so that positions in the text stay valid. Names of users begin
+    // with a letter and cannot be equal to it.
     out.names.push_back(fmt::format("{}{:02}", call.of_two ? "_t2_" : "_t_", out.tables.size()));
     out.text.replace(call.at, call.text().size(), out.names.back());
     out.tables.push_back(points.read(comma));
     removed.emplace_back(comma, points.end());
   }
   std::sort(removed.begin(), removed.end());
-  std::size_t done = 0;  // characters of the formula that are in the text
+  std::size_t done = 0;  // characters of the formula that are copied or removed
   std::string shorter;
   for (const auto& [begin, end] : removed) {
     shorter.append(out.text, done, begin - done);

@@ -50,8 +50,8 @@ scalar::variances variances_on(const velocity_line& line, double u) {
   return scalar::variances_at(line.v().data(), line.points(), u);
 }
 
-/// The component along the axis is the first of (x, r, θ) in the plane (x, r), and the last of (r, θ, x)
-/// where all depends on r alone.
+/// On rings, components are (x, r, θ) in the plane (x, r), and (r, θ, x) if the flow depends on r alone. The
+/// component along the axis is x.
 velocity_grid make_grid(const model_config& config) {
   const velocity_config& of = config.velocity;
   const int dimensions = velocity_dimensions_of(config);
@@ -133,15 +133,15 @@ void gas::fill_h(double energy, double* row) const {
   grid_sums::scale(energy, row, grid_.size(), row + grid_.size());
 }
 
-/// Elsewhere the moments of the formula have errors of one sign, which add up from step to step.
+/// Otherwise the moments of the formula would have errors of one sign, which add up from step to step.
 template <class State>
 bool gas::keeps_formula(const State& state) const {
   return choice_ == equilibrium_choice::formula ||
          (choice_ == equilibrium_choice::automatic && formula_has_exact_moments(grid_, state));
 }
 
-/// Exists for the moments of every g ≥ 0; where the formula is undefined (empty space, T = 0 up to rounding)
-/// it is the discrete Maxwellian.
+/// The equilibrium exists for the moments of every g ≥ 0. Where the formula is undefined (empty space, T = 0
+/// up to rounding) it is the discrete Maxwellian.
 bool gas::equilibrium_of_g(const double* of_g, double* g, line_moments* of_row) const {
   const fluid_state s = to_fluid_state(of_g, dimensions());
   if (!s.admissible() || !keeps_formula(s)) return discrete_maxwellian(grid_, of_g, g, of_row);
@@ -233,9 +233,10 @@ double gas::entropy(const double* row) const {
   return grid_.weight() * grid_sums::entropy(weights, row, h, 0.5 * (degrees_ - dimensions()), grid_.size());
 }
 
-/// For ω of g one addition and two multiply–adds on a line. In a product of lines it is one multiply–add for
-/// each of d + 1 functions of the lines. For M two multiplications per point on a line (without the first
-/// vector), or one per point of a product. For h one operation each.
+/// The moments of g need one addition and two multiply–adds per point on a line. In a product of lines they
+/// need one multiply–add for each of d + 1 functions of the lines. M needs two multiplications per point on a
+/// line (without the first vector), or one per point of a product. Moments and equilibrium of h need one
+/// operation each.
 double gas::operations() const {
   const bool on_a_line = dimensions() == 1;
   const double of_g = on_a_line ? 3.0 + 2.0 : dimensions() + 1.0 + 1.0, of_h = 2.0;

@@ -67,7 +67,7 @@ std::string gas_model::why_signed() const {
          "velocity); model.tails = \"nonnegative\" cuts it off there";
 }
 
-/// |𝒮e − 𝒮E'|/(λ_e |s|).
+/// Returns |𝒮e − 𝒮E'|/(λ_e |s|), where E' is the published target.
 double gas_model::relative_change(const double* omega, const double* s, double rate_of_s, const double* e,
                                   const double* published) const {
   const int count = relaxing_count();
@@ -75,7 +75,7 @@ double gas_model::relative_change(const double* omega, const double* s, double r
   relaxing_moments(e, omega, mine.data());
   relaxing_moments(published, omega, theirs.data());
   double difference = 0.0, size = 0.0;
-  for (std::size_t k = 0; k + 1 < mine.size(); ++k) {  // the last number is the weight of the derivative
+  for (std::size_t k = 0; k + 1 < mine.size(); ++k) {  // the last number is the weight of Q̇
     difference += (mine[k] - theirs[k]) * (mine[k] - theirs[k]);
     size += s[k] * s[k];
   }
@@ -123,7 +123,7 @@ void gas_model::invariant_scales(std::span<const double> densities, double* scal
   for (int k = 1; k <= d; ++k) scales[k] = std::max(scales[k], bound);
 }
 
-/// The energy of a single degree of freedom is its pressure, and leaves no stress but rounding.
+/// With a single degree of freedom the energy determines the pressure. The stress would be rounding errors.
 bool gas_model::has_stress() const {
   return gas_.degrees_of_freedom() > 1;
 }
@@ -207,7 +207,7 @@ double gas_model::local_knudsen(const field_point& at) const {
   return s.admissible() ? path * std::sqrt(square) / s.rho : std::numeric_limits<double>::quiet_NaN();
 }
 
-/// f ← a M[ρ̃, ũ, T̃] + b M[ρ̃, −½ũ, T̃], the form of all data of the paper, with ũ along x.
+/// f ← a M[ρ̃, ũ, T̃] + b M[ρ̃, −½ũ, T̃] with ũ = 1 along x, the form of all data of the paper.
 void gas_model::two_beams(double a, double b, double rho, double T, std::span<double> f) const {
   aligned_vector<double> beam(f.size());
   fluid_state state;
@@ -220,7 +220,7 @@ void gas_model::two_beams(double a, double b, double rho, double T, std::span<do
   for (std::size_t j = 0; j < f.size(); ++j) f[j] += beam[j];
 }
 
-/// f ← ρ M[1, 0, ¼]; the formula would omit values below 1e-300.
+/// f ← ρ M[1, 0, ¼]. The formula for density ρ would omit values below 1e-300.
 void gas_model::expansion(double rho, std::span<double> f) const {
   fluid_state state;
   state.rho = 1.0;

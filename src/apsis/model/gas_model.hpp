@@ -19,32 +19,34 @@ struct ellipsoidal_model;
 struct shakhov_target;
 }  // namespace scalar
 
-/// A gas that relaxes to a Maxwellian, in one to three space dimensions: everything that BGK, Shakhov and
-/// ES-BGK models share. f_t + v·∇_x f = (C/ε)(target − f), ω = (ρ, ρu, 𝓔), rows as in gas.hpp, E = M. With C
-/// = Pr ρ T^{1−s} the viscosity is ε T^s. Dimensionless.
+/// The common part of the BGK, Shakhov and ES-BGK models in one to three space dimensions: a gas that relaxes
+/// to a Maxwellian. The equation is f_t + v·∇_x f = (C/ε)(target − f) with moments ω = (ρ, ρu, 𝓔) and
+/// equilibrium E = M; rows are those of gas.hpp. C is 1 or, by viscosity, Pr ρ T^{1−s}, with which the
+/// viscosity is ε T^s. Dimensionless.
 class gas_model : public relaxation_model {
  public:
-  /// `prandtl`: the factor of C by viscosity, p ε/C times which is the viscosity; 1 if the stress relaxes
-  /// with the rate C.
+  /// `prandtl` is the factor Pr of C by viscosity; the viscosity is Pr p ε/C. It is 1 if the stress relaxes
+  /// with the rate C. Throws input_error as gas does.
   explicit gas_model(const model_config& config, double prandtl = 1.0);
 
-  /// Returns the parameters that all of these models have. `degrees_of_freedom`: their only number of them; 0
-  /// leaves it to the user.
+  /// Returns the parameters that all of these models have. `degrees_of_freedom` fixes the number of degrees
+  /// of freedom; 0 leaves it to the user.
   static std::vector<model_parameter> parameters(double degrees_of_freedom);
-  static std::vector<model_option> options();  ///< the string options of all
-  /// Returns also that of models whose target may be negative in its tails. `usual`: its default.
+  static std::vector<model_option> options();  ///< string options that all of these models have
+  /// Returns options() and the option "tails" of models whose target may be negative in its tails. `usual` is
+  /// the default of "tails".
   static std::vector<model_option> texts_with_tails(const std::string& usual);
 
   const gas_model* as_gas() const final { return this; }
   const gas& molecules() const { return gas_; }  ///< the rows of the gas
-  /// Returns p of C = Pr ρ T^p by viscosity; nothing where C = 1.
+  /// Returns the exponent p of C = Pr ρ T^p by viscosity; nothing if C = 1.
   std::optional<double> rate_exponent() const {
     return by_viscosity_ ? std::optional<double>(exponent_) : std::nullopt;
   }
   double prandtl() const { return prandtl_; }  ///< Pr of C
-  /// Returns the target as a formula for kernels, if it is Shakhov's; else null.
+  /// Returns Shakhov's target as a formula for kernels; null for other models.
   virtual const scalar::shakhov_target* as_shakhov() const { return nullptr; }
-  /// Returns the ellipsoidal model as formulas for kernels, if it is that; else null.
+  /// Returns the ellipsoidal target as formulas for kernels; null for other models.
   virtual const scalar::ellipsoidal_model* as_ellipsoidal() const { return nullptr; }
   int components() const override { return gas_.velocities().components(); }
   int space_dimensions() const override { return space_dimensions_; }
@@ -52,8 +54,8 @@ class gas_model : public relaxation_model {
   velocity_lattice lattice() const override;
   polar_layout polar() const override { return gas_.grid().polar(); }
   bool rate_is_proportional_to_density() const override { return by_viscosity_; }
-  /// Returns Σ_k v_max,k/Δx_k with the ends of the velocity lines, that of a uniform one half an interval
-  /// beyond its last point.
+  /// Returns Σ_k v_max,k/Δx_k, where v_max,k is the end of velocity line k. A uniform line ends half an
+  /// interval beyond its last point.
   double cfl_rate(std::span<const double> spacing) const override;
   bool positive() const override { return true; }
   bool collisions_keep_sign() const override { return !signed_tails_; }
@@ -79,17 +81,21 @@ class gas_model : public relaxation_model {
   std::vector<std::string> invariants() const override;
   std::vector<dimension> invariant_dimensions() const override;
   void invariant_densities(const double* f, double* densities) const override { moments(f, densities); }
-  /// Momenta cancel between particles of opposite velocities; Σ|v_k| f ≤ √(2ρ𝓔) by the Cauchy–Schwarz
-  /// inequality.
+  /// Momenta of particles with opposite velocities cancel. The scale of a momentum is therefore √(2ρ𝓔), a
+  /// bound of Σ|v_k| f by the Cauchy–Schwarz inequality.
   void invariant_scales(std::span<const double> densities, double* scales) const override;
 
   /// First group: ρ, u, T, stress p_kl = Σ c_k c_l g − p δ_kl for k ≤ l (none if D = 1), heat flux
   /// ½ Σ c (|c|² g + h).
   ///
-  /// Others: pressure p = ρT, Mach number |u|/√(γT) with γ = (D + 2)/D, and the distance Σ|f − M|/Σ f to
-  /// equilibrium, of g if there are two functions. The local Knudsen number λ|∇ρ|/ρ with the mean free path
-  /// by viscosity, λ = μ √(πT/2)/p, and the viscosity μ = p ε/C of the model, Pr p ε/C of the ellipsoidal
-  /// one; NaN where the gas has no temperature. Divergence and vorticity (flow_fields).
+  /// Second group: pressure p = ρT, Mach number |u|/√(γT) with γ = (D + 2)/D, and the distance Σ|f − M|/Σ f
+  /// to equilibrium. The distance is that of g if there are two functions.
+  ///
+  /// Third group: the local Knudsen number λ|∇ρ|/ρ with the mean free path by viscosity, λ = μ √(πT/2)/p.
+  /// The viscosity is μ = p ε/C, or Pr p ε/C for the ellipsoidal model. The number is NaN where the gas has
+  /// no temperature.
+  ///
+  /// Further groups: divergence and vorticity (flow_fields()).
   std::vector<field_group> fields() const override;
 
   const std::vector<initial_data>& initial() const override { return initial_; }
@@ -99,16 +105,17 @@ class gas_model : public relaxation_model {
   unsupported_initial_data check_supported(const double* f) const override { return gas_.check_supported(f); }
 
  protected:
-  /// Returns the rate λ_e at which s relaxes in a stage, (λA + λ²B)/(A + B), from the weight λB/(A + B) of
-  /// the derivative.
+  /// Returns the rate λ_e = (λA + λ²B)/(A + B) at which s relaxes in a stage. `derivative` is the weight
+  /// λB/(A + B) of Q̇.
   static double rate_of_stage(double lambda, double derivative) {
     return lambda + (lambda - 1.0) * derivative;
   }
 
-  /// Implements target() for a target of the form find(part, keep, e, raised), which has `part` of s and
-  /// returns whether it has the moments ω (conservative_target()): e ← that of the largest part 1, ½, …, or
-  /// the equilibrium, with the bound of the tails. Where this is not the published target E', with the rate
-  /// λ_e of s, cut ← |𝒮e − 𝒮E'|/(λ_e |s|). Returns false if ω is not admissible.
+  /// Implements target(). A call find(part, keep, e, raised) computes the target for `part` times s and
+  /// returns whether its moments are ω (see conservative_target()). e ← the target for the largest part among
+  /// 1, ½, … with this property, or the equilibrium. Nonnegative tails are bounded by `keep`. If e differs
+  /// from the published target E', cut ← |𝒮e − 𝒮E'|/(λ_e |s|), where λ_e = `rate_of_s`. Returns false if ω is
+  /// not admissible.
   template <class Find>
   bool find_target(const double* omega, const double* s, double rate_of_s, double keep, double* e,
                    double& cut, const Find& find) const {
@@ -135,14 +142,14 @@ class gas_model : public relaxation_model {
   void thermodynamics(const double* f, double* values) const;
   double local_knudsen(const field_point& at) const;
   bool has_stress() const;
-  /// Returns 0 if no part is found.
+  /// Returns the largest part for which find() succeeds; 0 if there is no such part.
   template <class Find>
   static double largest_part(double keep, double* e, bool& raised, const Find& find) {
     for (double part = 1.0; part > 0.01; part *= 0.5)
       if (find(part, keep, e, raised)) return part;
     return 0.0;
   }
-  /// A part of 𝒮E' = (1 − λ_e)s is left.
+  /// Returns |𝒮e − 𝒮E'|/(λ_e |s|) for 𝒮e = part · 𝒮E' and 𝒮E' = (1 − λ_e)s.
   static double lost_by_part(double part, double rate_of_s) {
     return (1.0 - part) * std::abs(1.0 - rate_of_s) / rate_of_s;
   }

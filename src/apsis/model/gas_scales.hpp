@@ -8,21 +8,20 @@
 
 namespace apsis {
 
-/// A quantity with its name and dimension; value in SI units.
+/// A quantity in SI units, with its name and dimension.
 struct named_quantity {
   std::string name;                 ///< "number_density"
   double value = 0.0;               ///< in unit_of(dimension)
   apsis::dimension dimension = {};  ///< its dimension
 };
 
-/// Reference state of a gas, from which units of all dimensionless quantities follow: ρ₀, T₀, √(RT₀) with R =
-/// k_B/m, and a length L. SI units.
+/// Reference state of a gas in SI units: ρ₀, T₀, √(RT₀) with R = k_B/m, and a length L. The units of all
+/// dimensionless quantities follow from it.
 class gas_scales {
  public:
   static constexpr double boltzmann = 1.380649e-23;  ///< k_B in J/K, exact in the SI of 2019
 
-  /// The state of a gas at a pressure in Pa and a temperature in K, with a reference length in m, all
-  /// positive.
+  /// Takes the pressure in Pa, the temperature in K and the reference length in m, all positive.
   gas_scales(gas_species gas, double pressure, double temperature, double length);
 
   const gas_species& gas() const { return gas_; }      ///< the gas
@@ -35,10 +34,11 @@ class gas_scales {
   double speed() const;                                ///< √(RT₀), unit of velocities
   double time() const { return length_ / speed(); }    ///< L/√(RT₀)
   double viscosity() const;                            ///< μ(T₀)
-  /// Returns ε = μ(T₀) √(RT₀)/(p₀ L), with which the dimensionless viscosity is ε T^ω.
+  /// Returns ε = μ(T₀) √(RT₀)/(p₀ L). The dimensionless viscosity is then ε T^ω.
   double epsilon() const;
 
-  /// Returns the unit of dimensionless quantities of a dimension in SI units: p₀ = ρ₀RT₀ of a pressure.
+  /// Returns the unit of a dimension in SI units, such as p₀ = ρ₀RT₀ for a pressure. A dimensionless quantity
+  /// times its unit is the quantity in SI units.
   double unit(const dimension& d) const;
 
   /// Returns the reference state, the units, ε, δ, and the Knudsen numbers by every definition as

@@ -5,7 +5,7 @@
 namespace apsis {
 
 double eucken_prandtl(int degrees_of_freedom) {
-  // In D, so that D = 3 gives the nearest double to 2/3.
+  // Expressed in D, so that D = 3 gives the nearest double to 2/3.
   return 2.0 * (degrees_of_freedom + 2.0) / (2.0 * degrees_of_freedom + 9.0);
 }
 

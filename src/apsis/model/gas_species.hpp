@@ -20,8 +20,9 @@ struct gas_species {
 /// Mathematical Theory of Non-uniform Gases, 3rd ed., 13.3).
 double eucken_prandtl(int degrees_of_freedom);
 
-/// Returns the gases that a case can name, sorted: m, ω, rotation, and μ at 273 K and 1 atm of Bird,
-/// Molecular Gas Dynamics and the Direct Simulation of Gas Flows, Oxford 1994, appendix A; Pr is Eucken's.
+/// Returns the gases that a case can name, sorted by name. Mass, ω, degrees of freedom, and μ at 273 K and 1
+/// atm are those of Bird, Molecular Gas Dynamics and the Direct Simulation of Gas Flows, Oxford 1994,
+/// appendix A. Pr is eucken_prandtl().
 const std::vector<gas_species>& known_gases();
 
 /// Returns the names of known_gases().

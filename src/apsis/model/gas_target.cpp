@@ -14,10 +14,10 @@
 namespace apsis {
 namespace {
 
-/// Lines that a loop passes together.
+/// Number of lines whose polynomials are computed together.
 constexpr int together = 16;
 
-/// P along the last lines of a grid of d dimensions. `Cubic`: P has terms of third degree.
+/// P along the last lines of a grid of d dimensions. `Cubic` states whether P has terms of third degree.
 template <int d, bool Cubic>
 class polynomial_on_lines {
  public:
@@ -45,7 +45,7 @@ class polynomial_on_lines {
   double u_[d] = {};
 };
 
-/// e ← max(base · P, −keep f) for one set of components. Returns whether a value was raised to its bound.
+/// e ← max(base · P, −keep f) for one set of components. Returns true if a value was raised to its bound.
 template <int d, bool Cubic>
 bool weigh_lines(const velocity_grid& grid, const fluid_state& state, const target_polynomial& p,
                  const double* base, const double* f, double keep, double* e) {
@@ -71,7 +71,7 @@ bool weigh_lines(const velocity_grid& grid, const fluid_state& state, const targ
                           : weigh_lines<d, true>(grid, state, p, base, f, keep, e);
 }
 
-/// Returns body(constant) with the number of dimensions.
+/// Returns body(constant), where the constant is the number of dimensions at compile time.
 template <class Body>
 bool with_dimensions(int dimensions, const Body& body) {
   switch (dimensions) {
@@ -92,10 +92,11 @@ bool weigh(const velocity_grid& grid, const fluid_state& state, const target_pol
 
 using scalar::target_defect;
 
-/// The largest bound on an energy that is a difference of large numbers.
+/// Largest accepted defect of momentum or energy. The energy may be a difference of large numbers.
 constexpr double largest_bound = 1e-12;
 
-/// Returns the square of the largest distance of velocities within a thermal speed, Δv² of uniform lines.
+/// Returns the square of the largest distance between neighbouring velocities within a thermal speed √T of u.
+/// It is Δv² on uniform lines.
 double widest_gap(const velocity_grid& grid, const fluid_state& state) {
   if (grid.is_polar()) return gap_square_on_rings(grid, state);
   double widest = 0.0;
@@ -124,20 +125,20 @@ target_defect defect_of(const double* after, const double* omega, const fluid_st
   return found;
 }
 
-/// Returns the energy over that of the base: the defect of the energy is a difference to that of the bulk
-/// velocity.
+/// Returns the ratio of the total energy to that of the base. The defect of the energy is a difference to the
+/// energy of the bulk velocity, so that its rounding error grows with this ratio.
 double energy_ratio(const double* omega, int d, double variance) {
   return std::max(1.0, omega[d + 1] / (omega[0] * variance));
 }
 
-/// Whether the moments have the accuracy of targets, relative to those at rest.
+/// Whether the moments have the accuracy of targets. `ratio` enlarges the bounds for a moving gas.
 bool is_accurate(const target_defect& found, double ratio) {
   return std::abs(found.mass) <= target_accuracy &&
          found.largest_momentum() <= std::min(target_accuracy * std::sqrt(ratio), largest_bound) &&
          std::abs(found.energy) <= std::min(target_accuracy * ratio, largest_bound);
 }
 
-/// Corrects the shape by moments of the base, without a pass over the target. Returns false where that is
+/// Corrects the shape by moments of the base, without a pass over the target. Returns false if that is
 /// not possible.
 bool correct_by_moments(const gas& of, const fluid_state& state, const target_base& base,
                         target_shape& shape) {
@@ -204,13 +205,14 @@ bool conservative_target(const gas& of, const double* omega, const target_base& 
     return some;
   };
   if (correct_by_moments(of, state, base, shape) && !weigh_all(true)) return true;
-  // Corrections of a base that is no Gaussian take off a factor of about ten each. Where they no longer
-  // reduce a defect, target_accuracy is enough.
+  // If the base is not a Gaussian, each correction reduces the defect about tenfold. Once corrections no
+  // longer reduce it, target_accuracy is enough.
   const double ratio = energy_ratio(omega, d, shape.variance),
                enough = std::min(scalar::target_rounding * ratio, largest_bound);
   double best = 1e300;
   bool cut = false;
-  // A target that is cut off and needs more than a few is another one: a smaller part may need no cut.
+  // A target that is cut off and needs many corrections is far from the published one. A smaller part may
+  // need no cut.
   const auto most_corrections = [&cut] { return cut ? 12 : 40; };
   for (int iteration = 0; iteration < most_corrections(); ++iteration) {
     cut |= weigh_all(iteration == 0);
@@ -219,8 +221,8 @@ bool conservative_target(const gas& of, const double* omega, const target_base& 
     const target_defect found = defect_of(after.data(), omega, state, d, shape.variance);
     const double size = found.size();
     if (size <= enough) return true;
-    // Corrections contract as long as little of the row is cut off. A defect that is rounding already varies
-    // from one correction to the next.
+    // Corrections contract as long as little of the row is cut off. Once the defect is a rounding error, it
+    // varies from one correction to the next.
     if (!(size < 0.7 * best)) {
       if (is_accurate(found, ratio)) return true;
       if (!(size <= largest_bound)) return false;

@@ -6,10 +6,9 @@
 
 namespace apsis {
 
-/// Q(u) without the structure of a relaxation: the stage equation v = u + a Q(v)/ε + b Q̇(v)/ε² is solved by
-/// guarded Newton iterations, with Q' and Q̇ = Q'Q by automatic differentiation
-/// (integrate/newton_problem.hpp). There is no solution for ε = 0, where 1/ε² overflows, or where the stage
-/// is singular.
+/// A model whose Q(u) has not the structure of a relaxation. Guarded Newton iterations solve the stage
+/// equation v = u + a Q(v)/ε + b Q̇(v)/ε², with Q' and Q̇ = Q'Q by automatic differentiation
+/// (integrate/newton_problem.hpp). They fail if ε = 0, if 1/ε² overflows, or if the stage is singular.
 class general_model : public model {
  public:
   /// A number with two independent first derivatives: ∂/∂s, ∂/∂t and ∂²/∂s∂t.
@@ -18,7 +17,7 @@ class general_model : public model {
   /// q ← Q(u); rows of components() numbers.
   virtual void collision(const number* u, number* q) const = 0;
   int newton_unknowns() const override { return components(); }
-  /// Whether a row may be the solution of a stage (Newton iterates stay inside).
+  /// Whether a row may be the solution of a stage. Newton iterates stay within these rows.
   virtual bool admissible(const double* u) const = 0;
   std::unique_ptr<point_collision> make_collision(const batch_limits& limits) const final;
 };

@@ -21,7 +21,7 @@ constexpr octet_group eight;
 /// Enough for velocity_grid::most_velocities.
 constexpr int halvings = 26;
 
-/// The accumulator of powers.
+/// Declarations that map the result of a sum to its accumulator.
 sums_of_powers<N> accumulator_of(const grid_sums::powers*);
 sums_of_six_powers<N> accumulator_of(const grid_sums::six_powers*);
 template <class Powers>
@@ -40,14 +40,14 @@ void sum_functions(const grid_sums::axis& last, int lines, const double* f, doub
   for (int k = 0; k < Functions; ++k) store_totals(powers[k], 1.0, sums[k]);
 }
 
-/// sum_functions() of one function and one line.
+/// Computes sum_functions() of one function and one line.
 template <class Powers>
 void sum_line(const grid_sums::axis& last, const double* f, double u, double a, Powers& sums) {
   const row_of_line<octet_group> row{eight, f};
   store_totals(powers_on_line<accumulator<Powers>>(eight, {last.n, last.v, last.w}, u, row), a, sums);
 }
 
-/// Calls body(constant) with the number of functions, at most most_functions.
+/// Calls body(constant), where the constant is the number of functions, at most most_functions.
 template <class Body>
 void with_functions(int functions, const Body& body) {
   switch (functions) {
@@ -119,7 +119,7 @@ void multiply(const double* a, int lines, const double* g, int n, double* m) {
   for (int line = 0; line < lines; ++line, m += n) {
     const packed factor(a[line]);
     for (int j = 0; j < whole; j += length) (factor * packed::load(g + j)).store(m + j);
-    // A whole vector changes the beginning of later lines, which are stored after it.
+    // Storing a whole vector overwrites the beginning of later lines, which are stored afterwards.
     if (rest > 0) store_some(factor * last, (lines - line) * n - whole >= length ? length : rest, m + whole);
   }
 }

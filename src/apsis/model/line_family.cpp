@@ -23,7 +23,7 @@ void line_family::attach(const velocity_line& line, bool weighted, int nearest_p
   if (weighted) std::copy(line.weights().begin(), line.weights().end(), base_.begin());
   const double* place = line.places().data();
   const bool nearest = at == face::nearest;
-  // The neighbour on the side of the mean; any where the mean is a grid point.
+  // The neighbour on the side of the mean; either neighbour if the mean is a grid point.
   const int other = nearest_point + ((offset > 0.0 || nearest_point == 0) ? 1 : -1);
   nearest_ = nearest_point;
   left_ = nearest ? std::min(nearest_point, other) : 0;
@@ -59,7 +59,7 @@ line_family::sums line_family::evaluate(double beta, double tau) {
     s.mass = take_limit();
     return s;
   }
-  // The point nearest to the mean has the largest weight or nearly so, but for parameters far off.
+  // The point nearest to the mean has about the largest weight, unless the parameters are far off.
   constexpr double large = 1e90;  // the product of three directions is finite
   if (sign_ > 0.0) {
     const sums s = sums_of(beta, tau, beta * x_[static_cast<std::size_t>(nearest_)]);
@@ -98,7 +98,7 @@ line_family::sums line_family::solve(double tau, double& beta) {
     if (end.reached(std::abs(h))) break;
     (h < 0.0 ? lowest : highest) = beta;
     const bool enclosed = std::isfinite(lowest) && std::isfinite(highest);
-    // Infinite where all weights of one side are nearly subnormal: nothing is known but the sign.
+    // The slope is infinite if all weights of one side are nearly subnormal. Only the sign is then known.
     const double slope = differentiate(s).imbalance_by_beta;
     double next = std::isfinite(slope) ? beta - h / slope : std::numeric_limits<double>::quiet_NaN();
     if (next == beta) break;

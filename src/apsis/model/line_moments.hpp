@@ -2,8 +2,8 @@
 
 namespace apsis {
 
-/// Central moments, by direction, of an equilibrium g = ρ Π_k g_k(v_k), h = θ g. They give the moments of
-/// polynomials times it. This header includes nothing, as kernels of devices need it.
+/// Central moments, by direction, of an equilibrium g = ρ Π_k g_k(v_k), h = θ g. Moments of a polynomial
+/// times the equilibrium follow from them. This header includes nothing, because kernels of devices use it.
 struct line_moments {
   static constexpr decltype(sizeof 0) powers = 6;  ///< p = 0 … 5
 
@@ -11,7 +11,7 @@ struct line_moments {
   double of[3][powers] = {};  ///< ⟨c_k^p⟩ per mass, c = v − u
   double others = 0.0;        ///< θ
 
-  /// Sets those of a Gaussian of temperature T.
+  /// Sets the moments `of` to those of a Gaussian with temperature T.
   constexpr void set_gaussian(double T) {
     known = true;
     for (auto& one : of) {

@@ -13,12 +13,12 @@ struct values {
       below = 0.0,    ///< Σ w max(−x, 0)
       energy = 0.0;   ///< Σ w c
 };
-/// w ← base exp(βx − τc − shift) at n points, 0 below 1e−300 and at most e^691 base; padding becomes 0.
-/// Without a base it is 1.
+/// w ← base exp(βx − τc − shift) at n points, at most e^691 base. Values below 1e−300 and the padding become
+/// 0. base = nullptr stands for 1. Returns the sums of w.
 values weigh(const double* x, const double* c, const double* base, int n, double beta, double tau,
              double shift, double* w);
 
-/// Sums in the derivatives of `values` with respect to β and τ.
+/// Sums from which the derivatives of `values` with respect to β and τ follow.
 struct products {
   double above_x = 0.0,  ///< Σ w max(x, 0) x
       above_c = 0.0,     ///< Σ w max(x, 0) c
@@ -26,7 +26,7 @@ struct products {
       below_c = 0.0,     ///< Σ w max(−x, 0) c
       cc = 0.0;          ///< Σ w c²
 };
-/// Returns the sums for the weights of weigh().
+/// Returns the sums for the weights w of weigh().
 products multiply(const double* x, const double* c, const double* w, int n);
 
 }  // namespace line_sums

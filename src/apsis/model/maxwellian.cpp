@@ -17,7 +17,7 @@
 namespace apsis {
 namespace {
 
-/// One velocity dimension: all three in one pass.
+/// Computes all three moments of one velocity dimension in one pass.
 void moments_on_line(const velocity_grid& grid, const double* f, std::ptrdiff_t pitch, int rows,
                      double* omega) {
   constexpr int most = most_line_states;
@@ -69,7 +69,7 @@ double kinetic_mass(const velocity_grid& grid, const double* f) {
 
 namespace {
 
-/// Per-thread scratch for the three directions.
+/// Returns scratch memory of this thread for the three directions.
 std::array<aligned_vector<double>, 3>& line_buffers(const velocity_grid& grid) {
   thread_local std::array<aligned_vector<double>, 3> lines;
   for (int k = 0; k < grid.dimensions(); ++k)

@@ -15,18 +15,18 @@
 
 namespace apsis {
 
-/// omega ← the d + 2 midpoint-rule moments (ρ, ρu, 𝓔) of a row of grid.size() values.
+/// omega ← the d + 2 moments (ρ, ρu, 𝓔) of a row of grid.size() values, by the quadrature of the grid.
 void kinetic_moments(const velocity_grid& grid, const double* f, double* omega);
-/// The moments of several rows, `pitch` numbers apart, one ω after the other.
+/// omega ← the moments of several rows, which lie `pitch` numbers apart, one ω after the other.
 void kinetic_moments(const velocity_grid& grid, const double* f, std::ptrdiff_t pitch, int rows,
                      double* omega);
 
-/// Returns the last direction of a grid with the weights that sum with functions_of_lines().
+/// Returns the last direction of a grid. Its weights are those to combine with grid.functions_of_lines().
 grid_sums::axis last_axis(const velocity_grid& grid);
-/// Returns the first moment, the density ρ of a row.
+/// Returns the density ρ of a row, its first moment.
 double kinetic_mass(const velocity_grid& grid, const double* f);
 
-/// Compact fluid_state of one velocity dimension.
+/// A fluid_state of one velocity dimension, without unused components.
 struct line_state {
   double rho,  ///< density
       u,       ///< bulk velocity
@@ -35,42 +35,46 @@ struct line_state {
   bool admissible() const { return rho > 0.0 && T > 0.0 && std::isfinite(rho + std::abs(u) + T); }
 };
 
-/// Rows of Gaussians at the points of a line, `pitch` numbers apart; below 1e-300 values are 0.
+/// m ← rows of Gaussians at the points of a line, which lie `pitch` numbers apart. Values below 1e-300
+/// become 0.
 void gaussians_on(const velocity_line& line, const velocity_rows::gaussian* of_rows, int rows, double* m,
                   std::ptrdiff_t pitch);
 
-/// M[ρ, u, T](v) = ρ (2πT)^{−d/2} exp(−|v − u|²/(2T)) at the grid points (paper, after eq. BGK).
+/// m ← M[ρ, u, T](v) = ρ (2πT)^{−d/2} exp(−|v − u|²/(2T)) at the grid points (paper, after eq. BGK).
 void formula_maxwellian(const velocity_grid& grid, const fluid_state& state, double* m);
 /// Largest number of rows of formula_maxwellians_on_line().
 inline constexpr int most_line_states = 16;
-/// Computes at most most_line_states rows of ω in one velocity dimension into rows `pitch` apart, with their
-/// states. Returns the number of rows before the first ω that is not admissible.
+/// m ← the Maxwellians by formula of at most most_line_states moments ω in one velocity dimension, in rows
+/// that lie `pitch` numbers apart. states ← the states of these ω. Returns the number of rows before the
+/// first ω that is not admissible.
 int formula_maxwellians_on_line(const velocity_grid& grid, const double* omega, int rows, double* m,
                                 std::ptrdiff_t pitch, line_state* states);
 
-/// Sufficient condition for the midpoint-rule moments of the formula to equal those of `state` to rounding:
-/// Poisson's sum formula bounds their relative error by about 100 exp(−2π²T/Δv²), and the part beyond the
-/// grid is of the size exp(−(v_max − |u|)²/(2T)). Returns false for nearly empty space, where values of the
-/// formula below 1e-300 would be lost.
+/// Returns true if the midpoint-rule moments of the formula equal those of `state` to rounding, by a
+/// sufficient condition. Poisson's sum formula bounds their relative error by about 100 exp(−2π²T/Δv²). The
+/// part beyond the grid has the size exp(−(v_max − |u|)²/(2T)). Returns false in nearly empty space, where
+/// values of the formula below 1e-300 would be lost.
 bool formula_has_exact_moments(const velocity_grid& grid, const fluid_state& state);
-/// The condition in one velocity dimension.
+/// Checks the same condition in one velocity dimension.
 bool formula_has_exact_moments(const velocity_grid& grid, const line_state& state);
 
-/// m ← the minimizer of Σ m log m among all m ≥ 0 with the midpoint-rule moments ω, to round-off: the
-/// discrete Maxwellian exp(α + β·v + γ|v|²) (Mieussens, M3AS 10, 2000). On the boundary of the realizable ω
-/// it is the limit of these, which is 0 at some points (docs/space.md). It exists for the moments of every f
-/// ≥ 0, a row of zeros included; ω may miss the boundary by the rounding of sums. Returns false for other ω;
-/// why_unrealizable() has the reason. Sets `of_m`, if given, to the moments of m, or leaves them unknown.
+/// m ← the minimizer of Σ m log m among all m ≥ 0 with the moments ω, to rounding. This is the discrete
+/// Maxwellian exp(α + β·v + γ|v|²) (Mieussens, M3AS 10, 2000). On the boundary of the realizable ω it is a
+/// limit of such functions, which is 0 at some points (docs/space.md).
+///
+/// The discrete Maxwellian exists for the moments of every f ≥ 0, including f = 0. ω may lie beyond the
+/// boundary by the rounding of sums. Returns false for other ω; why_unrealizable() returns the reason. Sets
+/// `of_m`, if given, to the central moments of m, or leaves them unknown.
 bool discrete_maxwellian(const velocity_grid& grid, const double* omega, double* m,
                          line_moments* of_m = nullptr);
-/// The discrete Maxwellian with the moments of a state.
+/// m ← the discrete Maxwellian with the moments of a state.
 bool discrete_maxwellian(const velocity_grid& grid, const fluid_state& state, double* m);
-/// Returns the reason why no row f ≥ 0 has the moments ω, for messages: "temperature -0.3 is not positive";
-/// "" if one has.
+/// Returns the reason why no row f ≥ 0 has the moments ω, for messages: "temperature -0.3 is not positive".
+/// Returns "" if such a row exists.
 std::string why_unrealizable(const velocity_grid& grid, const double* omega);
 
-/// Returns the largest difference between the moments of m and `omega`, the moments of `state`, relative to
-/// ρ, to ρ(√T + |u_k|) for each momentum, and to 𝓔.
+/// Returns the largest relative difference between the moments of m and `omega`, the moments of `state`.
+/// Differences are relative to ρ for the density, to ρ(√T + |u_k|) for momentum k, and to 𝓔 for the energy.
 double moment_defect(const velocity_grid& grid, const double* m, const double* omega,
                      const fluid_state& state);
 

@@ -9,7 +9,7 @@ namespace apsis {
 using std::numbers::pi, std::numbers::sqrt2;
 
 const std::vector<mean_free_path>& mean_free_paths() {
-  // In units of √(RT) and L with μ/p = ε.
+  // Kn/ε, in units of √(RT) and L with μ/p = ε.
   static const std::vector<mean_free_path> all = {
       {"viscosity", "mu sqrt(pi R T/2)/p",
        "from the viscosity mu = rho c lambda/2 with the mean speed c = sqrt(8 R T/pi)",

@@ -5,8 +5,8 @@
 
 namespace apsis {
 
-/// A definition of the mean free path λ of a gas with viscosity μ = ε T^ω, and with it of the Knudsen number
-/// Kn = λ/L at the reference state. ε = μ √(RT)/(p L).
+/// A definition of the mean free path λ of a gas with viscosity μ = ε T^ω, where ε = μ √(RT)/(p L). It also
+/// defines the Knudsen number Kn = λ/L at the reference state.
 struct mean_free_path {
   std::string name;                        ///< name in a case file (model.knudsen.mean_free_path)
   std::string formula;                     ///< λ, in ASCII

@@ -19,10 +19,10 @@ struct model_parameter {
   double highest;        ///< largest allowed value
   std::string doc;       ///< description with unit
   bool integer = false;  ///< integers only
-  /// Whether a case may have "auto" in its place, the default there: model::automatic_value() then chooses it
-  /// from the initial data. `value` is that of models made without data.
+  /// Whether a case may set it to "auto", which is then the default. model::automatic_value() computes an
+  /// automatic value from the initial data. `value` applies to models without data.
   bool automatic = false;
-  bool of_space = false;  ///< 0 stands for the number of space dimensions, which a resolved case has
+  bool of_space = false;  ///< 0 stands for the number of space dimensions and is replaced by it
 };
 
 /// A string option of a model: one of several names, or a formula.
@@ -30,17 +30,17 @@ struct model_option {
   std::string name;                  ///< key in the table [model]
   std::string value;                 ///< default
   std::vector<std::string> choices;  ///< predefined names
-  std::string variable;  ///< variable of a formula, which may take any finite value; "": names only
-  std::string doc;       ///< description
+  std::string variable;              ///< variable of a formula with any finite values; "": names only
+  std::string doc;                   ///< description
 };
 
-/// A list of texts of a model: names that the case chooses, or formulas.
+/// A list option of a model: names that the case chooses, or formulas.
 struct model_list {
   std::string name;                ///< key in the table [model]
   std::vector<std::string> value;  ///< default
-  std::string variables;           ///< list with the variables of formulas, declared before; "": names
+  std::string variables;           ///< earlier list that names the variables of formulas; "": names
   std::string doc;                 ///< description
-  /// Whether an entry is a list of numbers, or of formulas of constants; it then is a text as "1, 0".
+  /// Whether an entry is a list of numbers or of constant formulas. It is stored as a text such as "1, 0".
   bool tuples = false;
 };
 
@@ -50,8 +50,8 @@ struct model_config {
   std::map<std::string, std::string> options;                  ///< complete; each a choice or a valid formula
   velocity_config velocity;                                    ///< only where the entry has_velocity_grid
   formula_constants constants = {};                            ///< constants of formulas
-  std::map<std::string, std::vector<std::string>> lists = {};  ///< complete; valid names or formulas
-  int space_dimensions = 1;  ///< D, of models that are possible in several dimensions
+  std::map<std::string, std::vector<std::string>> lists = {};  ///< complete; each a valid name or formula
+  int space_dimensions = 1;                              ///< D, for models that exist in several dimensions
   bool operator==(const model_config&) const = default;  ///< equal values
 };
 
@@ -60,7 +60,7 @@ struct model_entry {
   std::string name;                              ///< name in a case file (model.name)
   std::string description;                       ///< one line with the equation
   std::string source;                            ///< citation
-  bool has_velocity_grid = false;                ///< made from the table [velocity]
+  bool has_velocity_grid = false;                ///< whether it needs the table [velocity]
   std::vector<model_parameter> parameters = {};  ///< in the order in which they are documented
   std::vector<model_option> options = {};        ///< in the order in which they are documented
   std::vector<model_list> lists = {};            ///< in the order in which they are documented
@@ -68,7 +68,7 @@ struct model_entry {
   std::unique_ptr<model> (*make)(const model_config&) = nullptr;
 };
 
-/// Returns the model with default_config(), for queries; made once.
+/// Returns the model with default_config(), for queries. It is constructed once per process. Thread-safe.
 const model& prototype(const model_entry& entry);
 
 /// Whether the model needs the table [space].
@@ -79,7 +79,7 @@ inline bool has_space(const model_entry& entry) {
 /// Returns the names of the initial data, the default first.
 std::vector<std::string> initial_names(const model_entry& entry);
 
-/// Returns the defaults of all parameters and options; 16 points on [−8, 8] as velocity grid.
+/// Returns the defaults of all parameters, options and lists. A velocity grid has 16 points on [−8, 8].
 model_config default_config(const model_entry& entry);
 
 /// Returns all models, sorted by name (generated).

@@ -11,7 +11,7 @@
 namespace apsis {
 namespace {
 
-/// Weights along each direction of a grid, Gaussians in the beginning.
+/// Weights along each direction of a grid, which are Gaussians at the start.
 class nearby_lines {
  public:
   nearby_lines(const velocity_grid& grid, const fluid_state& state, const std::array<double*, 3>& weights)
@@ -27,7 +27,7 @@ class nearby_lines {
     }
   }
 
-  /// Newton's method. Returns false where a step is not small.
+  /// Runs Newton's method. Returns false if a step is not small.
   bool solve() {
     while (newton_.advance())
       for (std::size_t k = 0; k < d_; ++k)
@@ -35,7 +35,7 @@ class nearby_lines {
     return newton_.found;
   }
 
-  /// Returns the factor of the product of the weights.
+  /// Returns the factor that gives the product of the weights the density ρ.
   double factor(const velocity_grid& grid, double rho) const {
     return rho / (grid.weight() * newton_.mass());
   }

@@ -6,17 +6,17 @@
 namespace apsis {
 
 /// m ← the discrete Maxwellian of an admissible state. Newton's method starts from the Gaussian of the state.
-/// The steps multiply weights by exponentials of small numbers, which need no reduction of
-/// their argument. Returns false, with m undefined, where a step is not small: on coarse grids, near their
-/// ends and in nearly empty space. `moments`, if given, are those of m.
+/// The steps multiply weights by exponentials of small numbers, which need no reduction of their argument.
+/// Returns false, with m undefined, if a step is not small: on coarse grids, near their ends and in nearly
+/// empty space. Sets `moments`, if given, to the central moments of m.
 bool nearby_maxwellian(const velocity_grid& grid, const fluid_state& state, double* m,
                        line_moments* moments = nullptr);
 
-/// m ← the discrete Maxwellian of all moments ω that a row f ≥ 0 has, as discrete_maxwellian() describes it.
-/// Takes longer than nearby_maxwellian(), and finds the same row to rounding.
+/// m ← the discrete Maxwellian for the moments ω of any row f ≥ 0, with the results of discrete_maxwellian().
+/// Takes longer than nearby_maxwellian(), and computes the same row to rounding.
 bool general_maxwellian(const velocity_grid& grid, const double* omega, double* m);
 
-/// nearby_maxwellian() on a line, from the row m of the Gaussian.
+/// Computes nearby_maxwellian() on a line, starting from m, which must contain the Gaussian of the state.
 bool nearby_maxwellian_on_line(const velocity_grid& grid, const line_state& state, double* m,
                                line_moments* moments = nullptr);
 

@@ -19,7 +19,7 @@ number widen(double x) {
   return number(x);
 }
 number widen(const dual<double>& x) {
-  return number(x);  // a dual becomes the outer variable
+  return number(x);  // the dual becomes the outer variable
 }
 const number& widen(const number& x) {
   return x;
@@ -35,7 +35,7 @@ void narrow(const number& x, number& out) {
   out = x;
 }
 
-/// The model's Q for every scalar type that Newton's method asks for, through the widest of them.
+/// Evaluates the model's Q for every scalar type of Newton's method, by means of the widest type.
 struct collision_callable {
   const general_model* equation;
 
@@ -52,7 +52,7 @@ struct no_source {
   void operator()(double, const std::vector<double>&, std::vector<double>&) const {}
 };
 
-/// Stages and Q/ε point by point.
+/// Solves stages and evaluates Q/ε point by point.
 class newton_collision final : public point_collision {
  public:
   explicit newton_collision(const general_model& equation)
@@ -67,7 +67,7 @@ class newton_collision final : public point_collision {
       at_point(p, at, [&](double over_epsilon) {
         double* row = u + p * at.pitch;
         load(row);
-        // No 0·∞ where a or b is 0.
+        // Avoids 0·∞ if a or b is 0.
         const double first = a == 0.0 ? 0.0 : a * over_epsilon;
         const double second = b == 0.0 ? 0.0 : b * over_epsilon * over_epsilon;
         if (!std::isfinite(first) || !std::isfinite(second))
@@ -98,7 +98,7 @@ class newton_collision final : public point_collision {
  private:
   void load(const double* u) { row_.assign(u, u + components_); }
 
-  /// body(1/ε), whose failures get the cell of the point.
+  /// Calls body(1/ε) and adds the cell of the point to its errors.
   template <class Body>
   static void at_point(int p, const point_batch& at, const Body& body) {
     try {

@@ -28,7 +28,7 @@ class nonnegative_least_squares {
       values_.conservativeResize(values_.size() + 1);
       values_[values_.size() - 1] = 0.0;
       keep_positive();
-      // Rounding may make a column steep that does not help.
+      // Because of rounding, a column may be steep without being useful.
       const bool useful = std::find(chosen_.begin(), chosen_.end(), steepest) != chosen_.end();
       if (useful) refused_.clear();
       if (!useful) refused_.push_back(steepest);
@@ -42,7 +42,7 @@ class nonnegative_least_squares {
  private:
   static constexpr double rounding = 1e-16;
 
-  /// The solution in the chosen columns; those that would become negative are left out on the way to it.
+  /// Solves in the chosen columns. On the way to the solution, removes columns that would become negative.
   void keep_positive() {
     while (!chosen_.empty()) {
       const Eigen::MatrixXd some = a_(Eigen::all, chosen_);
@@ -94,7 +94,7 @@ bool nonnegative_row(const velocity_grid& grid, const double* omega, double* m) 
   }
   for (int j = 0; j < grid.size(); ++j)
     functions(d + 1, j) = 2.0 * grid.half_square()[static_cast<std::size_t>(j)] / square;
-  // Columns of equal length, so that the steepest is the nearest.
+  // Columns of equal length make the steepest column the one nearest in direction.
   const Eigen::VectorXd lengths = functions.colwise().norm();
   const Eigen::MatrixXd scaled = functions * lengths.cwiseInverse().asDiagonal();
   nonnegative_least_squares found(scaled, wanted);

@@ -5,7 +5,7 @@
 namespace apsis {
 namespace {
 
-/// Splits at commas outside parentheses.
+/// Splits a text at commas outside parentheses.
 std::vector<std::string> parts_of(const std::string& text) {
   std::vector<std::string> parts(1);
   int depth = 0;

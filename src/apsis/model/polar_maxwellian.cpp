@@ -18,7 +18,7 @@
 namespace apsis {
 namespace {
 
-/// Below this a moment counts as 0 where there is no mass.
+/// Moments of a vacuum up to this size count as 0.
 constexpr double no_mass = 1e-300;
 
 using ring_exponentials::components;
@@ -26,14 +26,14 @@ using ring_exponentials::dual_sums;
 using ring_exponentials::factors;
 using ring_exponentials::parameters;
 
-/// Newton's method for the minimum of the dual, in which the means of ψ are (0, 0, 0, (3/2)T).
+/// Newton's method for the minimum of the dual. At the minimum the means of ψ are (0, 0, 0, (3/2)T).
 class dual_minimum {
  public:
-  /// `square`: ⟨|v|²⟩, `width`: T of the first iterate.
+  /// `square` is ⟨|v|²⟩. `width` is T of the first iterate.
   dual_minimum(factors& of, double T, double square, double width)
       : of_(of), T_(T), square_(square), width_(width) {}
 
-  /// Returns whether the moments are reached to rounding.
+  /// Returns true if the iterates reach the moments to rounding.
   bool find() {
     parameters at(0.0, 0.0, 0.0, -1.0 / width_);
     dual_sums here = of_.evaluate(at);
@@ -52,12 +52,12 @@ class dual_minimum {
   }
 
  private:
-  static constexpr double rounding = 1e-15;  ///< of sums, reached in most cases
+  static constexpr double rounding = 1e-15;  ///< rounding of sums, reached in most cases
   static constexpr double close = 1e-12;     ///< sums of thousands of terms may not come nearer than this
 
-  /// One step that lowers the dual or the residual; near the minimum the dual varies by less than its
-  /// rounding. Where nearly all mass is at few points some directions change nothing, and more of the
-  /// diagonal is added. Returns false if there is no such step.
+  /// Takes one step that reduces the dual or the residual; near the minimum the dual varies by less than its
+  /// rounding. If nearly all mass is at few points, some directions change nothing. Steps are then damped by
+  /// adding to the diagonal. Returns false if no such step exists.
   bool improve(parameters& at, dual_sums& here) const {
     const double residual = defect(here), before = value(here, at);
     const int halvings = residual <= close ? 1 : 12;
@@ -78,8 +78,8 @@ class dual_minimum {
 
   double value(const dual_sums& of, const parameters& at) const { return of.log_of_sum - 1.5 * T_ * at[3]; }
 
-  /// Returns the largest defect of momentum and energy, relative to the sums over all molecules: the scale of
-  /// the rounding of the given moments.
+  /// Returns the largest defect of momentum and energy. It is relative to sums over all molecules, because
+  /// these set the rounding of the given moments.
   double defect(const dual_sums& of) const {
     const double momentum = of.mean.head<3>().cwiseAbs().maxCoeff() / std::sqrt(square_);
     const double energy = 2.0 * std::abs(of.mean[3] - 1.5 * T_) / square_;
@@ -87,8 +87,8 @@ class dual_minimum {
     return std::isnan(momentum + energy) ? std::numeric_limits<double>::infinity() : largest;
   }
 
-  /// Computes the step in units in which the diagonal of the Hessian is 1, since its entries differ by orders
-  /// of magnitude.
+  /// Computes the step in units in which the diagonal of the Hessian is 1, because its entries differ by
+  /// orders of magnitude.
   parameters newton_step(const dual_sums& of, double damping) const {
     parameters gradient = of.mean, unit;
     gradient[3] -= 1.5 * T_;
@@ -157,12 +157,12 @@ bool discrete_maxwellian_on_rings(const velocity_grid& grid, const double* omega
     return true;
   }
   fluid_state state = to_fluid_state(omega, 3);
-  // All of f ≥ 0 may have one velocity, up to the rounding of sums.
+  // All mass of f ≥ 0 may have one velocity. T is then 0 up to the rounding of sums.
   const double square = 2.0 * omega[4] / omega[0], rounding = 1e-14 * square, coldest = 1e-15 * square;
   if (!std::isfinite(state.T) || !(state.T >= -rounding)) return false;
   state.T = std::max({state.T, coldest, no_mass});
   factors of(grid, state);
-  // A narrow Gaussian has nothing where few molecules far away are needed: the second start is wide.
+  // A narrow Gaussian is 0 far away, where few molecules may be needed. The second start is therefore wide.
   const double narrow = std::max(state.T, 0.1 * gap_square_on_rings(grid, state)),
                wide = 0.25 * grid.max() * grid.max();
   if (!dual_minimum(of, state.T, square, narrow).find() && !dual_minimum(of, state.T, square, wide).find())

@@ -9,17 +9,17 @@ namespace apsis {
 void formula_maxwellian_on_rings(const velocity_grid& grid, const fluid_state& state, double* m);
 
 /// discrete_maxwellian() on a grid with rings: the minimizer exp(α + β·v + γ|v|²) of the entropy with the
-/// moments ω. It is the minimum of the convex dual (Mieussens, M3AS 10, 2000)
-///     D(β, γ) = log Σ w exp(β·c + γ(½|c|² − (3/2)T)),  c = v − u,
-/// which damped Newton iterations find. On the boundary of the moments of rows m ≥ 0 they approach the limit,
-/// in which some values are 0. Where they do not reach it, nonnegative_row() takes its place. The
-/// exponentials factor into those along the axis and across it. Returns false where no m ≥ 0 has the moments.
+/// moments ω. Damped Newton iterations minimize the convex dual (Mieussens, M3AS 10, 2000)
+/// D(β, γ) = log Σ w exp(β·c + γ(½|c|² − (3/2)T)), c = v − u. On the boundary of the moments of rows m ≥ 0
+/// the iterations approach a limit, in which some values are 0. If they do not reach it, nonnegative_row()
+/// computes m instead. The exponentials factor into those along the axis and across it. Returns false if no m
+/// ≥ 0 has the moments.
 bool discrete_maxwellian_on_rings(const velocity_grid& grid, const double* omega, double* m);
 
-/// Returns the square of the largest distance of neighbouring velocities within a thermal speed of u.
+/// Returns the square of the largest distance between neighbouring velocities within a thermal speed √T of u.
 double gap_square_on_rings(const velocity_grid& grid, const fluid_state& state);
 
-/// Returns the reason why discrete_maxwellian_on_rings() fails, for messages; "" if it does not.
+/// Returns the reason why discrete_maxwellian_on_rings() fails, for messages; "" if it succeeds.
 std::string why_unrealizable_on_rings(const velocity_grid& grid, const double* omega);
 
 }  // namespace apsis

@@ -10,15 +10,15 @@
 namespace apsis {
 namespace {
 
-/// Rounding of the moments of f ≥ 0 relative to the sums of absolute values: each of n additions and of a few
-/// products and divisions rounds once, and two sums are divided.
+/// Returns a bound on the rounding of the moments of f ≥ 0, relative to the sums of absolute values. Each of
+/// n additions, and of a few products and divisions, rounds once. Two sums are divided.
 double rounding_of_sums(const velocity_grid& grid) {
   return 4.0 * (grid.size() + 4.0) * std::numeric_limits<double>::epsilon();
 }
 
-/// Below this a moment counts as 0 where there is no mass.
+/// Moments of a vacuum up to this size count as 0.
 constexpr double vacuum = 1e-300;
-/// From here on subnormal terms of the sums lie below the rounding of ρ by a hundred orders.
+/// For larger moments, subnormal terms of the sums are a hundred orders of magnitude below ρ.
 constexpr double large_enough = 1e-200;
 
 bool all_finite(const double* omega, int count) {
@@ -49,7 +49,7 @@ int nearest_place(const velocity_line& line, double z) {
   return *after - z <= z - *(after - 1) ? right : right - 1;
 }
 
-/// Fills the part of direction k.
+/// Sets the members of `to` for direction k and returns the bounds.
 bounds place(const velocity_grid& grid, std::size_t k, double z, realizable_moments& to) {
   const velocity_line& line = grid.line(static_cast<int>(k));
   const auto& places = line.places();
@@ -57,8 +57,8 @@ bounds place(const velocity_grid& grid, std::size_t k, double z, realizable_mome
   to.z[k] = std::clamp(z, first, last);
   const int index = nearest_place(line, to.z[k]);
   const double point = places[static_cast<std::size_t>(index)];
-  const double distance = to.z[k] - point;  // exact where it is small
-  // Far below the rounding of u; without it no exponent is extreme.
+  const double distance = to.z[k] - point;  // exact if it is small
+  // Far below the rounding of u. Treating it as 0 avoids extreme exponents.
   constexpr double nothing = 1e-100;
   to.nearest[k] = index;
   to.offset[k] = std::abs(distance) < nothing ? 0.0 : distance;
@@ -96,7 +96,7 @@ std::optional<realizable_moments> compute_realizable(const velocity_grid& grid, 
   found.square = std::max(2.0 * (omega[1 + d] / found.rho / unit / unit), 0.0);
   found.above_least = found.square - least;
   found.below_greatest = greatest - found.square;
-  // ℓ has slopes up to twice the ends, and the error of z is relative to √square.
+  // The slopes of ℓ are at most twice the ends, and the error of z is relative to √square.
   const double margin = tolerance * (1.0 + std::max(found.square, least)) * 2.0;
   if (found.above_least < -margin || found.below_greatest < -tolerance * 2.0 * greatest) return std::nullopt;
   found.above_least = std::clamp(found.above_least, 0.0, greatest - least);

@@ -16,10 +16,11 @@
 namespace apsis {
 namespace {
 
-/// Stages have the closed form v = (u + μ E(ω))/(1 + μ), ω = ℛu, μ = aC/ε + |b|(C/ε)² (paper, proof of
-/// Proposition AP); exact solutions are v = e^{−z}u + (1 − e^{−z})E(ω), z = aC/ε. All points of a batch pass
-/// one step (moments, equilibria, weights, combination) before the next begins: each step is a chain of
-/// dependent operations, and points are interleaved to hide its latency.
+/// Solves stages in closed form: v = (u + μ E(ω))/(1 + μ), ω = ℛu, μ = aC/ε + |b|(C/ε)² (paper, proof of
+/// Proposition AP). Exact solutions are v = e^{−z}u + (1 − e^{−z})E(ω), z = aC/ε.
+///
+/// Each step (moments, equilibria, weights, combination) processes all points of a batch before the next
+/// begins. A step is a chain of dependent operations, and interleaving points hides its latency.
 class relaxation_collision final : public point_collision {
  public:
   relaxation_collision(const relaxation_model& equation, const batch_limits& limits)
@@ -68,8 +69,8 @@ class relaxation_collision final : public point_collision {
     }
   }
 
-  /// v − u = w (E − u) with the weight w ≤ 1 of E, which for E ≥ 0 is at least −u however it is rounded.
-  /// Stages with relaxing moments have targets that are negative where u keeps v ≥ 0.
+  /// Computes v − u = w (E − u) with the weight w ≤ 1 of E. For E ≥ 0 this is at least −u, however it is
+  /// rounded. Targets that depend on relaxing moments may be negative; the base class handles their stages.
   void solve_stage_changes(double a, double b, const point_batch& at, const double* u,
                            double* change) override {
     if (!relaxing_.empty()) return point_collision::solve_stage_changes(a, b, at, u, change);
@@ -106,8 +107,8 @@ class relaxation_collision final : public point_collision {
   }
   static long cell(int p, const point_batch& at) { return at.first_cell + p / at.points_per_cell; }
 
-  /// The target of every point: E(ℛu), or that of a stage with relaxing moments, which for a = b = 0 is the
-  /// one of Q(u) if `explicit_rate`; a stage does not use it then.
+  /// Computes the target of every point: E(ℛu), or the target of a stage with relaxing moments. With
+  /// `explicit_rate` and a = b = 0 it is the target of Q(u). A stage with a = b = 0 does not use its target.
   void find_targets(double a, double b, const point_batch& at, const double* u, bool explicit_rate = false) {
     const profile::section timed(kernel::equilibria, numbers(at),
                                  {equation_.operations_of_equilibrium(), 0.0});
@@ -128,7 +129,7 @@ class relaxation_collision final : public point_collision {
       const double* row = u + p * at.pitch;
       const double rate = equation_.rate(omega(p));
       const auto weights = relax_weights(a, b, rate, at.epsilon[p]);
-      // An explicit Q(u) is bounded for its forward Euler step ε/C, which ends at the target.
+      // For an explicit Q(u) keep is 0, because its forward Euler step ε/C ends at the target.
       const double keep = kept_part(weights);
       equation_.relaxing_moments(row, omega(p), relaxing_.data());
       equation_.relax(coefficients_of_stage(a, b, rate, at.epsilon[p]), relaxing_.data());
@@ -161,7 +162,7 @@ class relaxation_collision final : public point_collision {
     }
   }
 
-  /// C/ε.
+  /// Returns C/ε.
   double strength(int p, const point_batch& at) const {
     if (!(at.epsilon[p] > 0.0))
       throw numerical_error(
@@ -176,7 +177,8 @@ class relaxation_collision final : public point_collision {
     return equation_.rate(omega(0));
   }
 
-  /// Moments of nonnegative rows have an equilibrium.
+  /// Returns advice for messages. Moments of nonnegative rows have an equilibrium, so that positivity avoids
+  /// the error.
   const char* advice() const {
     if (!equation_.positive()) return "use a smaller step";
     if (!equation_.why_signed().empty())
@@ -196,7 +198,7 @@ class relaxation_collision final : public point_collision {
   double cut_ = 0.0;  ///< of take_cut()
   std::ptrdiff_t moments_, pitch_;
   aligned_vector<double> omega_, equilibria_, rates_, weight_of_u_, weight_of_e_;
-  std::vector<double> relaxing_;  ///< of one point
+  std::vector<double> relaxing_;  ///< s of one point
   std::vector<relaxation::weighted_rows> rows_;
 };
 

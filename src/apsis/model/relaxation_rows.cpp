@@ -17,7 +17,7 @@ void combine(double share, const double* base, const double* other, int width, d
 }
 
 void mean_of_three(const relaxation::weighted_rows* of_points, int width, double* mean) {
-  // A copy, so that the compiler knows that storing the mean does not change it.
+  // A local copy shows the compiler that storing the mean does not change the points.
   const relaxation::weighted_rows points[3] = {of_points[0], of_points[1], of_points[2]};
   for_packs(width, [&](auto lanes, int k) APSIS_PACKED {
     using N = pack<decltype(lanes)>;

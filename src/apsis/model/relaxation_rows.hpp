@@ -8,13 +8,13 @@ namespace apsis {
 /// Loops over the components of rows of a relaxation, for the instruction set of this processor.
 namespace relaxation {
 
-/// u ← weight_of_u·u + weight_of_e·e, the convex combination that solves a stage, for weights whose sum is 1
-/// up to rounding. It is computed from the smaller weight alone, as the row of the larger weight plus this
-/// fraction of the difference: nonnegative if both rows are, and a difference without moments adds none,
-/// however the weights are rounded.
+/// u ← weight_of_u·u + weight_of_e·e, the convex combination that solves a stage. The sum of the weights is 1
+/// up to rounding. Only the smaller weight enters: the result is the row of the larger weight plus this
+/// fraction of the difference. It is therefore nonnegative if both rows are. If both rows have equal moments,
+/// so has the result, however the weights are rounded.
 void combine(double weight_of_u, double weight_of_e, const double* e, int width, double* u);
 
-/// The combination at one quadrature point as its contribution to a mean.
+/// The contribution of the combination at one quadrature point to a mean.
 struct weighted_rows {
   double weight,       ///< quadrature weight of the point
       share;           ///< weight · (smaller weight of the combination)
@@ -22,21 +22,21 @@ struct weighted_rows {
       *other;          ///< row of the smaller weight
 };
 
-/// Returns the contribution of a point, with the weights of combine().
+/// Returns the contribution of a point with the quadrature weight `weight` and the weights of combine().
 inline weighted_rows contribution(double weight, double weight_of_u, double weight_of_e, const double* u,
                                   const double* e) {
   if (weight_of_e <= weight_of_u) return {weight, weight * weight_of_e, u, e};
   return {weight, weight * weight_of_u, e, u};
 }
 
-/// mean ← the sum over the points; three points are the fast case.
+/// mean ← the sum of the contributions. Three points have a faster kernel.
 void mean(std::span<const weighted_rows> points, int width, double* mean);
 
 /// q ← strength (e − u), with strength = C/ε.
 void change(double strength, const double* e, const double* u, int width, double* q);
 
 inline constexpr double operations_of_combine = 2.0;  ///< operations of combine() per component
-/// Operations of mean() per component.
+/// Returns the operations of mean() per component.
 constexpr double operations_of_mean(std::size_t points) {
   return 3.0 * static_cast<double>(points);
 }

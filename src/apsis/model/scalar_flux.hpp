@@ -15,23 +15,25 @@ class scalar_flux {
   /// u²/(u² + M(1 − u)²) (LeVeque, Finite Volume Methods for Hyperbolic Problems, 2002, section 16.1).
   static const std::vector<std::string>& names();
 
-  /// `text` is a predefined name or a formula in u; `slope` is b, `viscosity_ratio` M. Throws input_error.
+  /// Takes a predefined name or a formula in u; `slope` is b, `viscosity_ratio` is M. Throws input_error if
+  /// the formula is invalid.
   scalar_flux(const std::string& text, double slope, double viscosity_ratio,
               const formula_constants& constants = {});
 
   /// Returns F(u).
   double operator()(double u) const;
-  /// Returns F'(u): exact for predefined names, by fourth-order differences for formulas, whose first steps
-  /// are a small part of the largest value `size` > 0 of the data; NaN if there is no finite derivative.
+  /// Returns F'(u), exact for predefined names and by fourth-order differences for formulas. The first step
+  /// of a difference is a small part of `size` > 0, the largest absolute value of the data. Returns NaN if
+  /// there is no finite derivative.
   double derivative(double u, double size = 1.0) const;
 
   /// A value u and its characteristic speed.
   struct wave {
     double u,   ///< value
-        speed;  ///< |F'(u)|, not finite if F is not differentiable
+        speed;  ///< |F'(u)|; not finite if F is not differentiable at u
   };
-  /// Returns the largest |F'| for u in [low, high]: the best of 2001 values, refined by golden sections; or
-  /// the first value without a finite slope.
+  /// Returns the largest |F'| for u in [low, high]: the largest of 2001 values, refined by golden-section
+  /// search. If F' is not finite at one of these values, returns the first such value.
   wave fastest(double low, double high) const;
 
   const std::string& text() const { return text_; }  ///< name or formula, as given

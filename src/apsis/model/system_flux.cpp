@@ -21,7 +21,7 @@ constexpr int most = system_flux::most_variables;
 using square_matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, most, most>;
 
 /// Scales rows and columns by powers of 2 until their norms agree within a factor of 2 (Parlett, Reinsch,
-/// Numer. Math. 13, 1969). Variables of different units would otherwise lose digits of the eigenvalues.
+/// Numer. Math. 13, 1969). Otherwise eigenvalues would lose digits if variables have different units.
 void balance(square_matrix& a) {
   const Eigen::Index n = a.rows();
   for (bool changed = true; changed;) {
@@ -39,7 +39,7 @@ void balance(square_matrix& a) {
   }
 }
 
-/// Characteristic speeds of two equations: λ = m ± √d.
+/// Returns the characteristic speeds of two equations: λ = m ± √d with mean m and discriminant d.
 system_flux::waves waves_of_two(const square_matrix& a) {
   const double mean = 0.5 * (a(0, 0) + a(1, 1)), half = 0.5 * (a(0, 0) - a(1, 1));
   const double discriminant = half * half + a(0, 1) * a(1, 0), root = std::sqrt(std::abs(discriminant));
@@ -47,9 +47,9 @@ system_flux::waves waves_of_two(const square_matrix& a) {
   return {std::hypot(mean, root), root};
 }
 
-/// Characteristic speeds of three equations: λ = m + z, where m is the mean and z³ − 3pz − 2q = 0 (Viète and
-/// Cardano). Many times as fast as an iteration, and the coefficients do not depend on the units of
-/// variables.
+/// Returns the characteristic speeds of three equations: λ = m + z, where m is the mean and z³ − 3pz − 2q = 0
+/// (Viète and Cardano). This is many times as fast as an iteration. The coefficients do not depend on the
+/// units of variables.
 system_flux::waves waves_of_three(const square_matrix& a) {
   const double mean = (a(0, 0) + a(1, 1) + a(2, 2)) / 3.0;
   const Eigen::Matrix3d b = a - mean * Eigen::Matrix3d::Identity();
@@ -121,7 +121,7 @@ namespace {
 /// First step of a difference in units of the size of a variable, and the factor from each step to the next.
 constexpr double first_step = 2.5e-4, shrinking_factor = 0.125;
 
-/// A slope by F at u + h, u − h, u + 2h and u − 2h: Richardson extrapolation of central differences.
+/// A slope from F at u + h, u − h, u + 2h and u − 2h, by Richardson extrapolation of central differences.
 struct slope_of_four {
   slope_of_four(const double* f, std::size_t apart, double h) {
     const double once = (f[0] - f[apart]) / (2.0 * h), twice = (f[2 * apart] - f[3 * apart]) / (4.0 * h);
@@ -129,29 +129,29 @@ struct slope_of_four {
     noise = 1e-14 * (std::abs(f[2 * apart]) + std::abs(f[3 * apart])) / h;
     error = std::abs(once - twice);
   }
-  /// Whether the error is at most 1e-6 of the slope, so that the error of the extrapolation, of order h⁴, is
-  /// near its square, or rounding or, where the slope vanishes, much smaller than at the start. False for
-  /// NaN.
+  /// Whether the error is at most 1e-6 of the slope, up to rounding. The error of the extrapolation, of order
+  /// h⁴, is then close to the square of this error. Where the slope vanishes, the error must be much smaller
+  /// than at the start. False for NaN.
   bool is_accurate(double at_start) const {
     const double vanishing = std::abs(slope) <= error ? at_start : 0.0;
     return error <= 1e-6 * (std::abs(slope) + vanishing) + noise;
   }
 
-  double slope, error,  ///< of the less accurate difference
-      noise;            ///< of rounding
+  double slope, error,  ///< error of the less accurate difference
+      noise;            ///< rounding error of the slope
 };
 
 }  // namespace
 
-/// The slopes of some states by their first step, F being evaluated for all of them together. The numbers of
-/// a kind are contiguous for all states.
+/// The slopes of several states by their first step. F is evaluated for all states together. Numbers of a
+/// kind are contiguous over the states.
 struct system_flux::differences {
   std::vector<double> u, sizes,  ///< of variable k
       at, F,                     ///< of variable j and of F_j: state p with step s of variable k is number
                                  ///< (4 k + s) states + p
       slopes,                    ///< of F_j by variable k
-      accurate,                  ///< 1 where all slopes by variable k are, else 0
-      derivative;                ///< of one state
+      accurate,                  ///< 1 if all slopes by variable k are accurate, else 0
+      derivative;                ///< F' of one state
 
   /// Number of states whose values fit into the first-level cache.
   static std::size_t together(std::size_t n) { return std::clamp<std::size_t>(512 / (n * n), 1, 32); }
@@ -162,13 +162,13 @@ struct system_flux::differences {
     slopes.resize(states * n * n);
     derivative.resize(n * n);
   }
-  /// derivative ← that of a state.
+  /// derivative ← F' of a state.
   void take_derivative(std::size_t n, std::size_t count, std::size_t state) {
     for (std::size_t k = 0; k < n * n; ++k) derivative[k] = slopes[k * count + state];
   }
 };
 
-/// h starts at a small part of the size and shrinks until all slopes are accurate.
+/// The step h starts at a small part of the size and shrinks until all slopes are accurate.
 bool system_flux::differentiate(const double* u, int variable, double size, double* slopes) const {
   constexpr double rounding = 1e-14;
   constexpr int most_shrinkings = 14;
@@ -194,7 +194,8 @@ bool system_flux::differentiate(const double* u, int variable, double size, doub
     }
     if (enough) return true;
   }
-  // At an end of the interval on which F is defined. A slope that grows as the step shrinks is infinite.
+  // u may be an end of the interval on which F is defined. A slope that grows as the step shrinks counts
+  // as infinite.
   const auto from_one_side = [&](double s, double* found) {
     evaluate_at({0.0, s, 2.0 * s, 0.0});
     for (std::size_t j = 0; j < n; ++j) {
@@ -216,8 +217,9 @@ bool system_flux::differentiate(const double* u, int variable, double size, doub
   return false;
 }
 
-/// A variable that is 0 (a momentum at rest) has no size but that of its flux and of the others, from which
-/// the right step may be far. Values whose squares underflow, as WENO leaves beside clean data, count as 0.
+/// A variable that is 0, such as a momentum at rest, takes its size from its flux and from the other
+/// variables. The right step may be far from it. Values whose squares underflow count as 0; WENO leaves such
+/// values next to exact zeros.
 void system_flux::compute_sizes(const double* u, int points, double typical, double* sizes) const {
   constexpr double nothing = 1e-150;
   const std::size_t n = variables_.size(), count = static_cast<std::size_t>(points);
@@ -235,7 +237,7 @@ void system_flux::compute_sizes(const double* u, int points, double typical, dou
   }
 }
 
-/// The first step of differentiate() for all variables of some states.
+/// Takes the first step of differentiate() for all variables of several states.
 void system_flux::take_first_step(int points, double typical, differences& of) const {
   const std::size_t n = variables_.size(), count = static_cast<std::size_t>(points), all = 4 * n * count;
   compute_sizes(of.u.data(), points, typical, of.sizes.data());
@@ -317,7 +319,7 @@ void system_flux::characteristic_speeds(const double* u, int points, double typi
         known = known && differentiate(state.data(), static_cast<int>(k), of.sizes[k * count + p],
                                        &of.derivative[n * k]);
       }
-      // A speed far below that of the waves makes first steps that leave the domain of F.
+      // If `typical` is far below the speed of the waves, first steps may leave the domain of F.
       if (!known && !differentiate_all(state.data(), of.derivative)) {
         *found++ = {std::numeric_limits<double>::quiet_NaN(), 0.0};
         continue;

@@ -2,11 +2,11 @@
 
 namespace apsis {
 
-/// Loops over lines of n points in one velocity direction, one behind the other, for targets that are a row
-/// times a polynomial, for the instruction set of this processor. c = v − u.
+/// Loops for targets that are a row times a polynomial, for the instruction set of this processor. Rows
+/// consist of contiguous lines of n points in one velocity direction. c = v − u.
 namespace target_rows {
 
-/// k0 + k1 c + k2 c² + k3 c³.
+/// The polynomial p(c) = k0 + k1 c + k2 c² + k3 c³.
 struct cubic {
   double k0 = 1.0,  ///< constant
       k1 = 0.0,     ///< coefficient of c
@@ -14,8 +14,8 @@ struct cubic {
       k3 = 0.0;     ///< coefficient of c³
 };
 
-/// e ← max(m p(c), −keep f) with one polynomial for each line, f ≥ 0; keep = ∞ leaves m p(c). Returns whether
-/// a value was raised to its bound.
+/// e ← max(m p(c), −keep f) with one polynomial for each line and f ≥ 0. keep = ∞ stands for e ← m p(c).
+/// Returns true if a value was raised to its bound.
 bool weigh(const double* m, const double* v, double u, const cubic* of_lines, int lines, const double* f,
            double keep, int n, double* e);
 

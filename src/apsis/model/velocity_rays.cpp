@@ -12,14 +12,14 @@ namespace {
 
 using std::numbers::pi;
 
-constexpr int angles = 256;  // of a quadrant, at which the error is taken
+constexpr int angles = 256;  // angles of a quadrant at which the error is evaluated
 
 /// Momentum of one velocity, or of all velocities of some directions.
 struct momentum {
   double x = 0.0, y = 0.0;
 };
 
-/// Sums of one quadrant: entry i has the directions between angles i − 1 and i.
+/// Returns the sums of one quadrant. Entry i sums over the directions between angles i − 1 and i.
 std::vector<momentum> sums_of_sectors(const velocity_line& first, const velocity_line& second, double T,
                                       double sign_x, double sign_y) {
   std::vector<momentum> sums(angles + 1);

@@ -55,9 +55,9 @@ void exponentials(double shift, int n, double* x) {
     store_some(exp_of(load_some(x + j, n - j) - pack<wide>(shift)), n - j, x + j);
 }
 
-/// The first octets of eight Gaussians. The change of `right` is one number for a Gaussian, so that those of
-/// all of them are one exponential. The others could be made from a few numbers as well, but then all their
-/// numbers would err to the same side, and so would the moments.
+/// The first octets of eight Gaussians. The change of `right` is one number per Gaussian, so that one vector
+/// exponential computes it for all of them. The other factors could also be computed from a few numbers.
+/// Their errors would then have the same sign, and so would those of the moments.
 class first_octets {
  public:
   first_octets(const spaced_line& line, const velocity_rows::gaussian* of, int rows) : line_(line) {
@@ -65,7 +65,8 @@ class first_octets {
         .store(centre_);
     const N per = N(0.5) / gathered(&of->T, rows);
     per.store(per_);
-    // All of them before the first row is filled: exponentials are long chains, which then overlap.
+    // All exponentials are computed before the first row is filled, because their long chains of operations
+    // then overlap.
     for (int p = 0; p < rows; ++p) {
       const N x = distances_of_octet(eight, line, of[p].u, centre_[p]);
       gaussian_start(N(of[p].a), x, N(per_[p])).store(values_[p]);
@@ -89,7 +90,7 @@ class first_octets {
   }
 
  private:
-  /// A number of each Gaussian, and of the last one where there are fewer than eight.
+  /// Returns one number of each Gaussian. If there are fewer than eight, the last one is repeated.
   static HWY_INLINE N gathered(const double* of_first, int rows) {
     constexpr int apart = sizeof(velocity_rows::gaussian) / sizeof(double);
     alignas(64) double all[octet_length];
@@ -134,7 +135,8 @@ HWY_EXPORT(exponentials);
 void velocity_rows::moments(const double* f, std::ptrdiff_t pitch, int rows, const double* v,
                             const double* half_square, int n, sums* of_rows) {
   if (n <= longest_chain) return HWY_DYNAMIC_DISPATCH(moments)(f, pitch, rows, v, half_square, n, of_rows);
-  // Halves of halves, at whole cache lines: the error of a sum grows with the additions in a chain.
+  // Rows are halved repeatedly, at whole cache lines, because the error of a sum grows with the additions in
+  // a chain.
   constexpr int line = 8, some = 16;
   const int half = (n / 2 + line - 1) / line * line;
   std::array<sums, some> rest;  // NOLINT(cppcoreguidelines-pro-type-member-init)

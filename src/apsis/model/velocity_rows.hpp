@@ -13,34 +13,36 @@ struct points {
   double spacing;  ///< Δv
 };
 
-/// Sums over a row, without the factor Δv.
+/// Sums over a row of values f, without the factor Δv.
 struct sums {
   double mass,   ///< Σ f
       momentum,  ///< Σ v f
       energy;    ///< Σ ½v² f
 };
-/// Numbers of a row that are added in one chain per lane; longer rows are halved until they are as short.
+/// Most numbers of a row that are summed in one pass. Longer rows are halved until they are as short.
 inline constexpr int longest_chain = 256;
-/// Those of some rows of n numbers, which lie `pitch` apart; v and half_square are v and ½v² of the points.
-/// Sums of a row do not depend on the others.
+/// of_rows ← the sums of rows of n numbers, which lie `pitch` numbers apart. `v` and `half_square` are v and
+/// ½v² at the points. The sums of a row do not depend on other rows.
 void moments(const double* f, std::ptrdiff_t pitch, int rows, const double* v, const double* half_square,
              int n, sums* of_rows);
 
-/// a exp(−(v − u)²/(2T)), T > 0.
+/// The function a exp(−(v − u)²/(2T)), T > 0.
 struct gaussian {
   double a,  ///< height
       u,     ///< centre
       T;     ///< square of the width
 };
 
-/// The values of some Gaussians at all points, rows `pitch` apart, in about two multiplications a point: from
-/// one vector of points to the next a Gaussian changes by a factor, and that by a constant. It starts where
-/// v ≈ u and goes outwards, so that errors stay within some roundings of the largest value, and within 1e-12
-/// of each; below 1e-300 values are 0. Very wide and very narrow Gaussians, and those of a few points, are
-/// exponentials. A row does not depend on the others; several share the cost of their first vectors.
+/// m ← the values of Gaussians at all points, in rows that lie `pitch` numbers apart. This takes about two
+/// multiplications per point: from one vector of points to the next a Gaussian changes by a factor, and this
+/// factor by a constant factor. The recursion starts where v ≈ u and proceeds outwards. Errors therefore stay
+/// within some roundings of the largest value, and within 1e-12 of each value. Values below 1e-300 become 0.
+///
+/// Very wide or narrow Gaussians, and those on few points, are computed as exponentials. A row does not
+/// depend on other rows. Several rows share the cost of their first vectors.
 void gaussians(const points& line, const gaussian* of_rows, int rows, double* m, std::ptrdiff_t pitch);
 
-/// The values of a Gaussian at any n points v, as exponentials; below 1e-300 they are 0.
+/// m ← the values of a Gaussian at any n points v, as exponentials. Values below 1e-300 become 0.
 void gaussian_at(const double* v, int n, const gaussian& of, double* m);
 
 /// x ← e^(x − shift) for n numbers with x − shift ≤ 700.

@@ -24,7 +24,7 @@ ends ends_of(const velocity_line& line) {
   return {line.v().front() - 0.5 * line.weights().front(), line.v().back() + 0.5 * line.weights().back()};
 }
 
-/// Shares of a normal distribution beyond κ standard deviations.
+/// Shares of the mass and energy of a normal distribution beyond κ standard deviations.
 struct tail {
   double mass, energy;
 };
@@ -35,7 +35,7 @@ tail tail_beyond(double kappa) {
   return {mass, mass + kappa * height};
 }
 
-/// The largest defect of the sums for mass, mean and energy.
+/// Returns the largest defect of the sums for mass, mean and energy.
 double missed_by(const velocity_line& line, double u, double width) {
   double mass = 0.0, mean = 0.0, energy = 0.0;
   for (std::size_t j = 0; j < line.v().size(); ++j) {
@@ -49,13 +49,13 @@ double missed_by(const velocity_line& line, double u, double width) {
   return std::max({std::abs(norm * mass - 1.0), std::abs(norm * mean), std::abs(norm * energy - 1.0)});
 }
 
-/// A number rounded up to three digits.
+/// Returns a number rounded up to three digits.
 std::string at_least(double x) {
   const double unit = std::pow(10.0, std::floor(std::log10(x)) - 2.0);
   return fmt::format("{:.4g}", std::ceil(x / unit * (1.0 - 1e-12)) * unit);
 }
 
-/// A number, also in SI units if there are scales.
+/// Returns a number, followed by its value in SI units if there are scales.
 std::string with_unit(const std::string& number, double value, const dimension& measure,
                       const gas_scales* scales) {
   return scales == nullptr
@@ -63,7 +63,7 @@ std::string with_unit(const std::string& number, double value, const dimension& 
              : fmt::format("{} [{:.4g} {}]", number, value * scales->unit(measure), unit_of(measure));
 }
 
-/// The same defect of the sums over rings, in both directions across the axis.
+/// Returns the largest defect of the sums over rings, for both directions across the axis.
 double missed_on_rings(const velocity_grid& grid, const fluid_state& state) {
   const double width = std::sqrt(state.T), norm = 1.0 / (2.0 * std::numbers::pi * state.T);
   double mass = 0.0;
@@ -96,7 +96,7 @@ velocity_support::line velocity_support::line_of(const velocity_line& from) {
   return made;
 }
 
-/// A direction across the axis, as along a diameter of the rings.
+/// Returns the line of a direction across the axis: velocities along a diameter of the rings.
 velocity_support::line velocity_support::line_of(const polar_layout& rings) {
   const double fastest = rings.speeds.back(), angle = 2.0 * std::numbers::pi / rings.angles;
   line made{-fastest, fastest, -fastest, 0.0, {}};
@@ -193,18 +193,18 @@ std::optional<velocity_support> support_of(const model& equation) {
 namespace {
 
 std::string of_state(const fluid_state& state, int direction, const gas_scales* scales) {
-  constexpr double rounding = 1e-9;  // of thermal speeds
+  constexpr double rounding = 1e-9;  // in thermal speeds
   const double given = state.u[direction], u = std::abs(given) < rounding * std::sqrt(state.T) ? 0.0 : given;
   return fmt::format("u = {}, T = {}", with_unit(fmt::format("{:.3g}", u), u, dimensions::velocity, scales),
                      with_unit(fmt::format("{:.3g}", state.T), state.T, dimensions::temperature, scales));
 }
 
-/// The velocities of a direction; rings end where those along their axis do.
+/// Returns the velocities of a direction. For rings it returns those along their axis.
 const velocity_line& line_along(const velocity_grid& grid, int direction) {
   return grid.is_polar() ? grid.last_line() : grid.line(direction);
 }
 
-/// Names the share beyond the ends and the velocities that would do.
+/// Returns a message with the share beyond the ends and sufficient velocities.
 std::string too_narrow(const gas& of, const fluid_state& state, const velocity_fit& fit,
                        const velocity_words& words) {
   const velocity_line& line = line_along(of.grid(), fit.direction);
@@ -236,7 +236,7 @@ std::string too_narrow(const gas& of, const fluid_state& state, const velocity_f
       words.subject, missed, value, same_spacing);
 }
 
-/// Names the share that the spacing misses and the number of velocities that would do.
+/// Returns a message with the share that the spacing misses and a sufficient number of velocities.
 std::string too_coarse(const gas& of, const fluid_state& state, const velocity_fit& fit,
                        const velocity_words& words) {
   const velocity_line& line = line_along(of.grid(), fit.direction);

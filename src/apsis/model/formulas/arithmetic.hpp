@@ -11,7 +11,7 @@
 APSIS_BEFORE_FORMULAS();
 namespace apsis::APSIS_NUMBERS {
 
-/// x², x³ and x⁴ by products from left to right.
+/// Return x², x³ and x⁴ by products from left to right.
 template <class N>
 APSIS_FORMULA N square_of(N x) {
   return x * x;

@@ -1,4 +1,4 @@
-// Gaussians of several components that depend on each other (model/correlated_gaussian.hpp).
+// Gaussians with correlated components (model/correlated_gaussian.hpp).
 #if defined(APSIS_MODEL_FORMULAS_CORRELATED) == defined(HWY_TARGET_TOGGLE)
 #ifdef APSIS_MODEL_FORMULAS_CORRELATED
 #undef APSIS_MODEL_FORMULAS_CORRELATED
@@ -14,9 +14,9 @@
 APSIS_BEFORE_FORMULAS();
 namespace apsis::APSIS_NUMBERS {
 
-/// The Gaussian ρ (det 2πΘ)^{−1/2} exp(−½ cᵀΘ⁻¹c) of D components as one in the component c of the last line,
-/// a(c') exp(−(c − s·c')²/(2V)): c' are the other components, a is a Gaussian in them, s the slopes of the
-/// mean and V its variance.
+/// The Gaussian ρ (det 2πΘ)^{−1/2} exp(−½ cᵀΘ⁻¹c) of D components, as a Gaussian a(c') exp(−(c − s·c')²/(2V))
+/// in the component c of the last line. c' are the other components, and a(c') is a Gaussian in them. s are
+/// the slopes of the mean, V is the variance.
 template <int D>
 struct conditional_gaussian {
   double variance,     ///< V
@@ -24,7 +24,7 @@ struct conditional_gaussian {
   double outer[2][2],  ///< inverse of the covariance of c'
       slope[2];        ///< s
 
-  /// That of a density, for the component `last` of c; `across` are the components c'.
+  /// Returns the Gaussian of density ρ. `last` is the component c and `across` are the components c'.
   static APSIS_FORMULA conditional_gaussian of(double rho, const small_matrix<D>& covariance,
                                                const small_matrix<D>& inverse, int last, const int* across) {
     constexpr double twice_pi = 2.0 * 3.14159265358979323846;
@@ -48,7 +48,8 @@ struct conditional_gaussian {
     return found;
   }
 
-  /// The Gaussian along the last line for other components c' and the bulk velocity u of this one.
+  /// Returns the Gaussian along the last line, for other components c' and the bulk velocity u along
+  /// the line.
   APSIS_FORMULA gaussian_of_line on_line(const double* c, double u) const {
     if constexpr (D == 1) {
       return {height, u, variance};
@@ -62,13 +63,12 @@ struct conditional_gaussian {
   }
 };
 
-/// A Gaussian of three components, which differs from a product of lines by few factors: with s·c' = s₁c₁ +
-/// s₂c₂ it is
-///   a(c') exp((s₁c₁ − s₂c₂)²/(2V)) · exp(−(c − 2s₁c₁)²/(4V)) · exp(−(c − 2s₂c₂)²/(4V)),
-/// one table in c₁ and c₂ and two in c. Each consists of Gaussians on lines.
+/// A Gaussian of three components as a product of three tables. With s·c' = s₁c₁ + s₂c₂ it is
+///   a(c') exp((s₁c₁ − s₂c₂)²/(2V)) · exp(−(c − 2s₁c₁)²/(4V)) · exp(−(c − 2s₂c₂)²/(4V)):
+/// one table in c₁ and c₂, one in c₁ and c, and one in c₂ and c. Each table consists of Gaussians on lines.
 struct correlated_tables {
   conditional_gaussian<3> of;
-  double outer[2][2];  ///< of the first table; [1][0] is not used
+  double outer[2][2];  ///< coefficients of the exponent of the first table; [1][0] is unused
   double u[3];         ///< bulk velocity
 
   static APSIS_FORMULA correlated_tables from(const conditional_gaussian<3>& of, const double* u) {
@@ -80,7 +80,7 @@ struct correlated_tables {
     return tables;
   }
 
-  /// Whether all values and factors are normal numbers, with the largest |c_k| of the velocities.
+  /// Whether all values and factors are normal numbers. `farthest` has the largest |c_k| of the velocities.
   APSIS_FORMULA bool fit(const double* farthest) const {
     constexpr double most = 600.0;  // sum of the exponents
     const bool bounded = outer[1][1] > 0.0 && outer[0][0] * outer[1][1] > outer[0][1] * outer[0][1];
@@ -93,12 +93,13 @@ struct correlated_tables {
     return sum < most;
   }
 
-  /// a(c') exp((s₁c₁ − s₂c₂)²/(2V)) as a Gaussian along the second direction for the velocity v of the first.
+  /// Returns a(c') exp((s₁c₁ − s₂c₂)²/(2V)) as a Gaussian along the second direction, for the velocity v
+  /// along the first.
   APSIS_FORMULA gaussian_of_line across(double v) const {
     const double shift = -outer[0][1] / outer[1][1], rest = outer[0][0] + outer[0][1] * shift, c = v - u[0];
     return {of.height * exp_of(-0.5 * rest * c * c), u[1] + shift * c, 1.0 / outer[1][1]};
   }
-  /// exp(−(c − 2s_k c_k)²/(4V)) along the last direction for the velocity v of direction k.
+  /// Returns exp(−(c − 2s_k c_k)²/(4V)) along the last direction, for the velocity v along direction k.
   APSIS_FORMULA gaussian_of_line along(int k, double v) const {
     return {1.0, u[2] + 2.0 * of.slope[k] * (v - u[k]), 2.0 * of.variance};
   }

@@ -19,11 +19,11 @@ namespace apsis::APSIS_NUMBERS {
 struct ellipsoidal_model {
   double rate_of_stress;  ///< λ = 1/Pr
 
-  /// The factor of the stress in a stage.
+  /// Returns the factor by which a stage multiplies the stress.
   APSIS_FORMULA double decay(const stage_coefficients& of) const {
     return 1.0 / (1.0 + rate_of_stress * of.a + rate_of_stress * rate_of_stress * of.b);
   }
-  /// The weight of the derivative in the target of a stage.
+  /// Returns the weight λB/(A + B) of Q̇ in the target of a stage.
   APSIS_FORMULA double weight_of_derivative(const stage_coefficients& of) const {
     return rate_of_stress * of.weight_of_b;
   }
@@ -35,11 +35,11 @@ struct ellipsoidal_target {
   small_matrix<D> covariance,  ///< Θ̂ of the Gaussian in the resolved directions
       inverse;                 ///< Θ̂⁻¹
   double others;               ///< h/g of the Gaussian
-  bool exists;                 ///< whether Θ̂ is positive definite; else the rest is undefined
+  bool exists;                 ///< whether Θ̂ is positive definite; other members are undefined if not
   target_shape shape;          ///< the quadratic
 
-  /// That with `part` of the deviations Θ_kl − T δ_kl, k ≤ l, of a gas with so many degrees of freedom beside
-  /// the resolved ones.
+  /// Returns the target for `part` times the deviations Θ_kl − T δ_kl, k ≤ l. `derivative` is the weight of
+  /// Q̇, and `unresolved` the number of degrees of freedom that the grid does not resolve.
   static APSIS_FORMULA ellipsoidal_target of(const ellipsoidal_model& model, const fluid_state& state,
                                              const double* deviations, double derivative, double part,
                                              int unresolved) {
@@ -74,8 +74,8 @@ struct base_contents {
       energy;  ///< Σ (|c|² e_g + e_h)/ρ, twice the internal energy of the target per density
 };
 
-/// Moments of polynomials of degree 2 times a row g of any form in D directions, by its central moments up to
-/// degree 4: sums(p) for exponents p.
+/// Moments of polynomials of degree 2 times an arbitrary row g in D directions. They follow from sums(p), the
+/// central moments of g with exponents p up to degree 4.
 template <int D, class Sums>
 struct moments_of_base {
   struct exponents {
@@ -85,11 +85,11 @@ struct moments_of_base {
   const Sums& sums;
   base_contents contents;
 
-  /// Corrects the shape so that the target has the density and energy of the contents, and no momentum.
-  /// Returns false where rounding does not let it.
+  /// Corrects the shape such that the target has the density and energy of the contents, and no momentum.
+  /// Returns false if rounding prevents this.
   ///
-  /// The equations are linear: the correction of a small defect is exact to rounding, unless they are
-  /// singular because nearly all of the row is at a few points.
+  /// The equations are linear, so that the correction of a small defect is exact to rounding. They are
+  /// singular if nearly all mass of the row is at a few points.
   APSIS_FORMULA bool correct(target_shape& shape) const {
     constexpr double small = 1e-2;
     for (int iteration = 0; iteration < 4; ++iteration) {
@@ -102,14 +102,14 @@ struct moments_of_base {
   }
 
  private:
-  /// Σ g of the product of c_k for up to four directions; −1: none.
+  /// Returns Σ g Π c_k over up to four directions; −1 stands for no direction.
   APSIS_FORMULA double along(int i = -1, int j = -1, int k = -1, int l = -1) const {
     exponents p;
     for (int n = 0; n < D; ++n) p.of[n] = (i == n) + (j == n) + (k == n) + (l == n);
     return sums(p.of);
   }
 
-  /// ⟨P Π c_k^p_k⟩.
+  /// Returns ⟨P Π c_k^p_k⟩.
   APSIS_FORMULA double mean(const target_polynomial& polynomial, const exponents& p) const {
     double sum = polynomial.k * sums(p.of);
     for (int k = 0; k < D; ++k) {
@@ -140,7 +140,8 @@ struct moments_of_base {
     return found;
   }
 
-  /// The moments of functions φ = (1, c_k/√V, ½|c|²/V) times each other give the correction Σ y_i φ_i.
+  /// Returns the correction Σ y_i φ_i with φ = (1, c_k/√V, ½|c|²/V). The y_i solve a system whose matrix has
+  /// the moments of φ_i φ_j.
   APSIS_FORMULA target_correction correction_of_base(const target_defect& found, double variance) const {
     constexpr int size = D + 2, energy = size - 1;
     const double speed = __builtin_sqrt(variance);

@@ -11,17 +11,17 @@
 APSIS_BEFORE_FORMULAS();
 namespace apsis::APSIS_NUMBERS {
 
-/// e^x to about one unit in the last place for x ≤ 700; 0 for x ≤ −1000 and NaN. With q = x/log 2 rounded, r
-/// = x − q log 2, |r| ≤ ½ log 2, it is 2^q (1 + r + r² p(r)); log 2 is the sum of two numbers, so that q
-/// times the first is exact. Numbers, coefficients of p and order of operations are those of Highway 1.0
-/// (hwy/contrib/math/math-inl.h), bit for bit.
+/// Returns e^x to about one unit in the last place for x ≤ 700; 0 for x ≤ −1000 and NaN. Let q be x/log 2
+/// rounded and r = x − q log 2, |r| ≤ ½ log 2. Then e^x = 2^q (1 + r + r² p(r)). log 2 is split into two
+/// numbers, so that q times the first is exact. Constants, coefficients of p and order of operations are
+/// those of Highway 1.0 (hwy/contrib/math/math-inl.h), bit for bit.
 template <class N>
 APSIS_FORMULA N exp_of(N x) {
   const N half = select(x < N(0.0), N(-0.5), N(0.5));
   const N q = truncated(fma(x, N(1.442695040888963407359924681), half));
   N r = fma(q, N(-0.6931471805596629565116018), x);
   r = fma(q, N(-0.28235290563031577122588448175e-12), r);
-  // p by pairs, whose sums overlap (Estrin).
+  // p by Estrin's scheme: the sums of pairs overlap in time.
   const N r2 = r * r, r4 = r2 * r2, r8 = r4 * r4;
   const N p01 = fma(N(0.166666666666666851703837), r, N(0.5));
   const N p23 = fma(N(0.00833333333331652721664984), r, N(0.0416666666666665047591422));
@@ -31,7 +31,7 @@ APSIS_FORMULA N exp_of(N x) {
   const N p =
       fma(r8, fma(r2, N(2.08860621107283687536341e-9), p89), fma(r4, fma(r2, p67, p45), fma(r2, p23, p01)));
   const N mantissa = fma(p, r2, r) + N(1.0);
-  // Two factors: 2^q may be too large or too small where the result is not.
+  // Two factors, because 2^q may overflow or underflow although the result does not.
   const N first = truncated(N(0.5) * q);
   const N y = mantissa * power_of_two(first) * power_of_two(q - first);
   return select(x > N(-1000.0), y, N(0.0));
@@ -40,8 +40,8 @@ APSIS_FORMULA N exp_of(N x) {
 /// Largest |x| of exp_of_small().
 inline constexpr double small_exponent = 0x1p-6;
 
-/// e^x to about one unit in the last place for |x| ≤ small_exponent: its Taylor polynomial, whose first
-/// omitted term is x⁷/5040 < 5e-17.
+/// Returns e^x to about one unit in the last place for |x| ≤ small_exponent, by a Taylor polynomial. The
+/// first omitted term is x⁷/5040 < 5e-17.
 template <class N>
 APSIS_FORMULA N exp_of_small(N x) {
   const N x2 = x * x;
@@ -49,9 +49,9 @@ APSIS_FORMULA N exp_of_small(N x) {
   return fma(fma(fma(N(1.0 / 720.0), x2, p23), x2, p01), x2, x) + N(1.0);
 }
 
-/// log x to about one unit in the last place, for x normal and positive. With x = 2^e y, √½ ≤ y < √2, and
-/// z = (y − 1)/(y + 1), it is e log 2 + 2 artanh z; polynomial as in log() of musl, in the order of
-/// Highway 1.0.
+/// Returns log x to about one unit in the last place, for x normal and positive. With x = 2^e y, √½ ≤ y < √2,
+/// and z = (y − 1)/(y + 1), it is e log 2 + 2 artanh z. The polynomial is that of log() in musl, in the order
+/// of operations of Highway 1.0.
 template <class N>
 APSIS_FORMULA N log_of(N x) {
   const N e = exponent_near_one(x), y = scaled_near_one(x), above = y - N(1.0);

@@ -12,7 +12,7 @@
 APSIS_BEFORE_FORMULAS();
 namespace apsis::APSIS_NUMBERS {
 
-/// Σ s c^p, p = 0 … 3.
+/// The sums Σ s c^p, p = 0 … 3.
 template <class N>
 struct sums_of_powers {
   N of[4];
@@ -27,20 +27,20 @@ struct sums_of_powers {
   }
 };
 
-/// log x, and that of the smallest normal number below it.
+/// Returns log x; below the smallest normal number, the logarithm of this number.
 template <class N>
 APSIS_FORMULA N log_of_normal(N x) {
   return log_of(larger(x, N(0x1p-1022)));
 }
 
-/// log g + degrees log(g/h).
+/// Returns log g + degrees log(g/h).
 template <class N>
 APSIS_FORMULA N entropy_per_mass(N g, N h, N degrees) {
   const N log_of_g = log_of_normal(g);
   return fma(degrees, log_of_g - log_of_normal(h), log_of_g);
 }
 
-/// grid_sums::entropy(), by eight numbers together (exec/octet-inl.hpp).
+/// Returns grid_sums::entropy(), by groups of eight numbers (exec/octet-inl.hpp).
 template <class Group, class N = typename Group::number>
 APSIS_FORMULA double entropy_of_row(const Group& group, const double* w, const double* g, const double* h,
                                     double degrees, int n) {

@@ -12,7 +12,7 @@
 APSIS_BEFORE_FORMULAS();
 namespace apsis::APSIS_NUMBERS {
 
-/// exp(βx − τc − shift), between e^±691 and 0 below 1e−300. Products in this order, and no fused ones:
+/// Returns exp(βx − τc − shift), at most e^691; values below 1e−300 become 0. Products are not fused, so that
 /// weights do not depend on the instruction set.
 template <class N>
 APSIS_FORMULA N line_weight(N x, N c, N beta, N tau, N shift) {
@@ -51,13 +51,13 @@ struct sums_of_products {
   }
 };
 
-/// w e^(βc + γc²), small exponents.
+/// Returns w e^(βc + γc²) for exponents of at most small_exponent.
 template <class N>
 APSIS_FORMULA N changed_weight(N w, N c, N beta, N gamma) {
   return w * exp_of_small(fma(gamma, c, beta) * c);
 }
 
-/// Σ w c^p, p = 0 … 5.
+/// The sums Σ w c^p, p = 0 … 5.
 template <class N>
 struct sums_of_six_powers {
   N of[6];

@@ -13,15 +13,15 @@
 APSIS_BEFORE_FORMULAS();
 namespace apsis::APSIS_NUMBERS {
 
-/// Densities from which on no weight that matters is a subnormal number.
+/// Least density for which no significant weight is a subnormal number.
 inline constexpr double dense_enough = 1e-250;
 
-/// Weights along one direction, as moments per mass.
+/// Sums of the weights along one direction.
 struct weighted_direction {
   double farthest;  ///< largest |c|
   double sums[6];   ///< Σ w c^p
 
-  /// Sets `farthest` for the first and last c of the direction.
+  /// Sets `farthest` from the first and last c of the direction.
   APSIS_FORMULA void set_ends(double first, double last) {
     const double left = __builtin_fabs(first), right = __builtin_fabs(last);
     farthest = left < right ? right : left;
@@ -29,7 +29,7 @@ struct weighted_direction {
   APSIS_FORMULA double mean() const { return sums[1] / sums[0]; }
   APSIS_FORMULA double mean_square() const { return sums[2] / sums[0]; }
 
-  /// Derivatives of ⟨c⟩ and ⟨c²⟩, that of ⟨c²⟩ by β being that of ⟨c⟩ by γ.
+  /// Derivatives of ⟨c⟩ and ⟨c²⟩ by β and γ. The derivative of ⟨c²⟩ by β equals mean_by_gamma.
   struct slopes {
     double mean_by_beta, mean_by_gamma, square_by_gamma;
   };
@@ -37,25 +37,25 @@ struct weighted_direction {
     const double per_mass = 1.0 / sums[0], c = sums[1] * per_mass, square = sums[2] * per_mass;
     return {square - c * c, sums[3] * per_mass - c * square, sums[4] * per_mass - square * square};
   }
-  /// The largest |βc + γc²|.
+  /// Returns a bound on |βc + γc²|.
   APSIS_FORMULA double largest_exponent(double beta, double gamma) const {
     return (__builtin_fabs(beta) + __builtin_fabs(gamma) * farthest) * farthest;
   }
 };
 
-/// Newton's method for ⟨c_k⟩ = 0 and Σ_k ⟨c_k²⟩ = d T, whose steps multiply weights by exponentials of small
+/// Newton's method for ⟨c_k⟩ = 0 and Σ_k ⟨c_k²⟩ = d T. Steps multiply weights by exponentials of small
 /// numbers. The caller changes the weights and sums them:
 ///   while (newton.advance()) for all k: w ← w exp(newton.beta[k] c + newton.gamma c²), newton.of[k].sums ← …
 struct nearby_newton {
   weighted_direction of[3];  ///< of each direction
-  int dimensions;            ///< how many
+  int dimensions;            ///< number of directions
   double square, speed;      ///< d T, √T
-  double beta[3], gamma;     ///< of the next change
-  double before;             ///< the defect before the last change
-  int changes;               ///< of the weights so far
+  double beta[3], gamma;     ///< parameters of the next change
+  double before;             ///< defect before the last change
+  int changes;               ///< number of changes of the weights so far
   bool found;                ///< whether the weights are those of the state
 
-  /// For a temperature T; without directions.
+  /// Returns the start for a temperature T. The caller then sets `of`.
   static APSIS_FORMULA nearby_newton start(int dimensions, double T) {
     nearby_newton newton;
     newton.dimensions = dimensions;
@@ -67,11 +67,11 @@ struct nearby_newton {
     return newton;
   }
 
-  /// Decides from the sums whether the weights have to be changed: not where they are found, and not where
-  /// the next step is not small.
+  /// Returns true if the caller must change the weights. Returns false if they have the moments, or if the
+  /// next step is not small or Newton's method does not converge.
   APSIS_FORMULA bool advance() {
     constexpr double rounding = 4.5e-16;  // two roundings
-    constexpr double close = 1e-13;       // sums of a few dozen terms may not come nearer than this
+    constexpr double close = 1e-13;       // rounding may keep sums of a few dozen terms at this distance
     constexpr int most_changes = 8;
     if (changes == most_changes) return false;
     const double size = defect();
@@ -82,7 +82,7 @@ struct nearby_newton {
     return step();
   }
 
-  /// Product of the masses of all directions.
+  /// Returns the product of the masses of all directions.
   APSIS_FORMULA double mass() const {
     double product = 1.0;
     for (int k = 0; k < dimensions; ++k) product *= of[k].sums[0];
@@ -96,7 +96,7 @@ struct nearby_newton {
     return rest;
   }
 
-  /// Largest relative residual; NaN without mass.
+  /// Returns the largest relative residual; NaN without mass.
   APSIS_FORMULA double defect() const {
     double largest = __builtin_fabs(missing_square()) / square;
     for (int k = 0; k < dimensions; ++k) {
@@ -106,7 +106,8 @@ struct nearby_newton {
     return largest;
   }
 
-  /// The β_k are eliminated from the equation of the energy.
+  /// Computes β_k and γ, with the β_k eliminated from the equation of the energy. Returns true if the step
+  /// is small.
   APSIS_FORMULA bool step() {
     double means[3], by_gamma[3];  // in units of the slope by β
     double rest = missing_square(), slope = 0.0;

@@ -13,16 +13,16 @@
 APSIS_BEFORE_FORMULAS();
 namespace apsis::APSIS_NUMBERS {
 
-/// Variances of the two velocities next to u, and of those at the ends, with the mean u.
+/// Variances of distributions with mean u at the two velocities next to u, and at the two ends.
 struct variances {
   double nearest, farthest;
 };
 
-/// Those of n ascending velocities v.
+/// Returns the variances for n ascending velocities v.
 APSIS_FORMULA variances variances_at(const double* v, int n, double u) {
-  // Rounding may put a bulk velocity beyond the last point.
+  // Because of rounding, the bulk velocity may lie beyond the last point.
   const double ends = (u - v[0]) * (v[n - 1] - u), farthest = ends < 0.0 ? 0.0 : ends;
-  int after = 0;  // velocities that are not above u
+  int after = 0;  // number of velocities that are not above u
   for (int behind = n; after < behind;) {
     const int middle = (after + behind) / 2;
     if (u < v[middle]) {
@@ -35,7 +35,7 @@ APSIS_FORMULA variances variances_at(const double* v, int n, double u) {
   return {(u - v[after - 1]) * (v[after] - u), farthest};
 }
 
-/// Those of n velocities that are `spacing` apart.
+/// Returns the variances for n velocities that are `spacing` apart.
 APSIS_FORMULA variances variances_at(const double* v, int n, double spacing, double u) {
   const double ends = (u - v[0]) * (v[n - 1] - u), farthest = ends < 0.0 ? 0.0 : ends;
   const double place = u / spacing + 0.5 * (n - 1), beyond = place - __builtin_floor(place);
@@ -48,20 +48,21 @@ struct parts_of_energy {
       others;   ///< h/g; NaN if no f ≥ 0 has these moments
 };
 
-/// A gas with d resolved degrees of freedom of D.
+/// A gas whose grid resolves d of D degrees of freedom.
 struct reduced_gas {
   int d, degrees;  ///< d < D
 
-  /// The state of the moments ω.
+  /// Returns the state of the moments ω.
   APSIS_FORMULA fluid_state state(const double* omega) const {
     fluid_state s = to_fluid_state(omega, d);
     s.T *= static_cast<double>(d) / degrees;
     return s;
   }
 
-  /// The parts for moments ω with the state s. Every f ≥ 0 has an equilibrium: if the grid cannot hold the
-  /// temperature in g, because h is small or large beside it, g gets the nearest one, at most that of equally
-  /// occupied velocities, and h the rest of the energy. `at(k)` are the variances in direction k.
+  /// Returns the parts for moments ω with the state s. `at(k)` are the variances in direction k. Every f ≥ 0
+  /// has an equilibrium. If g cannot have the temperature on this grid, because h is small or large compared
+  /// to g, g has the nearest possible temperature. This is at most that of equally occupied velocities. h has
+  /// the rest of the energy.
   template <class Variances>
   APSIS_FORMULA parts_of_energy parts(const double* omega, const fluid_state& s, const Variances& at) const {
     double square = 0.0, least = 0.0, greatest = 0.0;
@@ -73,7 +74,7 @@ struct reduced_gas {
     }
     if (greatest < least) least = greatest;
     const double resolved = d * s.T, usual_energy = 0.5 * s.rho * (square + resolved);
-    // All of f ≥ 0 may have one velocity: T is 0, up to the rounding of sums.
+    // All mass of f ≥ 0 may have one velocity. T is then 0 up to the rounding of sums.
     constexpr double rounding = 1e-12;
     if (omega[0] > 0.0 && !(degrees * s.T >= -rounding * (square + greatest)))
       return {usual_energy, __builtin_nan("")};
@@ -89,7 +90,7 @@ struct reduced_gas {
   }
 };
 
-/// The collision rate C = Pr ρ T^exponent, 0 without a temperature.
+/// The collision rate C = Pr ρ T^exponent; 0 unless T > 0.
 struct rate_by_viscosity {
   double prandtl, exponent;
 

@@ -11,19 +11,19 @@
 APSIS_BEFORE_FORMULAS();
 namespace apsis::APSIS_NUMBERS {
 
-/// The convex combination (1 − share) base + share other, 0 ≤ share ≤ ½.
+/// Returns the convex combination (1 − share) base + share other, 0 ≤ share ≤ ½.
 template <class N>
 APSIS_FORMULA N moved_towards(N base, N share, N other) {
   return fma(share, other - base, base);
 }
 
-/// sum + weight base + share (other − base), the part of a quadrature point in a mean.
+/// Returns sum + weight base + share (other − base), which adds a quadrature point to a mean.
 template <class N>
 APSIS_FORMULA N with_part(N sum, N weight, N base, N share, N other) {
   return fma(share, other - base, fma(weight, base, sum));
 }
 
-/// strength (e − u).
+/// Returns strength (e − u).
 template <class N>
 APSIS_FORMULA N relaxation_rate(N strength, N e, N u) {
   return strength * (e - u);

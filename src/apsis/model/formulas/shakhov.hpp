@@ -25,19 +25,20 @@ APSIS_FORMULA void find_heat_flux(int d, const Third& third, const OfH& of_h, do
   }
 }
 
-/// M [1 + (1 − Pr) q·c/(5pT) (|c|²/T − 5)], c = v − u, in d directions, without a correction of its moments.
+/// Shakhov's target M [1 + (1 − Pr) q·c/(5pT) (|c|²/T − 5)], c = v − u, in d directions. Its moments are
+/// not corrected.
 struct shakhov_target {
   double prandtl;
 
-  /// The factor of q in a stage.
+  /// Returns the factor by which a stage multiplies the heat flux q.
   APSIS_FORMULA double decay(const stage_coefficients& of) const {
     return 1.0 / (1.0 + prandtl * of.a + prandtl * prandtl * of.b);
   }
-  /// The weight of the derivative in the target of a stage.
+  /// Returns the weight λB/(A + B) of Q̇ in the target of a stage, with λ = Pr.
   APSIS_FORMULA double weight_of_derivative(const stage_coefficients& of) const {
     return prandtl * of.weight_of_b;
   }
-  /// The target with `part` of the heat flux q, for that weight of the derivative.
+  /// Returns the target for `part` times the heat flux q. `derivative` is the weight of Q̇.
   APSIS_FORMULA target_shape shape(int d, const fluid_state& state, const double* q, double derivative,
                                    double part) const {
     const double scale = (1.0 - prandtl) * (1.0 + derivative) / (5.0 * state.rho * state.T * state.T);

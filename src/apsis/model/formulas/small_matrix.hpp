@@ -33,11 +33,11 @@ APSIS_FORMULA small_matrix<N> product_of(const small_matrix<N>& a, const small_m
   return c;
 }
 
-/// The factor L of a symmetric matrix A = L Lᵀ (Cholesky). The lower half of A is read.
+/// The Cholesky factor L of a symmetric matrix A = L Lᵀ. Only the lower half of A is read.
 template <int N>
 struct cholesky_factor {
   small_matrix<N> lower;   ///< L
-  bool positive_definite;  ///< whether A is, up to rounding; L is undefined otherwise
+  bool positive_definite;  ///< whether A is positive definite up to rounding; if not, L is undefined
 
   explicit APSIS_FORMULA cholesky_factor(const small_matrix<N>& a) : lower(), positive_definite(true) {
     for (int j = 0; j < N; ++j) {

@@ -11,14 +11,14 @@
 APSIS_BEFORE_FORMULAS();
 namespace apsis::APSIS_NUMBERS {
 
-/// k0 + k1 c + k2 c² + k3 c³.
+/// The polynomial k0 + k1 c + k2 c² + k3 c³.
 template <class N>
 struct cubic_polynomial {
   N k0, k1, k2, k3;
   APSIS_FORMULA N operator()(N c) const { return fma(fma(fma(k3, c, k2), c, k1), c, k0); }
 };
 
-/// Raises a value to −keep f; returns whether some number was below.
+/// Raises `value` to at least −keep f. Returns true if some lane was below this bound.
 template <class N>
 APSIS_FORMULA bool raise(N& value, N keep, N f) {
   const N bound = negative_fma(keep, f, N(0.0));

@@ -1,4 +1,4 @@
-// Targets that are a polynomial times a product of lines, and the moments of these (model/gas_target.hpp).
+// Targets that are a polynomial times a product of lines, and their moments (model/gas_target.hpp).
 #if defined(APSIS_MODEL_FORMULAS_TARGET_MOMENTS) == defined(HWY_TARGET_TOGGLE)
 #ifdef APSIS_MODEL_FORMULAS_TARGET_MOMENTS
 #undef APSIS_MODEL_FORMULAS_TARGET_MOMENTS
@@ -13,9 +13,9 @@
 APSIS_BEFORE_FORMULAS();
 namespace apsis::APSIS_NUMBERS {
 
-/// Largest relative difference of the moments of a target from ω.
+/// Largest relative difference between the moments of a target and ω.
 inline constexpr double target_accuracy = 1e-14;
-/// Smallest variance of a base in units of Δv²: below it, a Gaussian at points has other moments.
+/// Smallest variance of a base in units of Δv². Narrower Gaussians have other moments on the grid.
 inline constexpr double narrowest_target = 0.25;
 /// Relative size of a defect that counts as rounding.
 inline constexpr double target_rounding = 4.5e-16;
@@ -35,11 +35,11 @@ struct target_polynomial {
 struct target_shape {
   target_polynomial of_g,  ///< factor of g
       of_h;                ///< factor of h
-  double variance = 1.0;   ///< of one resolved component of the base
+  double variance = 1.0;   ///< variance of one resolved component of the base
 };
 
-/// P along the last line of a grid of D dimensions, where `across` are the directions of the other components
-/// c, and `last` that of the line. `Cubic`: P has terms of third degree.
+/// Returns P along the last line of a grid of D dimensions. `last` is the direction of the line. `across` are
+/// the directions of the other components c. `Cubic` states whether P has terms of third degree.
 template <int D, bool Cubic>
 APSIS_FORMULA cubic_polynomial<double> polynomial_on_line(const target_polynomial& p, const int* across,
                                                           int last, const double* c) {
@@ -63,7 +63,7 @@ APSIS_FORMULA cubic_polynomial<double> polynomial_on_line(const target_polynomia
   return of_line;
 }
 
-/// The differences of moments about the bulk velocity, each relative to its scale.
+/// The defects of the moments about the bulk velocity, each relative to its scale.
 struct target_defect {
   double mass = 0.0, energy = 0.0;
   double momentum[3] = {};
@@ -99,7 +99,7 @@ struct target_correction {
   }
 };
 
-/// The polynomial that takes a defect away, with the moments of a Gaussian of this variance in d directions.
+/// Returns the polynomial that removes a defect if the base is a Gaussian of this variance in d directions.
 APSIS_FORMULA target_correction correction_of(const target_defect& found, int d, double variance) {
   target_correction by{};
   by.a = -(found.energy - 0.5 * d * found.mass) / (d * variance);
@@ -108,11 +108,11 @@ APSIS_FORMULA target_correction correction_of(const target_defect& found, int d,
   return by;
 }
 
-/// Moments of polynomials times a product of lines in D directions, with which the moments of a target are
-/// restored without a pass over its row.
+/// Moments of polynomials times a product of lines in D directions. They restore the moments of a target
+/// without a pass over its row.
 template <int D>
 struct moments_of_product {
-  const line_moments& lines;  ///< of the directions
+  const line_moments& lines;  ///< moments of the directions
   double square = 0.0,        ///< ⟨|c|²⟩
       fourth = 0.0;           ///< ⟨|c|⁴⟩
   double of_square[3] = {};   ///< ⟨c_k |c|²⟩
@@ -126,8 +126,8 @@ struct moments_of_product {
     }
   }
 
-  /// Corrects the shape so that the moments of the target are those of its base. Returns false where that
-  /// does not contract.
+  /// Corrects the shape such that the target has the moments of its base. Returns false if the corrections do
+  /// not contract.
   APSIS_FORMULA bool correct(target_shape& shape) const {
     target_defect found = defect_of(shape);
     double best = 1e300;
@@ -148,14 +148,14 @@ struct moments_of_product {
     int of[3] = {};
   };
 
-  /// ⟨Π c_k^p_k⟩.
+  /// Returns ⟨Π c_k^p_k⟩.
   APSIS_FORMULA double mean(const powers& p) const {
     double product = 1.0;
     for (int k = 0; k < D; ++k) product *= lines.of[k][p.of[k]];
     return product;
   }
 
-  /// ⟨P Π c_k^p_k⟩.
+  /// Returns ⟨P Π c_k^p_k⟩.
   APSIS_FORMULA double mean(const target_polynomial& polynomial, const powers& p) const {
     double sum = polynomial.k * mean(p);
     for (int k = 0; k < D; ++k) {
@@ -188,7 +188,7 @@ struct moments_of_product {
     return found;
   }
 
-  /// Adds the moments of a correction.
+  /// Adds the moments of a correction to a defect.
   APSIS_FORMULA void add(const target_correction& by, double variance, target_defect& found) const {
     const double speed = __builtin_sqrt(variance);
     double of_l = 0.0, energy = by.k * square + by.a * fourth;

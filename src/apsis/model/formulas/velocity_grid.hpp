@@ -1,5 +1,5 @@
-// Loops over the velocities of a product of lines, for eight numbers at a time, as those of one line
-// (velocity_line.hpp).
+// Loops over the velocities of a product of lines, for eight numbers at a time like those
+// of velocity_line.hpp.
 #if defined(APSIS_MODEL_FORMULAS_VELOCITY_GRID) == defined(HWY_TARGET_TOGGLE)
 #ifdef APSIS_MODEL_FORMULAS_VELOCITY_GRID
 #undef APSIS_MODEL_FORMULAS_VELOCITY_GRID
@@ -13,33 +13,34 @@
 APSIS_BEFORE_FORMULAS();
 namespace apsis::APSIS_NUMBERS {
 
-/// Lines that are added one after the other; more are halved. Most terms of a Gaussian lie far out. Added one
-/// by one to a large sum they would all be rounded away: a loss of the same sign in every cell and step.
+/// Most lines that are added one after the other. More lines are halved. Most terms of a Gaussian lie far
+/// out. Added one by one to a large sum, they would all be rounded away. This loss would have the same sign
+/// in every cell and step.
 inline constexpr int longest_chain_of_lines = 16;
 
-/// The last lines of a row, and functions a_k of them.
+/// The last lines of a row, and functions a_k with one value per line.
 struct lines_of_grid {
   const double* f;  ///< the row
   int n,            ///< points of a line
-      lines;        ///< how many
+      lines;        ///< number of lines
   const double* a;  ///< a_kl is a[k · lines + l]
 };
 
 /// Consecutive points of all lines.
 struct columns_of_grid {
   lines_of_grid of;
-  int first,   ///< point
-      count,   ///< points from there on
-      inside;  ///< lines before the first whose whole octets would end behind the row
+  int first,   ///< first point
+      count,   ///< points of a line from `first` on
+      inside;  ///< number of lines whose whole octets end within the row
 
-  /// The points from `first` on, by so many octets.
+  /// Returns the points from `first` on, in `octets` octets.
   static APSIS_FORMULA columns_of_grid from(const lines_of_grid& of, int first, int octets) {
     const int behind = of.n * of.lines - first - octets * octet_length;
     return {of, first, of.n - first, behind < 0 ? 0 : behind / of.n + 1};
   }
 };
 
-/// sum[k · Octets + i] += a_kl f_l of octet i of a line.
+/// Adds a_kl f_l to sum[k · Octets + i] for octet i of line l.
 template <int Functions, int Octets, bool Whole, class Group, class N>
 APSIS_FORMULA void add_line(const Group& group, const columns_of_grid& at, int line, N* sum) {
   const double* from = at.of.f + static_cast<long>(line) * at.of.n + at.first;
@@ -53,13 +54,13 @@ APSIS_FORMULA void add_line(const Group& group, const columns_of_grid& at, int l
   }
 }
 
-/// sum[k · Octets + i] ← Σ_l a_kl f_l of octet i; any values at points behind the count. Halves of halves, at
-/// most so many.
+/// sum[k · Octets + i] ← Σ_l a_kl f_l for octet i. Points behind `count` get undefined values. Lines are
+/// halved repeatedly, at most `Halvings` times.
 template <int Functions, int Octets, int Halvings, class Group, class N>
 APSIS_FORMULA void sum_over_lines(const Group& group, const columns_of_grid& at, N* sum) {
   constexpr int size = Functions * Octets;
-  N before[Halvings][size];  // of the first half, where the second one is being summed
-  int behind[Halvings];      // lines of the second half; 0: they are being summed
+  N before[Halvings][size];  // sums of first halves whose second halves are in progress
+  int behind[Halvings];      // lines of the second half; 0 while they are summed
   int halved = 0, line = 0, count = at.of.lines;
   for (;;) {
     for (; count > longest_chain_of_lines; count /= 2) behind[halved++] = count - count / 2;
@@ -80,7 +81,7 @@ APSIS_FORMULA void sum_over_lines(const Group& group, const columns_of_grid& at,
   }
 }
 
-/// Adds the powers of some columns to those of every function.
+/// Adds the powers of these columns to those of every function.
 template <int Functions, int Octets, int Halvings, class Group, class Powers,
           class N = typename Group::number>
 APSIS_FORMULA void add_columns(const Group& group, const columns_of_grid& at, const double* v,
@@ -95,7 +96,8 @@ APSIS_FORMULA void add_columns(const Group& group, const columns_of_grid& at, co
   }
 }
 
-/// Adds w_j c_j^p Σ_l a_kl f_lj, c = v − u, to the powers of every function; without w it is 1.
+/// Adds Σ_j w_j c_j^p Σ_l a_kl f_lj, c = v − u, to the powers of every function k. w = nullptr: all weights
+/// are 1.
 template <int Functions, int Halvings, class Group, class Powers>
 APSIS_FORMULA void sum_powers(const Group& group, const lines_of_grid& of, const double* v, const double* w,
                               double u, Powers* powers) {
@@ -108,7 +110,7 @@ APSIS_FORMULA void sum_powers(const Group& group, const lines_of_grid& of, const
   }
 }
 
-/// Σ ½|v|² f from Σ v² f of the last direction and Σ ½|v|² f of the others.
+/// Returns Σ ½|v|² f from Σ v² f of the last direction and Σ ½|v|² f of the others.
 APSIS_FORMULA double energy_of_grid(double along, double across) {
   return 0.5 * along + across;
 }
@@ -117,10 +119,11 @@ APSIS_FORMULA double energy_of_grid(double along, double across) {
 struct functions_of_directions {
   int dimensions;      ///< 1 … 3
   int n[3];            ///< points
-  const double* g[3];  ///< values there
+  const double* g[3];  ///< values at the points
 };
 
-/// Calls put(line, factor · those of all directions but the last) for every last line.
+/// Calls put(line, product) for every last line. The product is `factor` times the values of all directions
+/// but the last.
 template <class Put>
 APSIS_FORMULA void multiply_across_lines(const functions_of_directions& of, double factor, const Put& put) {
   if (of.dimensions == 1) return put(0, factor);

@@ -1,5 +1,5 @@
-// Loops over the velocities of a line, for eight numbers at a time (octet_group of exec/octet-inl.hpp; eight
-// lanes of a device). Sums and walks have the same bits on all of them.
+// Loops over the velocities of a line, for eight numbers at a time. A group of eight is an octet_group
+// (exec/octet-inl.hpp) or eight lanes of a device. Results have the same bits on all groups.
 #if defined(APSIS_MODEL_FORMULAS_VELOCITY_LINE) == defined(HWY_TARGET_TOGGLE)
 #ifdef APSIS_MODEL_FORMULAS_VELOCITY_LINE
 #undef APSIS_MODEL_FORMULAS_VELOCITY_LINE
@@ -14,19 +14,19 @@
 APSIS_BEFORE_FORMULAS();
 namespace apsis::APSIS_NUMBERS {
 
-/// How many numbers a group works on.
+/// Number of values in a group.
 inline constexpr int octet_length = 8;
 
-/// Σ f, Σ v f, Σ ½v² f.
+/// The sums Σ f, Σ v f, Σ ½v² f.
 struct moments_of_line {
   double mass, momentum, energy;
 };
 
-/// The sums over n velocities of several rows, which share the loads of v and ½v².
+/// of_rows ← the sums over n velocities of several rows, which share the loads of v and ½v².
 template <int Rows, class Group, class N = typename Group::number>
 APSIS_FORMULA void sum_moments(const Group& group, const double* f, long pitch, const double* v,
                                const double* half_square, int n, moments_of_line* of_rows) {
-  sums_of_moments<N> sums[Rows][2];  // two of each kind: an addition waits for the one before it
+  sums_of_moments<N> sums[Rows][2];  // two chains each, because additions wait for each other
   int j = 0;
   for (; j + 2 * octet_length <= n; j += 2 * octet_length)
     for (int half = 0; half < 2; ++half) {
@@ -44,17 +44,17 @@ APSIS_FORMULA void sum_moments(const Group& group, const double* f, long pitch, 
                   group.total(sums[r][0].energy + sums[r][1].energy)};
 }
 
-/// Largest number of velocities whose sums are chains of additions; more are halved. The error of a sum grows
-/// with the additions in a chain.
+/// Largest number of velocities in one chain of additions. More velocities are halved, because the error of a
+/// sum grows with the additions in a chain.
 inline constexpr int longest_chain_of_line = 256;
 
-/// The sums over n velocities of a row, as velocity_rows::moments(): halves of halves, at whole cache lines,
-/// of up to 2^Halvings chains.
+/// Returns the sums over n velocities of a row, with the bits of velocity_rows::moments(). The row is halved
+/// repeatedly at whole cache lines, into up to 2^Halvings chains.
 template <int Halvings, class Group>
 APSIS_FORMULA moments_of_line moments_of_row(const Group& group, const double* f, const double* v,
                                              const double* half_square, int n) {
-  moments_of_line before[Halvings];  // of the first half
-  int behind[Halvings];              // velocities of the second half; 0: being summed
+  moments_of_line before[Halvings];  // sums of the first half
+  int behind[Halvings];              // velocities of the second half; 0 while they are summed
   for (int halved = 0, first = 0;;) {
     while (n > longest_chain_of_line) {
       const int half = (n / 2 + octet_length - 1) / octet_length * octet_length;
@@ -82,8 +82,8 @@ struct line_points {
       *b;           ///< weights; nullptr: all are 1
 };
 
-/// Σ_j b_j x_j c_j^p with the numbers x = next(j, count, c) of an octet, c = v − u. The line has `count` more
-/// of them, and those behind it are 0.
+/// Returns Σ_j b_j x_j c_j^p, c = v − u. The call next(j, count, c) returns the numbers x of the octet at j.
+/// The line has `count` numbers from j on; numbers behind the line must be 0.
 template <class Powers, class Group, class Next, class N = typename Group::number>
 APSIS_FORMULA Powers powers_on_line(const Group& group, const line_points& line, double u, const Next& next) {
   Powers powers;
@@ -103,7 +103,8 @@ struct row_of_line {
   APSIS_FORMULA N operator()(int j, int count, N) const { return group.load(x + j, count); }
 };
 
-/// The same, times e^(βc + γc²), which replace those of the row; small exponents.
+/// The numbers x of a row times e^(βc + γc²), for powers_on_line(). They replace those of the row. Exponents
+/// are at most small_exponent.
 template <class Group, class N = typename Group::number>
 struct changed_row_of_line {
   const Group& group;
@@ -112,7 +113,7 @@ struct changed_row_of_line {
   APSIS_FORMULA N operator()(int j, int count, N c) const {
     const N changed = changed_weight(group.load(x + j, count), c, N(beta), N(gamma));
     group.store(changed, count, x + j);
-    return changed;  // 0 behind the line, as the numbers loaded there
+    return changed;  // 0 behind the line, like the loaded numbers
   }
 };
 
@@ -132,18 +133,18 @@ struct gaussian_of_line {
   APSIS_FORMULA double per() const { return 0.5 / T; }
 };
 
-/// Whether the values are made by the recursion.
+/// Whether the recursion computes the values.
 APSIS_FORMULA bool walks_outwards(const spaced_line& line, const gaussian_of_line& of) {
   return gaussian_recurs(line.jump() * line.jump() * of.per(), line.octets());
 }
 
-/// v − u of the velocities of octet k.
+/// Returns v − u for the velocities of octet k.
 template <class Group, class N = typename Group::number>
 APSIS_FORMULA N distances_of_octet(const Group& group, const spaced_line& line, double u, double k) {
   return distance_to(N(u), N(line.spacing), group.numbers() + N(k * octet_length + 0.5 - 0.5 * line.n));
 }
 
-/// Calls put(first velocity, values) for all octets, each by exponentials.
+/// Calls put(first velocity, values) for all octets, with values by exponentials.
 template <class Group, class Put, class N = typename Group::number>
 APSIS_FORMULA void gaussian_by_octets(const Group& group, const spaced_line& line, const gaussian_of_line& of,
                                       const Put& put) {
@@ -151,13 +152,14 @@ APSIS_FORMULA void gaussian_by_octets(const Group& group, const spaced_line& lin
     put(k * octet_length, gaussian_start(N(of.a), distances_of_octet(group, line, of.u, k), N(of.per())));
 }
 
-/// A Gaussian seen from one octet: what the octets to the right and to the left are multiplied with.
+/// A Gaussian on one octet, with the factors to the octets on the right and on the left, and the change of
+/// the factors.
 template <class N>
 struct gaussian_outwards {
   N value, right, left, change;
 };
 
-/// Calls put(first velocity, values) for all octets, outwards from one of them.
+/// Calls put(first velocity, values) for all octets, outwards from octet `centre`.
 template <bool Deep, class N, class Put>
 APSIS_FORMULA void walk_outwards(const gaussian_outwards<N>& from, int centre, int n, const Put& put) {
   gaussian_walk<Deep, N> walk{from.value, from.right, from.change};
@@ -174,7 +176,8 @@ APSIS_FORMULA void walk_outwards(const gaussian_outwards<N>& from, int centre, i
   }
 }
 
-/// The same, with checks where values may leave the range of normal numbers.
+/// Calls put(first velocity, values) for all octets outwards. Checks values only if they may leave the range
+/// of normal numbers.
 template <class N, class Put>
 APSIS_FORMULA void walk_outwards(const gaussian_outwards<N>& from, int centre, const spaced_line& line,
                                  const gaussian_of_line& of, const Put& put) {
@@ -190,12 +193,12 @@ APSIS_FORMULA void walk_outwards(const gaussian_outwards<N>& from, int centre, c
 struct state_of_line {
   double rho, u, T;
 
-  /// Of ω = (ρ, ρu, 𝓔), without checking that they are admissible.
+  /// Returns the state of ω = (ρ, ρu, 𝓔), without checking that it is admissible.
   static APSIS_FORMULA state_of_line of(double mass, double momentum, double energy) {
     const double u = momentum / mass;
     return {mass, u, 2.0 * energy / mass - u * u};
   }
-  /// ρ/√(2πT).
+  /// Returns ρ/√(2πT).
   APSIS_FORMULA double height() const {
     return rho * (1.0 / __builtin_sqrt(2.0 * 3.14159265358979323846 * T));
   }
@@ -206,10 +209,10 @@ struct state_of_line {
   }
 };
 
-/// Whether the sums of the Gaussian over evenly spaced velocities up to `max` are its moments to rounding
+/// Whether sums of the Gaussian over evenly spaced velocities up to `max` equal its moments to rounding
 /// (formula_has_exact_moments() of maxwellian.hpp).
 APSIS_FORMULA bool gaussian_has_exact_moments(double spacing, double max, const state_of_line& state) {
-  constexpr double dense = 1e-250;  // values below 1e-300, which are set to 0, are below its rounding
+  constexpr double dense = 1e-250;  // values below 1e-300 are below its rounding
   constexpr double enough = 40.0;   // 100 e^−40 is below the rounding of a sum
   constexpr double spacings = enough / (2.0 * 3.14159265358979323846 * 3.14159265358979323846);
   const double room = max - __builtin_fabs(state.u);

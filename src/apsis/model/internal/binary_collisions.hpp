@@ -7,7 +7,8 @@
 
 namespace apsis {
 
-/// Particles i and j become k and l, and reversely; numbered from 0.
+/// A collision in which particles of velocities i and j get velocities k and l, and its inverse. Velocities
+/// are numbered from 0.
 struct binary_collision {
   int i, j, k, l;
   double rate = 1.0;  ///< A > 0 of A (f_k f_l − f_i f_j) (dimensionless)
@@ -22,49 +23,52 @@ class binary_collisions {
   /// Largest number of velocities.
   static constexpr int most_velocities = 256;
 
-  /// `velocities[j]` are the components of v_j. Without `collisions`, all elastic ones with the rate 1.
-  /// Throws input_error: no or too many velocities, a velocity that is not finite, has another number of
-  /// components or occurs twice; a collision that names no velocity, changes nothing, occurs twice, has a
-  /// rate that is not a finite number > 0, or does not conserve momentum and energy; no collisions.
+  /// `velocities[j]` are the components of v_j. If `collisions` is empty, all elastic collisions are used,
+  /// with the rate 1. Throws input_error in these cases:
+  /// - There are no or too many velocities.
+  /// - A velocity is not finite, has another number of components than the first, or occurs twice.
+  /// - A collision names an unknown velocity, changes nothing, or occurs twice.
+  /// - A rate is not a finite number > 0.
+  /// - A collision does not conserve momentum and energy, or no collision exists.
   explicit binary_collisions(std::vector<std::vector<double>> velocities,
                              std::vector<binary_collision> collisions = {});
 
   int size() const { return static_cast<int>(velocities_.size()); }                   ///< n
-  int dimensions() const { return static_cast<int>(velocities_.front().size()); }     ///< of a velocity
+  int dimensions() const { return static_cast<int>(velocities_.front().size()); }     ///< of the velocities
   const std::vector<std::vector<double>>& velocities() const { return velocities_; }  ///< v_j
   const std::vector<binary_collision>& collisions() const { return collisions_; }     ///< all of them
 
-  /// Σ_j φ_j f_j, which collisions conserve.
+  /// A sum Σ_j φ_j f_j that collisions conserve.
   struct invariant {
     std::string name;         ///< "mass", "momentum_x", "energy", "spurious_1"
     Eigen::VectorXd weights;  ///< φ_j
   };
-  /// Returns a basis of the collision invariants: mass, the components of momentum, and energy, as far as
-  /// they differ from the ones before, then spurious ones, which a gas does not have and which show that
-  /// collisions are too few (Bobylev, Cercignani, J. Stat. Phys. 97, 1999).
+  /// Returns a basis of the collision invariants: mass, the components of momentum, and energy, unless they
+  /// depend linearly on earlier ones. Spurious invariants follow. A real gas does not have them; they show
+  /// that there are too few collisions (Bobylev, Cercignani, J. Stat. Phys. 97, 1999).
   const std::vector<invariant>& invariants() const { return invariants_; }
   /// Returns Σ_j φ_j f_j of all invariants.
   Eigen::VectorXd moments(const double* f) const { return functionals_ * vector(f); }
   /// Returns an orthonormal basis B of the span of all n_c, n × r, r = n − the number of invariants.
   const Eigen::MatrixXd& reachable() const { return reachable_; }
 
-  /// q ← Q(f), n numbers each.
+  /// q ← Q(f); both have n numbers.
   void change(const double* f, double* q) const;
-  /// result ← Bᵀ Q'(f) B, r × r. `scratch` keeps its memory between calls.
+  /// result ← Bᵀ Q'(f) B, r × r. `scratch` is reused between calls.
   void derivative(const double* f, Eigen::MatrixXd& scratch, Eigen::MatrixXd& result) const;
-  /// Returns max_i Σ_c A_c |f_partner|, the largest frequency of the collisions of a particle. For f ≥ 0,
-  /// f + Δt Q(f) ≥ 0 where Δt times it is at most 1.
+  /// Returns max_i Σ_c A_c |f_partner|, the largest collision frequency of a particle. If f ≥ 0 and Δt times
+  /// this frequency is at most 1, f + Δt Q(f) ≥ 0.
   double frequency(const double* f) const;
 
-  /// v ← (u + α G(v⁺))/(1 + α L(v⁺)) with Q = G − L f, G and L being the sums of gains and of frequencies: a
-  /// fixed point for the solution of v = u + α Q(v), and nonnegative in floating point for u ≥ 0. Leaves v as
-  /// it is where α is not finite.
+  /// v ← (u + α G(v⁺))/(1 + α L(v⁺)), where Q = G − L f with the gains G and the frequencies L. The solution
+  /// of v = u + α Q(v) is a fixed point of this map. For u ≥ 0 the result is nonnegative in floating point. v
+  /// is unchanged if α is not finite.
   void gain_over_loss(const double* u, double alpha, double* v) const;
 
-  /// e ← exp(Σ_k λ_k φ_k) with the moments Σ_j φ_kj e_j = moments[k] of the first moments.size() invariants,
-  /// to a few roundings of max_j |φ_kj| Σ_j e_j: the minimum of Σ e log e among nonnegative rows with these
-  /// moments. Where the minimum has zeros, they become positive numbers below rounding. Returns false if
-  /// there is none.
+  /// e ← the minimum of Σ e log e among nonnegative rows with the moments Σ_j φ_kj e_j = moments[k] of the
+  /// first moments.size() invariants. It has the form exp(Σ_k λ_k φ_k). The error of the moments is a few
+  /// roundings of max_j |φ_kj| Σ_j e_j. Zeros of the minimum become positive numbers below rounding. Returns
+  /// false if no such row is found.
   bool minimize_entropy(const Eigen::VectorXd& moments, double* e) const;
 
  private:

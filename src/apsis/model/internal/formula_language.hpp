@@ -17,7 +17,8 @@ struct function {
 using function_of_one = function<double (*)(double)>;
 using function_of_two = function<double (*)(double, double)>;
 
-/// All functions but tables. The built-in ones of muParser changed between versions (log).
+/// All functions but tables. The built-in functions of muParser are not used, because `log` changed between
+/// its versions.
 inline constexpr std::array<function_of_one, 14> functions_of_one = {{{"sin", std::sin},
                                                                       {"cos", std::cos},
                                                                       {"tan", std::tan},

@@ -17,8 +17,9 @@ using formula_rows::operand;
 using formula_rows::operation;
 using formula_rows::step;
 
-/// Operators and functions of a parser that note themselves. In place of a value they return a NaN with the
-/// number of the result, as which variables begin; other numbers are constants of the formula.
+/// Operators and functions for a parser that record their calls. They return a NaN whose bits encode the
+/// number of the result. Variables have such values from the start. All other numbers are constants of
+/// the formula.
 class recorder {
  public:
   explicit recorder(std::size_t variables) : variables_(static_cast<int>(variables)) { current = this; }
@@ -26,9 +27,9 @@ class recorder {
   recorder(const recorder&) = delete;
   recorder& operator=(const recorder&) = delete;
 
-  /// The value of a variable.
+  /// Returns the value that encodes variable k.
   static double variable(std::size_t k) { return name_of(static_cast<int>(k)); }
-  /// The variable or, by its number, the step that a value of the parser stands for.
+  /// Returns the variable, step or constant that a value of the parser stands for.
   static operand meant_by(double value) {
     const auto bits = std::bit_cast<std::uint64_t>(value);
     if (bits <= first_name || bits - first_name > last_name) return {-1, value};
@@ -44,7 +45,7 @@ class recorder {
     return current->add({operation::negate, meant_by(a), {}}, [&] { return -a; });
   }
   static double keep(double a) { return a; }
-  /// Small integer powers are products.
+  /// Records small integer powers as products.
   static double power(double a, double b) {
     const auto by_products = [&](operation what) {
       return current->add({what, meant_by(a), {}}, [&] { return std::pow(a, b); });
@@ -97,7 +98,8 @@ class recorder {
                                          : a / b;
   }
 
-  /// Notes a step, unless its operands are constants.
+  /// Records a step and returns the value that encodes its result. With constant operands it returns
+  /// value() instead.
   template <class Value>
   double add(step one, const Value& value) {
     if (one.first.column < 0 && one.second.column < 0) return value();
@@ -106,7 +108,7 @@ class recorder {
     return name_of(one.result);
   }
 
-  // Operators of muParser are functions without further data.
+  // Operators of muParser are functions without user data, so that the recorder must be global.
   static thread_local recorder* current;
   int variables_;
   std::vector<step> steps_;
@@ -156,7 +158,8 @@ void define_functions(mu::Parser& parser, const text_of_tables& text) {
       parser.DefineFunUserData(text.names[k], recorder::table_of_one, without_const(text.tables[k]), false);
 }
 
-/// Columns that intermediate results share. A result is an operand of one step.
+/// Columns that intermediate results share. Each result is an operand of exactly one step, which releases
+/// its column.
 class shared_columns {
  public:
   explicit shared_columns(int first) : next_(first) {}
@@ -175,7 +178,7 @@ class shared_columns {
   std::vector<int> free_;
 };
 
-/// Results of steps to columns behind those of the variables; returns how many columns there are.
+/// Assigns results of steps to columns behind those of the variables. Returns the number of columns.
 int assign_columns(const std::vector<int>& used, int variables, std::vector<step>& steps, operand& result) {
   const int first = static_cast<int>(used.size());
   shared_columns left(first);
@@ -202,7 +205,7 @@ int assign_columns(const std::vector<int>& used, int variables, std::vector<step
 }  // namespace
 
 std::optional<formula_tape> formula_tape::of(const text_of_tables& text, const formula_kind& kind) {
-  // A condition evaluates one of two formulas.
+  // A condition evaluates only one of its formulas, which a tape cannot express.
   if (text.text.find_first_of("?&|") != std::string::npos) return std::nullopt;
   const std::size_t count = kind.variables.size();
   recorder recorded(count);
@@ -240,7 +243,7 @@ std::optional<formula_tape> formula_tape::of(const text_of_tables& text, const f
 void formula_tape::evaluate(const formula_points& at, std::span<double> results) const {
   constexpr std::size_t most = formula_rows::most_points, whole = 8;
   if (result_.column < 0) return std::fill(results.begin(), results.end(), result_.constant);
-  // NOLINTNEXTLINE(cppcoreguidelines-pro-type-member-init): as many columns as the formula has are set
+  // NOLINTNEXTLINE(cppcoreguidelines-pro-type-member-init): the columns of the formula are set
   alignas(64) std::array<double, most * formula_rows::most_columns> columns;
   for (std::size_t done = 0; done < results.size(); done += most) {
     const std::size_t points = std::min(most, results.size() - done),

@@ -10,12 +10,11 @@
 
 namespace apsis {
 
-/// The operations of a formula in the order in which a parser takes them, for many points at a time.
-/// Thread-safe.
+/// The operations of a formula in the order of the parser, for many points at a time. Thread-safe.
 class formula_tape {
  public:
-  /// Returns that of a formula which muParser reads; none if it has a condition, or more variables and
-  /// intermediate results than columns. The tables must outlive it.
+  /// Returns the tape of a formula that muParser can parse. Returns nothing if the formula has a condition,
+  /// or more variables and intermediate results than columns. The tables must outlive the tape.
   static std::optional<formula_tape> of(const text_of_tables& text, const formula_kind& kind);
 
   /// Evaluates the formula at results.size() points.
@@ -25,8 +24,8 @@ class formula_tape {
   formula_tape() = default;
 
   std::vector<formula_rows::step> steps_;
-  std::vector<int> used_;         ///< variables of the first columns
-  formula_rows::operand result_;  ///< of the formula
+  std::vector<int> used_;         ///< numbers of the variables in the first columns
+  formula_rows::operand result_;  ///< result of the formula
 };
 
 }  // namespace apsis

@@ -14,7 +14,7 @@ aligned_vector<double>& room(std::size_t which) {
   return rooms[which];
 }
 
-/// Sums run in four chains, for vectors; there are as many angles as a multiple of four.
+/// Sums run in four chains, so that compilers can vectorize them. The number of angles is a multiple of four.
 constexpr std::size_t lanes = 4;
 template <class Body>
 void for_lanes(std::size_t n, const Body& body) {
@@ -49,7 +49,7 @@ dual_sums factors::evaluate(const parameters& of) {
 
 void factors::write(double* m) {
   const double factor = state_.rho / (sum_along_ * sum_across_);
-  // A factor that is subnormal has few digits.
+  // A subnormal factor would have few digits.
   const bool normal = factor > 1e-290;
   if (normal)
     for (double& one : across_) one *= factor;
@@ -57,7 +57,7 @@ void factors::write(double* m) {
   for (int j = 0; j < grid_.size() && !normal; ++j) m[j] = m[j] / (sum_along_ * sum_across_) * state_.rho;
 }
 
-/// Adds the sums along the axis; returns the exponent that is taken out.
+/// Adds the sums along the axis. Returns the largest exponent, which the sums omit.
 double factors::add_along(const parameters& of, dual_sums& to) {
   const auto& v = grid_.last_line().v();
   const auto& weights = grid_.last_line().weights();
@@ -99,7 +99,7 @@ double factors::add_across(const parameters& of, dual_sums& to) {
   }
   const double largest = exponentials(across_);
   using four = std::array<double, lanes>;
-  std::array<four, 4> sums{};  // of 1, c, d and q
+  std::array<four, 4> sums{};  // weighted sums of 1, c, d and q
   for_lanes(n, [&](std::size_t j, std::size_t lane) {
     const double c = v[j] - u, d = w[j] - s, q = 0.5 * (c * c + d * d), one = weights[j] * all[j];
     sums[0][lane] += one;
@@ -110,7 +110,7 @@ double factors::add_across(const parameters& of, dual_sums& to) {
   sum_across_ = total(sums[0]);
   const std::array<double, 3> mean = {total(sums[1]) / sum_across_, total(sums[2]) / sum_across_,
                                       total(sums[3]) / sum_across_};
-  // About the means, so that nothing cancels where nearly all mass is at one point.
+  // Products are taken about the means, so that nothing cancels if nearly all mass is at one point.
   std::array<std::array<four, 3>, 3> products{};
   for_lanes(n, [&](std::size_t j, std::size_t lane) {
     const double c0 = v[j] - u, d0 = w[j] - s, one = weights[j] * all[j];

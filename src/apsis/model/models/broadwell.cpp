@@ -9,14 +9,14 @@
 namespace apsis {
 namespace {
 
-/// ρ = f₊ + 2f₀ + f₋, m = f₊ − f₋, z = f₊ + f₋ (paper, eq. broadmoments).
+/// The moments ρ = f₊ + 2f₀ + f₋, m = f₊ − f₋, z = f₊ + f₋ (paper, eq. broadmoments).
 struct broadwell_moments {
   double rho, m, z;
 };
 
-/// Densities f = (f₊, f₀, f₋) of particles of speed 1, 0, −1 (paper, eq. broadwell; Broadwell, Phys. Fluids
-/// 7, 1964): f_t + (f₊, 0, −f₋)_x = (q, −q, q)/ε with q = f₀² − f₊f₋. With ω = (ρ, m) that is
-/// ρ(E(ω) − f)/ε, E = ((ρ + m)², ρ² − m², (ρ − m)²)/(4ρ). Dimensionless.
+/// Broadwell's gas with the densities f = (f₊, f₀, f₋) of particles of speed 1, 0, −1 (paper, eq. broadwell;
+/// Broadwell, Phys. Fluids 7, 1964): f_t + (f₊, 0, −f₋)_x = (q, −q, q)/ε with q = f₀² − f₊f₋. With ω = (ρ, m)
+/// the right-hand side is ρ(E(ω) − f)/ε, E = ((ρ + m)², ρ² − m², (ρ − m)²)/(4ρ). Dimensionless.
 class broadwell_model final : public relaxation_model {
  public:
   broadwell_model() { make_initial_data(); }
@@ -32,8 +32,8 @@ class broadwell_model final : public relaxation_model {
     omega[1] = f[0] - f[2];
   }
 
-  /// Nonnegative for every f ≥ 0, in floating point as well: sums and differences round monotonically, so
-  /// |m| ≤ max(f₊, f₋) ≤ ρ and |m/ρ| ≤ 1. Empty space is its own equilibrium.
+  /// The equilibrium is nonnegative for every f ≥ 0, also in floating point. Sums and differences round
+  /// monotonically, so that |m| ≤ max(f₊, f₋) ≤ ρ and |m/ρ| ≤ 1. Empty space is its own equilibrium.
   bool equilibrium(const double* omega, double* e) const override {
     const double rho = omega[0], m = omega[1];
     if (!std::isfinite(rho) || !std::isfinite(m) || rho < 0.0 || (rho == 0.0 && m != 0.0)) return false;
@@ -50,8 +50,9 @@ class broadwell_model final : public relaxation_model {
     return fmt::format("density {:.6g} with momentum {:.6g}", omega[0], omega[1]);
   }
 
-  /// f₊ log f₊ + 2 f₀ log f₀ + f₋ log f₋ with 0 log 0 = 0: two of the four species of the planar gas rest in
-  /// this direction. Collisions change it by q log(f₊f₋/f₀²) ≤ 0, and E is its minimum for given ω.
+  /// The entropy is f₊ log f₊ + 2 f₀ log f₀ + f₋ log f₋ with 0 log 0 = 0. f₀ counts twice, because two of the
+  /// four species of the planar gas rest in this direction. Collisions change it by q log(f₊f₋/f₀²) ≤ 0, and
+  /// E is its minimum for given ω.
   std::optional<convex_entropy> entropy() const override {
     return convex_entropy{[](const double* f) {
       const auto part = [](double value) { return value > 0.0 ? value * std::log(value) : 0.0; };
@@ -59,10 +60,10 @@ class broadwell_model final : public relaxation_model {
     }};
   }
 
-  /// z is not invariant: collisions change it.
+  /// z is not an invariant, because collisions change it.
   std::vector<std::string> invariants() const override { return {"mass", "momentum"}; }
   void invariant_densities(const double* f, double* densities) const override { moments(f, densities); }
-  /// Momenta cancel between opposite velocities; f₊ + f₋ ≤ ρ.
+  /// Momenta of opposite velocities cancel. The scale of the momentum is ρ ≥ f₊ + f₋.
   void invariant_scales(std::span<const double> densities, double* scales) const override {
     relaxation_model::invariant_scales(densities, scales);
     scales[1] = std::max(scales[0], scales[1]);
@@ -155,7 +156,7 @@ class broadwell_model final : public relaxation_model {
                 0.0, {1.0, 0.0, 1.0}, {0.2, 0.0, 1.0});
   }
 
-  /// Two of the four species of the planar gas rest in this direction.
+  /// f₀ has the weight 2: two of the four species of the planar gas rest in this direction.
   velocity_set velocities_{{{1.0, 0.0, -1.0}}, {1.0, 2.0, 1.0}};
   std::vector<initial_data> initial_;
 };

@@ -11,14 +11,14 @@
 namespace apsis {
 namespace {
 
-/// Broadwell's gas in the plane: densities f = (f→, f←, f↑, f↓) of particles of the velocities (1, 0), (−1,
-/// 0), (0, 1), (0, −1), which turn by a right angle where they meet head-on (Broadwell, Phys. Fluids 7, 1964;
-/// Platkowski, Illner, SIAM Rev. 30, 1988):
+/// Broadwell's gas in the plane: densities f = (f→, f←, f↑, f↓) of particles with the velocities (1, 0),
+/// (−1, 0), (0, 1), (0, −1). A head-on collision turns both particles by a right angle (Broadwell, Phys.
+/// Fluids 7, 1964; Platkowski, Illner, SIAM Rev. 30, 1988):
 ///   f_t + v·∇f = (q, q, −q, −q)/ε,   q = f↑f↓ − f→f←.
-/// With a = f→ + f← and b = f↑ + f↓, 4q = b² − m_y² − a² + m_x², and a + b = ρ is invariant, so that
-/// q = ρ(E→ − f→) with ω = (ρ, m_x, m_y) and 4ρE→← = (ρ ± m_x)² − m_y², 4ρE↑↓ = (ρ ± m_y)² − m_x²: a
-/// relaxation of the rate ρ. Data with f↑ = f↓ that do not depend on y are those of the model `broadwell`.
-/// Dimensionless.
+/// Let a = f→ + f← and b = f↑ + f↓. Then 4q = b² − m_y² − a² + m_x², and ρ = a + b is an invariant. Q is
+/// therefore a relaxation with the rate ρ: q = ρ(E→ − f→) with ω = (ρ, m_x, m_y), 4ρE→← = (ρ ± m_x)² − m_y²
+/// and 4ρE↑↓ = (ρ ± m_y)² − m_x². Data with f↑ = f↓ that do not depend on y are those of the model
+/// `broadwell`. Dimensionless.
 class plane_broadwell_model final : public relaxation_model {
  public:
   explicit plane_broadwell_model(const model_config& config) : dimensions_(config.space_dimensions) {
@@ -41,8 +41,8 @@ class plane_broadwell_model final : public relaxation_model {
     omega[2] = f[2] - f[3];
   }
 
-  /// Nonnegative: |m_x| + |m_y| ≤ ρ makes both factors so, and a negative rounding error becomes 0. Empty
-  /// space is its own equilibrium.
+  /// The equilibrium is nonnegative: both factors are, because |m_x| + |m_y| ≤ ρ, and negative rounding
+  /// errors become 0. Empty space is its own equilibrium.
   bool equilibrium(const double* omega, double* e) const override {
     const double rho = omega[0];
     if (!std::isfinite(rho) || !std::isfinite(omega[1]) || !std::isfinite(omega[2]) || rho < 0.0 ||
@@ -65,8 +65,8 @@ class plane_broadwell_model final : public relaxation_model {
     return fmt::format("density {:.6g} with momentum ({:.6g}, {:.6g})", omega[0], omega[1], omega[2]);
   }
 
-  /// Σ f log f with 0 log 0 = 0. Collisions change it by 2q log(f→f←/(f↑f↓)) ≤ 0, and E is its minimum for
-  /// given ω.
+  /// The entropy is Σ f log f with 0 log 0 = 0. Collisions change it by 2q log(f→f←/(f↑f↓)) ≤ 0, and E is its
+  /// minimum for given ω.
   std::optional<convex_entropy> entropy() const override {
     return convex_entropy{[](const double* f) {
       double sum = 0.0;
@@ -77,7 +77,7 @@ class plane_broadwell_model final : public relaxation_model {
 
   std::vector<std::string> invariants() const override { return {"mass", "momentum_x", "momentum_y"}; }
   void invariant_densities(const double* f, double* densities) const override { moments(f, densities); }
-  /// Momenta cancel between opposite velocities; f→ + f← ≤ ρ.
+  /// Momenta of opposite velocities cancel. The scale of a momentum is ρ ≥ f→ + f←.
   void invariant_scales(std::span<const double> densities, double* scales) const override {
     relaxation_model::invariant_scales(densities, scales);
     for (int k = 1; k < 3; ++k) scales[k] = std::max(scales[0], scales[k]);

@@ -17,11 +17,12 @@
 namespace apsis {
 namespace {
 
-/// The law of default cases: shallow water with g = 1.
+/// The default law: shallow water with g = 1.
 const std::vector<std::string> default_variables = {"h", "q"};
 const std::vector<std::string> default_flux = {"q", "q^2/h + h^2/2"};
 
-/// Names of the lists with the fluxes along x, y, z, and of the variables that a mirror across them changes.
+/// Names of two groups of lists: fluxes along x, y, z, and variables whose sign changes in a mirror across x,
+/// y, z.
 constexpr std::array<const char*, 3> flux_lists = {"flux", "flux_y", "flux_z"};
 constexpr std::array<const char*, 3> odd_lists = {"odd", "odd_y", "odd_z"};
 
@@ -58,7 +59,7 @@ std::vector<expression> positive_quantities(const model_config& config) {
   return quantities;
 }
 
-/// The velocities ±a along each of D directions.
+/// Returns the velocities ±a along each of D directions.
 velocity_set speeds_along(int D, double a, int sets) {
   const auto directions = static_cast<std::size_t>(D);
   std::vector<aligned_vector<double>> v(directions, aligned_vector<double>(2 * directions));
@@ -70,12 +71,13 @@ velocity_set speeds_along(int D, double a, int sets) {
 }
 
 /// Relaxation of u_t + Σ_k F_k(u)_xk = 0 with n variables in D dimensions (Jin, Xin, Comm. Pure Appl. Math.
-/// 48, 1995; in diagonal form Aregba-Driollet, Natalini, SIAM J. Numer. Anal. 37, 2000): for the velocities
-/// ±a along each direction, f_k±,t ± a f_k±,xk = (E_k±(u) − f_k±)/ε with u = Σ f_k± and E_k± = (u/D ±
-/// F_k(u)/a)/2. As ε → 0, u_t + Σ F_k(u)_xk = ε Σ_kl ((a² δ_kl/D − F_k'F_l') u_xl)_xk + O(ε²). That is stable
-/// if the derivatives of all E_k± have eigenvalues ≥ 0 (Bouchut, J. Stat. Phys. 95, 1999): those of F_k' are
-/// real and |λ| ≤ a/D, the subcharacteristic condition. A row has f₁₊, f₁₋, f₂₊, … of each variable in turn.
-/// Dimensionless.
+/// 48, 1995; in diagonal form Aregba-Driollet, Natalini, SIAM J. Numer. Anal. 37, 2000). With the velocities
+/// ±a along each direction, f_k±,t ± a f_k±,xk = (E_k±(u) − f_k±)/ε, u = Σ f_k± and E_k± = (u/D ±
+/// F_k(u)/a)/2. A row has f₁₊, f₁₋, f₂₊, … of each variable in turn. Dimensionless.
+///
+/// As ε → 0, u_t + Σ F_k(u)_xk = ε Σ_kl ((a² δ_kl/D − F_k'F_l') u_xl)_xk + O(ε²). This equation is stable if
+/// the derivatives of all E_k± have eigenvalues ≥ 0 (Bouchut, J. Stat. Phys. 95, 1999). Equivalently, the
+/// eigenvalues λ of F_k' are real and |λ| ≤ a/D, the subcharacteristic condition.
 class law_model final : public relaxation_model, public checks_of_rows {
  public:
   explicit law_model(const model_config& config)
@@ -131,7 +133,7 @@ class law_model final : public relaxation_model, public checks_of_rows {
   bool equilibrium(const double* omega, double* e) const override {
     return equilibria(omega, 1, e, components()) == 1;
   }
-  /// Formulas are evaluated for several rows together.
+  /// Evaluates formulas for several rows together.
   int equilibria(const double* omega, int rows, double* e, std::ptrdiff_t pitch) const override {
     std::array<double, most_together * system_flux::most_variables> F;
     const double D = static_cast<double>(D_);
@@ -164,7 +166,7 @@ class law_model final : public relaxation_model, public checks_of_rows {
 
   std::vector<std::string> invariants() const override { return variables(); }
   void invariant_densities(const double* f, double* densities) const override { moments(f, densities); }
-  /// f± have the size of u/D ± F/a, also where u vanishes, as the momentum of water at rest.
+  /// f± have the size of u/D ± F/a, even if u vanishes, as does the momentum of water at rest.
   void invariant_scales(std::span<const double> densities, double* scales) const override {
     invariant_scales_of_rows(densities, 1, scales);
   }
@@ -245,34 +247,34 @@ class law_model final : public relaxation_model, public checks_of_rows {
 
  private:
   static constexpr const char* wave_speed = "wave_speed";
-  static constexpr int most_together = 32;  ///< rows whose formulas are evaluated together
+  static constexpr int most_together = 32;  ///< largest number of rows in one evaluation of formulas
   /// Allowed excess of an eigenvalue over the speed, for the error of the numerical derivative.
   static constexpr double rounding = 1e-6;
-  /// Imaginary parts up to this part of the speed count as 0: an error δ of F' splits a double eigenvalue by
-  /// √δ and a triple one by its cube root.
+  /// Imaginary parts up to this fraction of the speed count as 0. An error δ of F' splits a double eigenvalue
+  /// by √δ and a triple one by the cube root of δ.
   static constexpr double not_real = 1e-3;
 
   static constexpr const char* more_robust =
       "use more cells, a smaller step, or space.reconstruction = \"upwind1\", which does not overshoot";
 
-  /// Rounds up to four digits.
+  /// Returns x rounded up to four digits.
   static double rounded_up(double x) {
     const double digits = 3.0 - std::floor(std::log10(x)), unit = std::pow(10.0, std::abs(digits));
-    const double exact = 1.0 - 1e-9;  // four digits stay as they are
+    const double exact = 1.0 - 1e-9;  // numbers of four digits are unchanged
     return digits > 0.0 ? std::ceil(x * unit * exact) / unit : std::ceil(x / unit * exact) * unit;
   }
 
   const std::vector<std::string>& variables() const { return fluxes_.front().variables(); }
   std::string text_of(const double* u) const { return fluxes_.front().text_of(u); }
 
-  /// Characteristic speeds along a direction.
+  /// Returns the characteristic speeds along a direction.
   system_flux::waves speeds_of(const double* f, std::size_t direction) const {
     std::array<double, system_flux::most_variables> u{};
     moments(f, u.data());
     return fluxes_[direction].characteristic_speeds(u.data(), a_);
   }
 
-  /// The largest speed of all directions; NaN where a flux is not differentiable.
+  /// Returns the largest speed over all directions; NaN if a flux is not differentiable.
   double fastest_wave(const double* f) const {
     double fastest = 0.0;
     for (std::size_t k = 0; k < fluxes_.size(); ++k) {
@@ -283,8 +285,8 @@ class law_model final : public relaxation_model, public checks_of_rows {
     return fastest;
   }
 
-  /// f_k± ← (rates/D ± F_k'(u) rates/a)/2. With any other flux a source would add a term of size ε to the
-  /// law.
+  /// f_k± ← (rates/D ± F_k'(u) rates/a)/2. Any other split of a source over f_k± would add a term of size ε
+  /// to the law.
   void add_rates(const double* u, const double* rates, double* f) const {
     std::array<double, system_flux::most_variables> along{};
     for (std::size_t k = 0; k < fluxes_.size(); ++k) {
@@ -298,8 +300,8 @@ class law_model final : public relaxation_model, public checks_of_rows {
     }
   }
 
-  /// The largest finite speed of one variable between its smallest and largest value: the waves of a jump
-  /// take all values between its sides, where a flux that is not convex may be steeper.
+  /// Returns the largest finite speed of a law in one variable between its smallest and largest value. The
+  /// waves of a jump take all values between its two sides. A flux that is not convex may be steeper there.
   double fastest_between(const std::vector<std::vector<double>>& rows) const {
     constexpr int intervals = 2000;
     double low = std::numeric_limits<double>::infinity(), high = -low, fastest = 0.0;
@@ -318,7 +320,7 @@ class law_model final : public relaxation_model, public checks_of_rows {
     return fastest;
   }
 
-  /// first_unsupported() of at most most_together rows.
+  /// Returns first_unsupported() for at most most_together rows.
   int first_unsupported_together(const double* f, std::ptrdiff_t pitch, int rows) const {
     const auto count = static_cast<std::size_t>(rows), n = static_cast<std::size_t>(n_);
     std::array<double, most_together * system_flux::most_variables> u;
@@ -345,7 +347,7 @@ class law_model final : public relaxation_model, public checks_of_rows {
     return static_cast<int>(first);
   }
 
-  /// Whether a state has the subcharacteristic condition and real speeds; false for NaN.
+  /// Whether a state satisfies the subcharacteristic condition and has real speeds; false for NaN.
   bool is_inside_law(const system_flux::waves& found) const {
     return found.speed * D_ <= a_ * (1.0 + rounding) && found.imaginary <= not_real * a_;
   }
@@ -388,7 +390,8 @@ class law_model final : public relaxation_model, public checks_of_rows {
     return {"model.speed", too_small, too_small + ", or use a smaller step if the solution oscillates"};
   }
 
-  /// `reason`: in addition to that of a run, which started inside the law.
+  /// Returns the messages for data and for a run. The message of a run adds that the solution left the states
+  /// of the law.
   unsupported_initial_data outside_law(const std::string& key, const std::string& problem,
                                        const std::string& reason) const {
     const char* const left = "the solution left the states for which the law is valid";
@@ -402,7 +405,7 @@ class law_model final : public relaxation_model, public checks_of_rows {
     return {0.16 + 0.04 * std::sin(pi * x), 0.02 * std::cos(pi * x)};
   }
 
-  /// Data of the default law; speeds and depths are such that a is near 1.
+  /// Sets the data of the default law. Their speeds and depths give a near 1.
   void make_initial_data() {
     initial_.push_back({"smooth",
                         "h = 0.16 + 0.04 sin(pi x), q = 0.02 cos(pi x), out of equilibrium: fluxes F + 0.05 "
@@ -430,13 +433,13 @@ class law_model final : public relaxation_model, public checks_of_rows {
                         {0.0}});
   }
 
-  std::vector<system_flux> fluxes_;   ///< of each direction
+  std::vector<system_flux> fluxes_;   ///< flux of each direction
   std::vector<expression> positive_;  ///< quantities that must be positive
   int n_, D_;
   double a_, margin_;
   velocity_set velocities_;
   std::array<std::vector<double>, 3>
-      signs_;  ///< of the variables in a mirror across a direction; empty if unknown
+      signs_;  ///< signs of the variables in a mirror across a direction; empty if unknown
   std::vector<initial_data> initial_;
 };
 

@@ -6,8 +6,8 @@
 namespace apsis {
 namespace {
 
-/// u' = −k u² (paper, numerical tests of the implicit methods: k = 10, u(0) = 10); exact solution u₀/(1 + k
-/// u₀ t). Q̇ = 2k²u³. Dimensionless.
+/// The equation u' = −k u² (paper, numerical tests of the implicit methods: k = 10, u(0) = 10). The exact
+/// solution is u₀/(1 + k u₀ t), and Q̇ = 2k²u³. Dimensionless.
 class decay_model final : public general_model {
  public:
   explicit decay_model(const model_config& config) : rate_(config.parameters.at("rate")) {
@@ -22,7 +22,7 @@ class decay_model final : public general_model {
   int components() const override { return 1; }
   int space_dimensions() const override { return 0; }
   void collision(const number* u, number* q) const override { q[0] = -rate_ * u[0] * u[0]; }
-  /// Negative solutions are admissible, so that methods can be seen to lose positivity.
+  /// Negative solutions are admissible, so that runs show which methods violate positivity.
   bool admissible(const double* u) const override { return std::isfinite(u[0]); }
   bool positive() const override { return true; }
 

@@ -17,8 +17,8 @@
 namespace apsis {
 namespace {
 
-/// The nine velocities of a square with its centre, the smallest regular set in the plane whose invariants
-/// are mass, momentum and energy alone.
+/// The nine velocities of a square grid with its centre. This is the smallest regular set in the plane whose
+/// only invariants are mass, momentum and energy.
 const std::vector<std::string> default_velocities = {"0, 0", "1, 0",  "-1, 0", "0, 1",  "0, -1",
                                                      "1, 1", "-1, 1", "1, -1", "-1, -1"};
 
@@ -53,9 +53,9 @@ binary_collisions collisions_of(const model_config& config) {
   return all;
 }
 
-/// A gas of n velocities v_j and elastic collisions i + j ↔ k + l of the rates A (Gatignol 1975; Platkowski,
-/// Illner, SIAM Rev. 30, 1988): f_j,t + v_j·∇f_j = Q_j(f)/ε, where every collision adds A (f_i f_j − f_k f_l)
-/// to Q_k and Q_l and subtracts it from Q_i and Q_j. Dimensionless.
+/// A gas with n velocities v_j and elastic collisions i + j ↔ k + l of rates A (Gatignol 1975; Platkowski,
+/// Illner, SIAM Rev. 30, 1988): f_j,t + v_j·∇f_j = Q_j(f)/ε. Every collision adds A (f_i f_j − f_k f_l) to
+/// Q_k and Q_l, and subtracts it from Q_i and Q_j. Dimensionless.
 class discrete_velocity_model final : public model {
  public:
   explicit discrete_velocity_model(const model_config& config)
@@ -79,7 +79,7 @@ class discrete_velocity_model final : public model {
   bool has_relaxation_time() const override { return true; }
 
   bool positive() const override { return true; }
-  /// Q̇ is not a multiple of Q: I + |b| Q'² has no nonnegative inverse in general.
+  /// Q̇ is not a multiple of Q. In general the inverse of I + |b| Q'² is not nonnegative.
   bool collisions_keep_sign() const override { return false; }
   std::optional<convex_entropy> entropy() const override {
     return convex_entropy{[n = components()](const double* f) {
@@ -99,7 +99,7 @@ class discrete_velocity_model final : public model {
     const Eigen::VectorXd all = collisions_.moments(f);
     std::copy(all.begin(), all.end(), densities);
   }
-  /// A row has |Σ φ_j f_j| ≤ max|φ| ρ.
+  /// Scales follow from |Σ φ_j f_j| ≤ max|φ| ρ for f ≥ 0.
   void invariant_scales(std::span<const double> densities, double* scales) const override {
     for (std::size_t k = 0; k < collisions_.invariants().size(); ++k)
       scales[k] =
@@ -107,7 +107,7 @@ class discrete_velocity_model final : public model {
                    collisions_.invariants()[k].weights.lpNorm<Eigen::Infinity>() * std::abs(densities[0]));
   }
 
-  /// values ← those of fluid_fields().
+  /// values ← the fields of fluid_fields().
   void fluid_moments(const double* f, double* values) const {
     fluid_state state{};
     double square = 0.0;
@@ -165,8 +165,8 @@ class discrete_velocity_model final : public model {
     return std::any_of(all.begin(), all.end(), [](const auto& one) { return one.name == "energy"; });
   }
 
-  /// The Maxwellian exp(α + β·v + γ|v|²) with density, bulk velocity and, if it is an invariant of its own,
-  /// temperature.
+  /// f ← the Maxwellian exp(α + β·v + γ|v|²) with the given density and bulk velocity, and with the given
+  /// temperature if energy is an independent invariant. Returns false if it does not exist.
   bool equilibrium_of(std::span<const double> given, double* f) const {
     if (given[0] == 0.0) {
       std::fill_n(f, components(), 0.0);
@@ -183,7 +183,7 @@ class discrete_velocity_model final : public model {
                                                  : given[1 + static_cast<std::size_t>(axis - 'x')]);
     }
     if (!collisions_.minimize_entropy(wanted, f)) return false;
-    // A bulk velocity across all v_j is no moment.
+    // Invariants do not prescribe components of the bulk velocity that are orthogonal to all v_j.
     std::array<double, 5> values{};
     fluid_moments(f, values.data());
     for (std::size_t k = 1; k <= static_cast<std::size_t>(d()); ++k)

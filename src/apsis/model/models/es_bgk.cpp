@@ -11,7 +11,7 @@
 namespace apsis {
 namespace {
 
-/// In the first rows and columns.
+/// Returns the matrix in the first rows and columns of a larger one.
 template <int d>
 direction_matrix widened(const scalar::small_matrix<d>& of) {
   direction_matrix same;
@@ -20,11 +20,13 @@ direction_matrix widened(const scalar::small_matrix<d>& of) {
   return same;
 }
 
-/// The ellipsoidal statistical model (Holway, Phys. Fluids 9, 1966) of a monatomic gas: Q = C (G − f) with
-/// the Gaussian G of covariance T I + (1 − 1/Pr)(Θ − T I), Θ the stress per density. The stress relaxes with
-/// the rate C/Pr and the heat flux with C, so that the Prandtl number is Pr. In stages with a derivative the
-/// target is G times a quadratic; where the solution of the stage would be negative, in the tails, it is cut
-/// off, and a polynomial of second degree restores the moments. Reduced as in gas.hpp. Dimensionless.
+/// The ellipsoidal statistical model (Holway, Phys. Fluids 9, 1966) of a monatomic gas: Q = C (G − f) with a
+/// Gaussian G. Its covariance is T I + (1 − 1/Pr)(Θ − T I), where Θ is the stress per density. The stress
+/// relaxes with the rate C/Pr and the heat flux with C, so that the Prandtl number is Pr.
+///
+/// In stages with Q̇ the target is G times a quadratic. It is cut off in the tails, where the solution of the
+/// stage would be negative, and a polynomial of second degree restores the moments. Rows are reduced as in
+/// gas.hpp. Dimensionless.
 class es_bgk_model final : public gas_model {
  public:
   explicit es_bgk_model(const model_config& config)
@@ -33,8 +35,7 @@ class es_bgk_model final : public gas_model {
       throw input_error("model.degrees_of_freedom is not 3 (the model is that of a monatomic gas); give 3");
   }
 
-  /// The H-theorem (Andries et al., Eur. J. Mech. B 19, 2000) is that of Q, not of stages with its
-  /// derivative.
+  /// The H-theorem (Andries et al., Eur. J. Mech. B 19, 2000) holds for Q, but not for stages with Q̇.
   std::optional<convex_entropy> entropy() const override {
     auto of_gas = gas_model::entropy();
     of_gas->collisions_decrease = false;
@@ -49,7 +50,7 @@ class es_bgk_model final : public gas_model {
 
   double moment_accuracy() const override { return target_accuracy; }
 
-  /// s = (Θ_kl − T δ_kl for k ≤ l, weight of the derivative).
+  /// s = (Θ_kl − T δ_kl for k ≤ l, weight of Q̇).
   void relaxing_moments(const double* f, const double* omega, double* s) const override {
     std::fill_n(s, relaxing_count(), 0.0);
     const fluid_state state = molecules().state(omega);

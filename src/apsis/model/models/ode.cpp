@@ -7,11 +7,11 @@
 namespace apsis {
 namespace {
 
-/// u₁' = u₂,  u₂' = f(u₁)(g(u₁) − u₂)/ε with f = 1 + u₁², g = sin u₁ (paper, eq. vdp and its first numerical
-/// test). ω = u₁, E = (u₁, g(u₁)), C = f(u₁); as ε → 0, u₁' = g(u₁). Dimensionless.
+/// The equations u₁' = u₂, u₂' = f(u₁)(g(u₁) − u₂)/ε with f = 1 + u₁², g = sin u₁ (paper, eq. vdp and its
+/// first numerical test). ω = u₁, E = (u₁, g(u₁)) and C = f(u₁). As ε → 0, u₁' = g(u₁). Dimensionless.
 class ode_model final : public relaxation_model {
  public:
-  /// The data "given" are (u1, u2).
+  /// Takes the initial data "given", (u1, u2).
   ode_model(double u1, double u2) {
     const auto add = [this](const char* name, const char* description, double first, double second) {
       initial_.push_back({name, description, [first, second](const position&, std::span<double> u) {

@@ -10,9 +10,10 @@
 namespace apsis {
 namespace {
 
-/// u₁_t + u₂_x = 0, u₂_t + a² u₁_x = (F(u₁) − u₂)/ε (paper, eq. hr, with a = 1; Jin, Xin, Comm. Pure Appl.
-/// Math. 48, 1995). The state is f± = (u₁ ± u₂/a)/2, which travel with ±a; ω = u₁, C = 1 and
-/// E = (u₁ ± F(u₁)/a)/2. As ε → 0, u₁_t + F(u₁)_x = 0 if |F'| ≤ a. Dimensionless.
+/// The hyperbolic relaxation system u₁_t + u₂_x = 0, u₂_t + a² u₁_x = (F(u₁) − u₂)/ε (paper, eq. hr, with a
+/// = 1; Jin, Xin, Comm. Pure Appl. Math. 48, 1995). The components are f± = (u₁ ± u₂/a)/2, which travel
+/// with the velocities ±a. ω = u₁, C = 1 and E = (u₁ ± F(u₁)/a)/2. As ε → 0, u₁_t + F(u₁)_x = 0 if |F'| ≤
+/// a. Dimensionless.
 class relaxation_system final : public relaxation_model {
  public:
   explicit relaxation_system(const model_config& config)
@@ -74,7 +75,7 @@ class relaxation_system final : public relaxation_model {
              }}};
   }
 
-  /// The subcharacteristic condition |F'| ≤ a (Liu, Comm. Math. Phys. 108, 1987), without which the limit
+  /// Checks the subcharacteristic condition |F'| ≤ a (Liu, Comm. Math. Phys. 108, 1987). Without it the limit
   /// ε → 0 is unstable.
   unsupported_initial_data check_supported_range(const double* lowest, const double* highest) const override {
     const auto wave = flux_.fastest(lowest[0], highest[0]);
@@ -82,7 +83,7 @@ class relaxation_system final : public relaxation_model {
       return {"model.flux", fmt::format("model.flux = \"{}\" cannot be used (it has no finite slope at u = "
                                         "{:.6g}, which the data reach); change the formula or the data",
                                         flux_.text(), wave.u)};
-    constexpr double rounding = 1e-9;  // of the slope of a formula
+    constexpr double rounding = 1e-9;  // error of the slope of a formula
     if (wave.speed <= a_ * (1.0 + rounding)) return {};
     return {"model.speed",
             fmt::format("model.speed = {:g} is too small for the flux \"{}\" (|F'(u)| = {:.6g} "
@@ -92,7 +93,7 @@ class relaxation_system final : public relaxation_model {
   }
 
  private:
-  /// Rounds up to four digits.
+  /// Returns x rounded up to four digits.
   static double rounded_up(double x) {
     const double unit = std::pow(10.0, std::floor(std::log10(x)) - 3.0);
     return std::ceil(x / unit * (1.0 - 1e-12)) * unit;

@@ -11,11 +11,12 @@ namespace apsis {
 namespace {
 
 /// Shakhov's model (Fluid Dyn. 3, 1968) of a monatomic gas: Q = C (S − f) with
-///   S = M [1 + (1 − Pr) q·c/(5pT) (|c|²/T − 5)],  c = v − u,
-/// whose heat flux relaxes with the rate Pr C and its stress with C, so that the Prandtl number is Pr. The
-/// bracket is negative in the tails. With model.tails = "nonnegative" the target is cut off where the
-/// solution of a stage would be negative, and a polynomial of second degree restores its moments: the steps
-/// keep f ≥ 0, and q relaxes at another rate (cut_moment()). Reduced as in gas.hpp. Dimensionless.
+///   S = M [1 + (1 − Pr) q·c/(5pT) (|c|²/T − 5)],  c = v − u.
+/// The heat flux q relaxes with the rate Pr C and the stress with C, so that the
+/// Prandtl number is Pr. The bracket is negative in the tails. With model.tails = "nonnegative" the target is
+/// cut off where the solution of a stage would be negative. A polynomial of second degree restores its
+/// moments. Steps then keep f ≥ 0, but q relaxes at another rate (cut_moment()). Rows are reduced as in
+/// gas.hpp. Dimensionless.
 class shakhov_model final : public gas_model {
  public:
   explicit shakhov_model(const model_config& config)
@@ -40,7 +41,7 @@ class shakhov_model final : public gas_model {
 
   double moment_accuracy() const override { return target_accuracy; }
 
-  /// s = (q, weight of the derivative).
+  /// s = (q, weight of Q̇).
   void relaxing_moments(const double* f, const double* omega, double* s) const override {
     const int d = molecules().dimensions();
     for (int k = 0; k <= d; ++k) s[k] = 0.0;

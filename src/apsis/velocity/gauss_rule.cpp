@@ -63,7 +63,7 @@ gauss_rule gauss_hermite(int n) {
     of.beta.push_back(k == 0 ? std::sqrt(2.0 * std::numbers::pi) : k);
   }
   gauss_rule rule = rule_of(of);
-  // Symmetric to the last bit.
+  // Makes the rule symmetric to the last bit.
   for (std::size_t j = 0, last = rule.nodes.size() - 1; j < last - j; ++j) {
     rule.nodes[j] = -rule.nodes[last - j];
     rule.weights[j] = rule.weights[last - j];
@@ -74,7 +74,8 @@ gauss_rule gauss_hermite(int n) {
 
 gauss_rule half_range_gauss_hermite(int n) {
   require(n, 2, 60);
-  // Stieltjes' procedure with sums over so fine a rule that they are integrals to rounding.
+  // Stieltjes' procedure. Its sums run over a composite rule that is fine enough to give integrals
+  // to rounding.
   using rule = boost::math::quadrature::gauss<long double, 30>;
   std::vector<long double> x, w;
   const long double end = 2.5L * std::sqrt(4.0L * n + 40.0L);

@@ -10,12 +10,12 @@ namespace apsis {
 
 /// How a kinetic model computes its discrete equilibrium.
 enum class equilibrium_choice {
-  automatic,  ///< the formula where its discrete moments are exact on uniform lines, else `discrete`
+  automatic,  ///< `formula` on uniform lines if its discrete moments are exact, else `discrete`
   formula,    ///< the Maxwellian at the grid points
   discrete    ///< the minimizer of the entropy with the discrete moments
 };
 
-/// Numbers of velocities: one for all directions, or one for each.
+/// Numbers of velocities: one for all directions, or one for each direction.
 class point_counts {
  public:
   /// One number for all directions.
@@ -37,14 +37,16 @@ struct velocity_config {
   double max = 0.0;         ///< largest |v| (dimensionless); 0 where the set chooses it
   point_counts points = 0;  ///< at least 4; 0 where the set chooses it
   equilibrium_choice equilibrium = equilibrium_choice::automatic;  ///< computation of the equilibrium
-  /// Names of velocity lines or files (velocity_line_registry.hpp): one for all directions, or one for each;
-  /// none stands for "uniform".
+  /// Names of velocity lines or files (velocity_line_registry.hpp): one for all directions, or one for each
+  /// direction. Empty stands for "uniform".
   std::vector<std::string> set = {};
-  /// Number of rings about an axis of symmetry; 0 without one. The members above are those along the axis.
+  /// Number of rings about an axis of symmetry; 0 without an axis. The members above then describe the
+  /// velocities along the axis.
   int rings = 0;
   int angles = 0;           ///< velocities of every ring
-  double max_across = 0.0;  ///< largest v_⊥ of rings; 0: that along the axis
-  /// Lines of velocities of all directions, or of each, in place of the members above.
+  double max_across = 0.0;  ///< largest v_⊥ of rings; 0: the largest velocity along the axis
+  /// Lines of velocities that replace `max`, `points` and `set`: one for all directions, or one for
+  /// each direction.
   std::vector<velocity_line> lines = {};
   bool operator==(const velocity_config&) const = default;  ///< equal values
 };

@@ -13,28 +13,30 @@ namespace apsis {
 class velocity_line {
  public:
   velocity_line() = default;
-  /// Midpoints of equal intervals of [−max, max]. Throws input_error unless points ≥ 4 and 0 < max < ∞.
+  /// Makes a uniform line: midpoints of equal intervals of [−max, max]. Throws input_error unless points ≥ 4
+  /// and 0 < max < ∞.
   velocity_line(int points, double max);
-  /// Given points and weights. Throws input_error unless there are as many weights as points, at least 4, the
-  /// points are finite and increase, and the weights are finite and positive.
+  /// Takes points and weights. Throws input_error unless there are at least 4 points and as many weights,
+  /// points are finite and increase, and weights are finite and positive.
   velocity_line(std::vector<double> points, std::vector<double> weights);
 
   int points() const { return static_cast<int>(v_.size()); }  ///< n
   /// Whether the points are midpoints of equal intervals.
   bool uniform() const { return uniform_; }
-  /// Returns the width of the intervals, or the smallest distance of neighbours.
+  /// Returns the width of the intervals, or the smallest distance between neighbours.
   double spacing() const { return spacing_; }
   /// Returns the largest |v|; for equal intervals it lies half an interval beyond the last point.
   double max() const { return max_; }
   const aligned_vector<double>& v() const { return v_; }                      ///< points
   const aligned_vector<double>& half_square() const { return half_square_; }  ///< ½v²
   const aligned_vector<double>& weights() const { return weights_; }          ///< w
-  /// Returns the points in units of the last set_unit(), by default spacing(). In this default, midpoints of
-  /// equal intervals are multiples of ½ without rounding.
+  /// Returns the points in the unit of the last set_unit(), by default spacing(). In the default unit, places
+  /// of a uniform line are multiples of ½ without rounding.
   const aligned_vector<double>& places() const { return places_; }
   /// Sets the unit of places().
   void set_unit(double unit);
-  /// Returns the largest distance between neighbours from one velocity to another.
+  /// Returns the largest distance between neighbours in the range `from` … `to`, and at least
+  /// spacing() (widest_gap.hpp).
   double widest_gap(double from, double to) const;
   bool operator==(const velocity_line&) const = default;  ///< equal points and weights
 

@@ -16,7 +16,8 @@
 namespace apsis {
 namespace {
 
-/// The first number of a text, which it is removed from; false without one.
+/// Removes the first number from a text and stores it in `value`. Returns false if the text does not start
+/// with a number.
 bool take_number(std::string_view& text, double& value) {
   const auto first = text.find_first_not_of(" \t,;");
   if (first == std::string_view::npos) return false;
@@ -26,7 +27,7 @@ bool take_number(std::string_view& text, double& value) {
   return true;
 }
 
-/// Item k of a list that has one item for all directions, or one for each.
+/// Returns the item of direction k from a list with one item for all directions, or one for each direction.
 template <class Item>
 const Item& item_of(const std::vector<Item>& list, std::size_t k, int dimensions, const char* key) {
   if (list.size() != 1 && list.size() != static_cast<std::size_t>(dimensions))
@@ -124,7 +125,7 @@ std::vector<velocity_line> make_lines(const velocity_config& of, int dimensions)
   std::vector<int> points;
   for (std::size_t k = 0; k < static_cast<std::size_t>(dimensions); ++k)
     points.push_back(item_of(of.points.each(), k, dimensions, "velocity.points"));
-  velocity_grid::check_size(points);  // before they are made
+  velocity_grid::check_size(points);  // before the lines are made
   std::vector<velocity_line> lines;
   for (std::size_t k = 0; k < static_cast<std::size_t>(dimensions); ++k)
     lines.push_back(make_line(of, item_of(names, k, dimensions, "velocity.set"), points[k]));

@@ -8,24 +8,24 @@
 
 namespace apsis {
 
-/// Discrete velocities v_j ∈ ℝ^d, j = 0 … n−1, with quadrature weights w_j, and one or more sets of
-/// components at them: component s n + j of a row is transported with v_j, s = 0 … sets−1. Immutable; copies
+/// Discrete velocities v_j ∈ ℝ^d, j = 0 … n−1, with quadrature weights w_j. A row has one or more sets of
+/// components on them. Component s n + j of a row is transported with v_j, s = 0 … sets−1. Immutable; copies
 /// share their numbers. Dimensionless.
 class velocity_set {
  public:
-  /// No velocities: an equation without space.
+  /// Makes an empty set, for equations without space.
   velocity_set();
   /// coordinates[k][j] is component k of v_j. Throws input_error unless there are 1 to 3 rows of coordinates,
-  /// each as long as `weights`, with finite numbers, weights ≥ 0 and sets ≥ 1.
+  /// each as long as `weights`. All numbers must be finite, weights ≥ 0 and sets ≥ 1.
   velocity_set(std::vector<aligned_vector<double>> coordinates, std::vector<double> weights, int sets = 1);
 
   int dimensions() const;                             ///< d; 0 without velocities
   int size() const;                                   ///< n
-  int sets() const;                                   ///< sets of components on the velocities
+  int sets() const;                                   ///< number of sets of components
   int components() const { return sets() * size(); }  ///< numbers of a row
-  /// v_k of every component, components() numbers; empty where k ≥ d.
+  /// Returns the velocity of every component along direction k, components() numbers; empty for k ≥ d.
   std::span<const double> speeds(int k) const;
-  /// w_j, size() numbers.
+  /// Returns the weights w_j, size() numbers.
   std::span<const double> weights() const;
 
  private:

@@ -2,9 +2,9 @@
 
 namespace apsis {
 
-/// Returns the largest distance of two neighbours of n ascending velocities, or `least` if that is larger.
-/// Pairs count whose interval has a part of the range from … to. This header includes nothing, as kernels of
-/// devices need it.
+/// Returns the largest distance between neighbours among n ascending velocities, or `least` if that is
+/// larger. Only pairs whose interval overlaps the range `from` … `to` count. This header includes nothing,
+/// because kernels of devices use it.
 constexpr double widest_gap(const double* v, int n, double least, double from, double to) {
   double widest = least;
   for (int j = 1; j < n; ++j) {

@@ -11,9 +11,9 @@ namespace apsis {
 namespace graded_line {
 namespace {
 
-/// v = max s|s|² at midpoints of equal intervals of s ∈ [−1, 1], with weights v'(s) Δs. The integrand f v' of
-/// each half has vanishing first and third derivatives at s = 0, so that the midpoint rule has sixth order
-/// also where f jumps at v = 0.
+/// Returns velocities v = max s³ at midpoints of equal intervals of s ∈ [−1, 1], with weights v'(s) Δs. The
+/// first and third derivatives of the integrand f v' of each half vanish at s = 0. The midpoint rule
+/// therefore has sixth order, even if f jumps at v = 0.
 velocity_line make(int points, double max) {
   if (points % 2 != 0)
     throw input_error(fmt::format("velocity.points = {} cannot be graded towards 0 (it is odd); give {}",

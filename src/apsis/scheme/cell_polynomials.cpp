@@ -7,8 +7,8 @@
 namespace apsis {
 namespace {
 
-/// Value of a cell from −1 to `cells`, continued by the parabola through three cells, or the line through
-/// two.
+/// Returns the value of a cell from −1 to `cells`. Beyond the ends it extrapolates by the parabola through
+/// three cells, or the line through two.
 double continued(const line_rows& rows, int cell, int k) {
   const int n = rows.cells;
   if (cell >= 0 && cell < n) return rows.at(cell, k);
@@ -18,7 +18,7 @@ double continued(const line_rows& rows, int cell, int k) {
   return 3.0 * (rows.at(first, k) - rows.at(first + step, k)) + rows.at(first + 2 * step, k);
 }
 
-/// Smallest value of value + a ξ + b (ξ² − offset) on |ξ| ≤ ½.
+/// Returns the minimum of value + a ξ + b (ξ² − offset) on |ξ| ≤ ½.
 double smallest(double value, double a, double b, double offset) {
   const double end = value - 0.5 * std::abs(a) + b * (0.25 - offset);
   if (!(b > 0.0) || std::abs(a) >= b) return end;
@@ -63,7 +63,7 @@ cell_polynomials::cell_polynomials(const line_rows& rows, bool nonnegative)
              b = scale * w_centre * bend / total;
       if (nonnegative) {
         const double lowest = smallest(value, a, b, offset);
-        // A little more than the smallest value needs, so that its rounding is not negative.
+        // Scales slightly more than necessary, so that the minimum is not negative after rounding.
         constexpr double margin = 1.0 - 1e-14;
         const double keep = value <= 0.0 ? 0.0 : lowest < 0.0 ? margin * value / (value - lowest) : 1.0;
         a *= keep;

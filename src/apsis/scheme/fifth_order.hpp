@@ -21,7 +21,7 @@ struct pencil_loops {
   operation_count operations;  ///< per number
 };
 
-/// Makes a scheme of fifth order, which needs the two neighbours on either side.
+/// Returns a scheme of fifth order, which needs two neighbours on either side.
 std::unique_ptr<reconstruction> make_fifth_order(const pencil_loops& loops);
 
 }  // namespace apsis

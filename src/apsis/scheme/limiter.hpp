@@ -2,20 +2,21 @@
 
 namespace apsis {
 
-/// Limiters that keep forward Euler steps of upwind transport nonnegative (docs/space.md, "Positivity").
+/// Limiters for which forward Euler steps of upwind transport stay nonnegative (docs/space.md, "Positivity").
 namespace limiter {
 
-/// Quadrature weight ŵ₁ of each edge in the four-point Gauss–Lobatto rule of the limiter of edges (Zhang &
-/// Shu, JCP 229, 2010): a cell average c is ŵ₁ L + (1 − 2ŵ₁) ξ* + ŵ₁ R, and if L, R, ξ* ≥ 0 then a step with
-/// Δt ≤ ŵ₁ Δx/v keeps the average nonnegative.
+/// Quadrature weight ŵ₁ of each edge in the four-point Gauss–Lobatto rule (Zhang & Shu, JCP 229, 2010). A
+/// cell average is c = ŵ₁ L + (1 − 2ŵ₁) ξ* + ŵ₁ R. If L, R, ξ* ≥ 0, a step with Δt ≤ ŵ₁ Δx/v keeps the
+/// average nonnegative.
 inline constexpr double end_weight = 1.0 / 12.0;
 
-/// Values are kept above this fraction of the average (or of K) instead of above 0: rounding errors of the
-/// update are a few 1e-16 of the average, so the result stays positive. The order of accuracy is unaffected.
+/// Limited values stay above this fraction of the average (or of K, see limiter_coefficient()) instead of
+/// above 0. Rounding errors of the update are a few 1e-16 of the average, so that the result stays positive.
+/// The order of accuracy is unaffected.
 inline constexpr double relative_margin = 1e-13;
 
-/// Absolute part of the margin, for values close to the smallest normal number 2.2e-308, whose rounding error
-/// is absolute (half of 4.9e-324): averages below it get first-order upwind fluxes, which stay nonnegative
+/// Absolute part of the margin. Close to the smallest normal number 2.2e-308 rounding errors are absolute
+/// (half of 4.9e-324). Averages below this margin have first-order upwind fluxes, which stay nonnegative
 /// under rounding (docs/space.md, "Rounding").
 inline constexpr double absolute_margin = 1e-290;
 
@@ -26,15 +27,15 @@ inline double lower_bound(double c) {
   return bound < c ? bound : c;
 }
 
-/// Returns θ ∈ [0, 1] such that c + θ(m − c) ≥ lower_bound(c), where m ≤ c is the smallest value to be
-/// limited. 0 for NaN and for c ≤ absolute_margin (if m < c).
+/// Returns the largest θ ∈ [0, 1] such that c + θ(m − c) ≥ lower_bound(c), where m ≤ c is the smallest value
+/// to be limited. Returns 0 for NaN, and for c ≤ absolute_margin if m < c.
 inline double scaling(double c, double m) {
   const double bound = lower_bound(c);
   const double theta = m < bound ? (c - bound) / (c - m) : 1.0;
   return theta > 0.0 ? theta : 0.0;
 }
 
-/// Returns the value ξ* that average c and edge values l, r imply between the edges.
+/// Returns the value ξ* between the edges that follows from the average c and the edge values l, r.
 inline double interior(double c, double l, double r) {
   return (c - end_weight * (l + r)) * (1.0 / (1.0 - 2.0 * end_weight));
 }
@@ -43,8 +44,8 @@ inline double interior(double c, double l, double r) {
 /// the averages c.
 void apply(const double* c, int width, double* left, double* right);
 
-/// Values below it do not flow out: in several directions the fluxes of a cell round separately, and three
-/// subnormal numbers may round to more than their sum (docs/space.md, "Rounding").
+/// Smaller values do not flow out of their cell. The fluxes of a cell in several directions round separately,
+/// and three subnormal numbers may round to more than their sum (docs/space.md, "Rounding").
 inline constexpr double negligible = 1e-270;
 
 /// Returns the value at the edge of a cell in the first-order upwind scheme.
@@ -52,19 +53,19 @@ inline double low_order_edge(double u) {
   return u < negligible && u > -negligible ? 0.0 : u;
 }
 
-/// Least κ that fluxes are limited for: slower velocities, and those of shorter steps, hardly need a limiter.
+/// Least CFL number κ for which fluxes are limited. At smaller ones, from slow velocities or short steps,
+/// fluxes hardly need a limiter.
 inline constexpr double least_cfl_number = 1e-3;
 
-/// Limits fluxes. The flux function of point values may be negative where the solution touches zero (near a
-/// minimum it is lower by Δx² u''/24), so edge values must not be cut off at zero. Instead the fluxes into
-/// and out of a cell are limited together, between first-order upwind and the high-order edge (as in Xu,
-/// Math. Comp. 83, 2014, or Zalesak, JCP 31, 1979).
-/// Let u_up, u ≥ 0 be values in the direction of motion, w = low_order_edge(u), and A = edge − w the
-/// corrections of inflow and outflow. Returns the fraction ϑ ∈ [0, 1] of the corrections that decrease u,
-/// such that
+/// Limits fluxes. The flux function of point values may be negative where the solution touches zero: near a
+/// minimum it is lower by Δx² u''/24. Edge values must therefore not be cut off at zero. Instead, the fluxes
+/// into and out of a cell are limited together, between first-order upwind and high-order edges (as in Xu,
+/// Math. Comp. 83, 2014, or Zalesak, JCP 31, 1979). Let u_up, u ≥ 0 be values in the direction of motion, w =
+/// low_order_edge(u), and A = edge − w the corrections of inflow and outflow. A⁺ = max(A, 0) and A⁻ = max(−A,
+/// 0). Returns the fraction ϑ ∈ [0, 1] of the corrections that decrease u, such that
 ///     u − κ (w + ϑ A_out⁺ − w_up + ϑ A_in⁻) ≥ absolute_margin
-/// if K = u − κ w + κ w_up allows it. ϑ = 0 if K is below the margin. `inverse_cfl` is 1/κ ≥ 1: an outflow of
-/// so many times the value would empty the cell.
+/// if K = u − κ w + κ w_up is large enough. ϑ = 0 if K is below the margin. `inverse_cfl` is 1/κ ≥ 1: an
+/// outflow of 1/κ times the value would empty the cell.
 inline double limiter_coefficient(double u_up, double u, double a_in, double a_out, double inverse_cfl) {
   // Both sides are divided by κ, because κ A may underflow to 0.
   const double kept = inverse_cfl * u - low_order_edge(u) + low_order_edge(u_up);

@@ -6,10 +6,10 @@
 
 namespace apsis {
 
-/// Quartic on a cell (ξ ∈ [−½, ½]) with edge values L, R and averages c, m, p over the cell and its left and
-/// right neighbours. Three-point Gauss–Legendre integrates it exactly, so the weighted mean of the Gauss
-/// values is c. Expressed in differences from c, so that constant data are reproduced without rounding and
-/// no step drifts.
+/// The quartic on a cell (ξ ∈ [−½, ½]) with edge values L, R and averages c, m, p over the cell and its left
+/// and right neighbours. The three-point Gauss–Legendre rule integrates it exactly, so that the weighted mean
+/// of the Gauss values is c. The coefficients are differences from c. Constant data are therefore reproduced
+/// without rounding, and steps do not drift.
 struct quartic {
   double c,  ///< average
       d0,    ///< value minus average at the centre

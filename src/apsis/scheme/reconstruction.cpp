@@ -14,7 +14,7 @@ namespace apsis {
 
 void reconstruction::outflow_edges(const double* const* rows, int count, int width, const double* forward,
                                    double* edge) const {
-  // One pair of buffers per thread: no allocation once they have grown.
+  // Each thread has one pair of buffers, so that memory is allocated only until they have grown.
   thread_local aligned_vector<double> left, right;
   const std::size_t size = static_cast<std::size_t>(count) * static_cast<std::size_t>(width);
   left.resize(size);

@@ -15,7 +15,7 @@ struct reconstruction_entry {
   std::string description;  ///< one line
   std::string source;       ///< citation
   bool linear = false;      ///< whether edge values are linear in the data
-  bool settles = false;     ///< not linear, but steady states are found also where f jumps along rays
+  bool settles = false;     ///< whether a nonlinear scheme reaches steady states even if f jumps along rays
   std::unique_ptr<reconstruction> (*make)();  ///< makes an instance; schemes have no parameters
 };
 

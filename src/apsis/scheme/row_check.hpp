@@ -17,7 +17,7 @@ struct row_squares {
       size = 0.0;           ///< Σ u²
 };
 
-/// Computes the sums for two rows of n numbers, in an order that does not depend on the processor.
+/// Computes the sums for two rows u and v of n numbers, in an order that does not depend on the processor.
 row_squares compute_squares(const double* u, const double* v, int n);
 
 }  // namespace apsis

@@ -16,8 +16,8 @@ namespace apsis::HWY_NAMESPACE {
 enum class course { forward, backward, either };
 
 /// Iterates over cells 0 … count−1 of a pencil for one pack of components. Cell j of the walk is cell j of
-/// the pencil for components that move forward, cell count−1−j for those that move backward, so cell j−1 of
-/// the walk is always upstream. A pack with components of both kinds reads both cells.
+/// the pencil for components that move forward, and cell count−1−j for components that move backward. Cell
+/// j−1 of the walk is therefore always upstream. A pack with components of both kinds reads both cells.
 template <course C, class D>
 class walk {
  public:
@@ -32,7 +32,7 @@ class walk {
     return select(ahead(), number::load(rows[j] + k_), number::load(rows[last_ - j] + k_));
   }
   /// Loads like load(), and prefetches the next pack of the row. Rows of neighbouring cells are too far apart
-  /// for the hardware prefetcher; a walk along the next pack returns to each of them.
+  /// for the hardware prefetcher. The walk of the next pack will read each of them.
   HWY_INLINE number load_and_prefetch(const double* const* rows, int j) const {
     if constexpr (C != course::backward) prefetch_behind(rows[j] + k_);
     if constexpr (C != course::forward) prefetch_behind(rows[last_ - j] + k_);
@@ -43,13 +43,13 @@ class walk {
     if constexpr (C != course::backward) prefetch_behind(row + j * pitch + k_);
     if constexpr (C != course::forward) prefetch_behind(row + (last_ - j) * pitch + k_);
   }
-  /// Loads from equally spaced rows, starting with that of cell 0 of the pencil.
+  /// Loads from equally spaced rows; `row` is the row of cell 0 of the pencil.
   HWY_INLINE number load(const double* row, std::ptrdiff_t pitch, int j) const {
     if constexpr (C == course::forward) return number::load(row + j * pitch + k_);
     if constexpr (C == course::backward) return number::load(row + (last_ - j) * pitch + k_);
     return select(ahead(), number::load(row + j * pitch + k_), number::load(row + (last_ - j) * pitch + k_));
   }
-  /// Loads from the downstream one of two rows: `right` where components move forward.
+  /// Loads from the downstream row: `right` for components that move forward, else `left`.
   HWY_INLINE number load_downstream(const double* left, const double* right, std::ptrdiff_t pitch,
                                     int j) const {
     if constexpr (C == course::forward) return load(right, pitch, j);
@@ -69,7 +69,7 @@ class walk {
   }
 
  private:
-  /// Prefetches the pack after this one; not in the scalar remainder of a row.
+  /// Prefetches the pack after this one, except in the scalar remainder of a row.
   static HWY_INLINE void prefetch_behind(const double* at) {
     constexpr std::size_t length = hn::MaxLanes(D());
     if constexpr (length > 1) hwy::Prefetch(at + length);
@@ -80,8 +80,8 @@ class walk {
   const double* forward_;
 };
 
-/// Calls body(walk, k) for every pack of `width` components; forward[k] is 1 where a component moves
-/// forward, else 0.
+/// Calls body(walk, k) for every pack of `width` components; forward[k] is 1 if component k moves forward,
+/// else 0.
 template <class Body>
 HWY_INLINE void for_walks(const double* forward, int count, int width, const Body& body) {
   for_packs(width, [&](auto lanes, int k) APSIS_PACKED {

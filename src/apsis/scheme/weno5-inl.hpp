@@ -14,8 +14,8 @@ HWY_BEFORE_NAMESPACE();
 namespace apsis::HWY_NAMESPACE::weno5 {
 
 /// Calls put(fraction, j) for cells 0 … count−1 of the walk. The formulas of a cell form a dependency chain
-/// longer than the out-of-order window of a processor; they are split into three parts, and those of three
-/// cells are interleaved to hide latency. Returns the sum of the sizes of the fractions.
+/// that is longer than the out-of-order window of a processor. They are split into three parts, and the parts
+/// of three cells are interleaved to hide latency. Returns the sum of the sizes of the fractions.
 template <class Weights, template <class> class Fraction, class Walk, class Put>
 HWY_INLINE auto put_fractions(const Walk& way, const double* const* rows, int count, const Put& put) {
   using N = typename Walk::number;
@@ -47,8 +47,8 @@ HWY_INLINE auto put_fractions(const Walk& way, const double* const* rows, int co
   return sizes;
 }
 
-/// Like put_fractions(), for data of any size. Each number decides for itself, so that an edge depends on its
-/// own stencil alone.
+/// Calls put(fraction, j) like put_fractions(), for data of any size. The choice is made for each number, so
+/// that an edge depends only on its own stencil.
 template <class Weights, template <class> class Fraction, class Walk, class Put>
 HWY_NOINLINE void put_scaled_fractions(const Walk& way, const double* const* rows, int count,
                                        const Put& put) {
@@ -62,8 +62,9 @@ HWY_NOINLINE void put_scaled_fractions(const Walk& way, const double* const* row
   }
 }
 
-/// Calls put(fraction, j) for cells 0 … count−1 of the walk, and again if some fraction is too large. The sum
-/// of sizes, one addition per number, replaces a scaling of the indicators of all cells, eight operations.
+/// Calls put(fraction, j) for cells 0 … count−1 of the walk, and again if some fraction is too large. The
+/// sum of sizes detects this with one addition per number. Scaling the indicators of all cells would take
+/// eight operations.
 template <class Weights, template <class> class Fraction, class Walk, class Put>
 HWY_INLINE void along(const Walk& way, const double* const* rows, int count, const Put& put) {
   using N = typename Walk::number;

@@ -28,7 +28,7 @@ APSIS_FORMULA N lower_bound(N c) {
   return minimum(fma(N(relative_margin), c, N(absolute_margin)), c);
 }
 
-/// limiter::scaling with bound = lower_bound(c).
+/// Computes limiter::scaling() with bound = lower_bound(c).
 template <class N>
 APSIS_FORMULA N scaling(N c, N m, N bound) {
   return nonnegative(select(m < bound, (c - bound) / (c - m), N(1.0)));
@@ -39,17 +39,18 @@ APSIS_FORMULA N interior(N c, N l, N r) {
   return (c - end_weight * (l + r)) * (1.0 / (1.0 - 2.0 * end_weight));
 }
 
-/// Whether u > negligible and 0.01 u < edge < (inverse_cfl − 0.01) u for all components. If this holds for a
-/// cell and its upstream neighbour, the corrections do no harm: A_out⁺ < (inverse_cfl − 1.01) u and −A_in⁻ <
-/// 0.99 u_up, which is less than limiter_coefficient() allows by far more than rounding errors and margins.
+/// Returns true only if u > negligible and 0.01 u < edge < (inverse_cfl − 0.01) u for all components. If this
+/// holds for a cell and its upstream neighbour, A_out⁺ < (inverse_cfl − 1.01) u and A_in⁻ < 0.99 u_up.
+/// limiter_coefficient() allows more, by far more than rounding errors and margins. The corrections then need
+/// no limiting.
 template <class N>
 APSIS_FORMULA bool is_moderate(N u, N edge, N inverse_cfl) {
   const N middle = N(0.5) * inverse_cfl;
   return all<N>(absolute(fma(-middle, u, edge)) < fma(middle - N(0.01), u, middle * N(-negligible)));
 }
 
-/// limiter::limiter_coefficient in two parts, because the corrections of most cells need no limiting.
-/// `inverse_cfl` is 1/κ.
+/// Computes limiter::limiter_coefficient() in two parts, because the corrections of most cells need no
+/// limiting. `inverse_cfl` is 1/κ.
 template <class N>
 class harm_bound {
  public:
@@ -67,7 +68,7 @@ class harm_bound {
   N allowed_, harm_;
 };
 
-/// Limits the edge values of a cell of average c; returns false if none of them changes.
+/// Limits the edge values of a cell of average c. Returns false if neither changes.
 template <class N>
 APSIS_FORMULA bool limit_edges(N c, N& left, N& right) {
   const N lowest = smaller(smaller(left, right), interior(c, left, right)), bound = lower_bound(c);

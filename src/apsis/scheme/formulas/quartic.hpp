@@ -12,8 +12,9 @@
 APSIS_BEFORE_FORMULAS();
 namespace apsis::APSIS_NUMBERS {
 
-/// The quartic of scheme/quartic.hpp at the Gauss points and at the inner points of the Gauss–Lobatto rule,
-/// minus its average. Both rules give the average, which leaves one term of the even parts.
+/// Values of the quartic of scheme/quartic.hpp at the Gauss points. The limiter also uses the inner points
+/// of the Gauss–Lobatto rule. Each rule gives the average c, so that one number determines the even part at
+/// its points.
 template <class N>
 struct gauss_points {
   N g0, g1, g2;
@@ -25,7 +26,7 @@ APSIS_FORMULA gauss_points<N> quartic_values(N before, N c, N after, N l, N r) {
   const N to_left = l - c, to_right = r - c, edges = to_left + to_right, slope = r - l;
   const N neighbours = (before - c) + (after - c), rise = after - before;
   const N middle = fma(N(-9.0 / 32.0), edges, N(1.0 / 192.0) * neighbours), even = N(-0.8) * middle;
-  // ξ (1.25 − ξ²) of the slope and ξ (ξ²/2 − 1/8) of the rise.
+  // The odd part is ξ (1.25 − ξ²) times the slope plus ξ (ξ²/2 − 1/8) times the rise.
   const N odd =
       fma(N(outer * (1.25 - outer * outer)), slope, N(outer * (0.5 * outer * outer - 0.125)) * rise);
   const N g0 = even - odd, g1 = middle, g2 = even + odd;

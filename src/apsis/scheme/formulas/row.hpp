@@ -10,14 +10,14 @@
 APSIS_BEFORE_FORMULAS();
 namespace apsis::APSIS_NUMBERS {
 
-/// The contents of a row of numbers that a check looks at.
+/// The properties of a row of numbers that a check needs.
 template <class N>
 struct row_contents {
-  N lowest;      ///< the smallest number so far
-  N negative;    ///< how many are negative
-  N not_finite;  ///< 0, and NaN as soon as one is not finite: x − x
+  N lowest;      ///< smallest number so far
+  N negative;    ///< count of negative numbers
+  N not_finite;  ///< sum of x − x: 0, or NaN if a number is not finite
 
-  /// Without numbers `least` is infinite.
+  /// For a row without numbers, `least` is infinite and the other arguments are 0.
   APSIS_FORMULA row_contents(N least, N below_zero, N differences)
       : lowest(least), negative(below_zero), not_finite(differences) {}
 
@@ -28,7 +28,7 @@ struct row_contents {
   }
 };
 
-/// Sums of squares of a row u beside another one.
+/// Sums of squares of a row u and of its difference to another row v.
 template <class N>
 struct sums_of_squares {
   N difference, size;
@@ -41,7 +41,7 @@ struct sums_of_squares {
   }
 };
 
-/// The sums of squares of two rows of n numbers, by eight numbers together (exec/octet-inl.hpp).
+/// Returns the sums of squares of two rows of n numbers, by groups of eight numbers (exec/octet-inl.hpp).
 template <class Group, class N = typename Group::number>
 APSIS_FORMULA sums_of_squares<N> sum_squares(const Group& group, const double* u, const double* v, int n) {
   constexpr int together = 8;

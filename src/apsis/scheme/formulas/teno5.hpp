@@ -11,15 +11,16 @@
 APSIS_BEFORE_FORMULAS();
 namespace apsis::APSIS_NUMBERS {
 
-/// g_k = 1, or 0 where γ_k = ((β_k + δ + τ)/(β_k + δ))⁶, τ = |β₀ − β₂|, is less than 1e-5 of the sum of all
-/// three. A candidate has its linear weight or none. Smooth data therefore have the linear scheme and its
-/// dispersion (Fu, Hu & Adams, JCP 305, 2016, with C_T = 1e-5 and q = 6).
+/// The weights of TENO (Fu, Hu & Adams, JCP 305, 2016, with C_T = 1e-5 and q = 6). Let γ_k = ((β_k + δ +
+/// τ)/(β_k + δ))⁶ with τ = |β₀ − β₂|. g_k is 0 if γ_k is less than 1e-5 times the sum of all three, else 1.
+/// A candidate has its linear weight or none. On smooth data the scheme is therefore the linear one, with
+/// its dispersion.
 struct weights_teno : weno5::weights_relative_to_data {
   static constexpr double cutoff = 1e-5;
 
-  /// Of bases over a common denominator and relative to their sum: no power overflows, and one that
-  /// underflows is far below the cutoff. The largest base is at least a third, its power more than the
-  /// cutoff.
+  /// The bases of the powers have a common denominator and are relative to their sum. No power overflows
+  /// then, and a power that underflows is far below the cutoff. The largest base is at least 1/3, so that its
+  /// power exceeds the cutoff.
   template <class N>
   static APSIS_FORMULA weno5::factors<N> factors(const weno5::smoothness<N>& y) {
     const N tau = absolute(y.s0 - y.s2);

@@ -12,14 +12,14 @@
 APSIS_BEFORE_FORMULAS();
 namespace apsis::APSIS_NUMBERS {
 
-/// Both edges of a cell in the first-order upwind scheme: limiter::carried(u).
+/// Returns both edges of a cell in the first-order upwind scheme, limiter::low_order_edge(u).
 template <class N>
 APSIS_FORMULA N upwind1_edge(N u) {
   return select(absolute(u) < N(limiter::negligible), N(0.0), u);
 }
 
-/// Right edge of the cell c of five, from the quartic through their averages; the left one by mirror
-/// symmetry.
+/// Returns the right edge of cell c from the quartic through the averages of five cells a … e. The left edge
+/// follows by mirror symmetry.
 template <class N>
 APSIS_FORMULA N upwind5_edge(N a, N b, N c, N d, N e) {
   const N upstream = fma(N(2.0 / 60.0), a - c, N(-13.0 / 60.0) * (b - c));

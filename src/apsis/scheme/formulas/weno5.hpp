@@ -13,19 +13,19 @@ namespace apsis::APSIS_NUMBERS::weno5 {
 
 /// Fifth-order WENO edge values of a cell from the cells i−2 … i+2. Three third-order candidates at each edge
 /// have the weights (linear weight) × g_k, where g_k depends on the smoothness indicators β_k (Jiang & Shu,
-/// JCP 126, 1996). Right edge: linear weights (1, 6, 3)/10; left edge by mirror symmetry. All formulas use
-/// first and second differences, which neighbouring cells share, and represent an edge value as the value of
-/// the cell plus a deviation.
+/// JCP 126, 1996). The linear weights at the right edge are (1, 6, 3)/10; the left edge follows by mirror
+/// symmetry. All formulas use first and second differences, which neighbouring cells share. They represent an
+/// edge value as the value of the cell plus a deviation.
 
-/// `Weights` has
-///   added          a constant that belongs to every smoothness indicator, or 0;
+/// A class `Weights` has
+///   added          a constant that is part of every smoothness indicator, or 0;
 ///   of_any_size    whether the edges are correct for data of any size;
 ///   smoothness(u)  the positive indicators y_k of a window;
 ///   factors(y)     the g_k, up to a common factor.
 
-/// Second difference s = u_{i−1} − 2u_i + u_{i+1} of a cell with the differences a and b to its neighbours,
-/// and inner smoothness indicator β = ab + (4/3)s², the same as ((a + b)/2)² + (13/12)s², with a constant
-/// added.
+/// The second difference s = u_{i−1} − 2u_i + u_{i+1} of a cell, and its inner smoothness indicator. With the
+/// differences a and b to the neighbours, the indicator is β = ab + (4/3)s² = ((a + b)/2)² + (13/12)s², plus
+/// the constant `added`.
 template <class N>
 struct bend {
   N second, inner;
@@ -33,8 +33,8 @@ struct bend {
       : second(after - before), inner(fma(N(4.0 / 3.0) * second, second, fma(before, after, added))) {}
 };
 
-/// Stencil of cells i−2 … i+2: the value u_i, the differences u_i − u_{i−1} and u_{i+1} − u_i and twice
-/// these, and the bends at i−1, i and i+1.
+/// The stencil of cells i−2 … i+2: the value u_i, the differences u_i − u_{i−1} and u_{i+1} − u_i, their
+/// doubles, and the bends at i−1, i and i+1.
 template <class Weights, class N>
 class window {
  public:
@@ -73,8 +73,9 @@ class window {
   N next_, last_, last_difference_;
 };
 
-/// Smoothness indicators β_k. The outer ones differ from the inner ones of the neighbours by 2as, with
-/// rounding errors of some 20 units at most, because these quadratic forms are definite.
+/// The smoothness indicators β_k. The outer ones differ by 2as from the inner indicators of the
+/// neighbours. Their rounding errors are at most some 20 units in the last place, because these quadratic
+/// forms are definite.
 template <class N>
 struct smoothness {
   N s0, s1, s2;
@@ -86,25 +87,27 @@ APSIS_FORMULA smoothness<N> indicators(const window<Weights, N>& u) {
           negative_fma(u.twice_after, u.bend2.second, u.bend2.inner)};
 }
 
-/// Scales β_k + δ by the power of two that makes the larger of the outer two about 1, with a lower bound
-/// of 1e-40: products of six of them neither overflow nor underflow, whatever the size of the data. The inner
-/// one needs no comparison: β₁ ≤ 2.67 (β₀ + β₂), since in terms of the differences a, b, c, d, β₁ ≤ 13 (b² +
-/// c²)/6, β₀ ≥ 13 b²/16 for any a, and β₂ ≥ 13 c²/16 for any d. For data so small that only δ remains, all
-/// three are equal. A power of two changes no rounding.
+/// Scales β_k + δ by the power of two that makes the larger of the outer two about 1, and adds 1e-40.
+/// Products of six of them then neither overflow nor underflow, whatever the size of the data. A power of two
+/// changes no rounding. For data so small that only δ remains, all three are equal.
+///
+/// The inner indicator needs no comparison, because β₁ ≤ 2.67 (β₀ + β₂). Indeed, with the four differences a,
+/// b, c, d of the stencil, β₁ ≤ 13 (b² + c²)/6, β₀ ≥ 13 b²/16 for any a, and β₂ ≥ 13 c²/16 for any d.
 template <class N>
 APSIS_FORMULA smoothness<N> scale(const smoothness<N>& s, N delta) {
   const N by = inverse_power_of_two(maximum(s.s0, s.s2) + delta), least = fma(delta, by, N(1e-40));
   return {fma(s.s0, by, least), fma(s.s1, by, least), fma(s.s2, by, least)};
 }
 
-/// Indicators scaled with δ = share u², so that a scheme is scale-invariant: variations below √share of the
-/// value count as smooth, even where the first two derivatives vanish together.
+/// Returns the indicators scaled with δ = share u², which makes a scheme scale-invariant. Variations below
+/// √share times the value count as smooth, even where the first two derivatives vanish simultaneously.
 template <class Weights, class N>
 APSIS_FORMULA smoothness<N> relative_to_data(const window<Weights, N>& u, double share = 1e-6) {
   return scale(indicators(u), fma(share * u.here, u.here, N(1e-200)));
 }
 
-/// Base of weights with these indicators. They are correct for data of any size.
+/// Base class of weights with the indicators of relative_to_data(). Such weights are correct for data of
+/// any size.
 struct weights_relative_to_data {
   static constexpr double added = 0.0;
   static constexpr bool of_any_size = true;
@@ -115,14 +118,14 @@ struct weights_relative_to_data {
   }
 };
 
-/// Factors g_k ≥ 0 up to a common factor: a ratio such as 1/y₀² is written y₁² y₂², over
-/// a common denominator.
+/// Factors g_k ≥ 0 up to a common factor. A ratio such as 1/y₀² is represented by y₁² y₂², with a
+/// common denominator.
 template <class N>
 struct factors {
   N g0, g1, g2;
 };
 
-/// The same weights for data of any size.
+/// The weights `Weights` with scaled indicators, for data of any size.
 template <class Weights>
 struct scaled : Weights {
   template <class N>
@@ -131,7 +134,7 @@ struct scaled : Weights {
   }
 };
 
-/// Terms of a stencil from which the edges of its cell are computed.
+/// The terms of a stencil that determine the edge values of its cell.
 template <class Weights, class N>
 struct edge_terms {
   N here, before, after, twice_before, twice_after, second0, second2;
@@ -148,14 +151,14 @@ struct edge_terms {
         second2(u.bend2.second),
         y(Weights::smoothness(u)) {}
 
-  /// Numerator at the right edge: twice the candidates minus u_i are r₀, r₁/6 and −r₂/3, with the weights g₀,
-  /// 6g₁ and 3g₂.
+  /// Returns the numerator at the right edge. Twice the differences of the candidates to u_i are r₀, r₁/6 and
+  /// −r₂/3, with the weights g₀, 6g₁ and 3g₂.
   APSIS_FORMULA N right(const factors<N>& g) const {
     const N r0 = fma(N(2.0 / 3.0), second0, before), r1 = fma(N(2.0), twice_after, twice_before),
             r2 = negative_fma(N(3.0), after, second2);
     return negative_fma(g.g2, r2, fma(g.g1, r1, g.g0 * r0));
   }
-  /// Numerator at the left edge of the mirrored cells.
+  /// Returns the numerator at the left edge for mirrored cells.
   APSIS_FORMULA N left(const factors<N>& g) const {
     const N l0 = fma(N(3.0), before, second0), l1 = fma(N(2.0), twice_before, twice_after),
             l2 = negative_fma(N(2.0 / 3.0), second2, after);
@@ -163,8 +166,8 @@ struct edge_terms {
   }
 };
 
-/// Right edge u + numerator/(2 denominator) before the division. With the factors of weights_js, no product
-/// overflows where the denominator is below `largest`: |numerator| < 1e255 there.
+/// The right edge u + numerator/(2 denominator) before the division. With the factors of weights_js, no
+/// product overflows if the denominator is below `largest`, because |numerator| < 1e255 then.
 template <class N>
 struct right_fraction {
   static constexpr double largest = 1e200;
@@ -181,7 +184,7 @@ struct right_fraction {
   APSIS_FORMULA N size() const { return denominator; }
   APSIS_FORMULA N edge() const { return fma(N(0.5), numerator / denominator, here); }
 
-  /// Takes the fields of `other` where those of this fraction may have overflowed.
+  /// Copies the members of `other` where members of this fraction may have overflowed.
   APSIS_FORMULA void replace_if_too_large(const right_fraction& other) {
     const auto fits = size() < N(largest);
     numerator = select(fits, numerator, other.numerator);
@@ -189,9 +192,9 @@ struct right_fraction {
   }
 };
 
-/// Both edges with a single division; the left one is that of the mirrored cells, its numerator with
-/// the opposite sign. The sums of weights differ by a factor of at most 3, so that both are below 2e150 where
-/// their product is below `largest`; no numerator overflows there.
+/// Both edges with a single division. The left edge is that of the mirrored cells; its numerator has the
+/// opposite sign. The sums of weights differ by a factor of at most 3. If their product is below `largest`,
+/// both are therefore below 2e150, and no numerator overflows.
 template <class N>
 struct both_fractions {
   static constexpr double largest = 1e300;
@@ -216,7 +219,7 @@ struct both_fractions {
     left_edge = negative_fma(left, right_sum * half, here);
   }
 
-  /// As in right_fraction.
+  /// Copies the members of `other` where members of these fractions may have overflowed.
   APSIS_FORMULA void replace_if_too_large(const both_fractions& other) {
     const auto fits = size() < N(largest);
     right = select(fits, right, other.right);

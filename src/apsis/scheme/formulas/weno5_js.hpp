@@ -11,8 +11,9 @@
 APSIS_BEFORE_FORMULAS();
 namespace apsis::APSIS_NUMBERS {
 
-/// g_k = 1/(β_k + 1e-6)² (Jiang & Shu, JCP 126, 1996). The constant 1e-6 is that of the reference and has the
-/// unit of the data squared. With it no product underflows, and none overflows for differences below 1e18.
+/// The weights g_k = 1/(β_k + 1e-6)² (Jiang & Shu, JCP 126, 1996). The constant 1e-6 is that of the reference
+/// and has the unit of the data squared. Because of it no product underflows. No product overflows for
+/// differences below 1e18.
 struct weights_js {
   static constexpr double added = 1e-6;
   static constexpr bool of_any_size = false;

@@ -11,8 +11,8 @@
 APSIS_BEFORE_FORMULAS();
 namespace apsis::APSIS_NUMBERS {
 
-/// g_k = 1 + (τ/(β_k + δ))², τ = |β₀ − β₂| (Borges, Carmona, Costa & Don, JCP 227, 2008, with power 2, which
-/// preserves fifth order at smooth extrema).
+/// The weights g_k = 1 + (τ/(β_k + δ))², τ = |β₀ − β₂| (Borges, Carmona, Costa & Don, JCP 227, 2008). The
+/// power 2 preserves fifth order at smooth extrema.
 struct weights_z : weno5::weights_relative_to_data {
   template <class N>
   static APSIS_FORMULA weno5::factors<N> factors(const weno5::smoothness<N>& y) {
@@ -23,8 +23,8 @@ struct weights_z : weno5::weights_relative_to_data {
   }
 };
 
-/// weights_z with δ = u²: jumps by less than the value count as smooth. The weights hardly change where f
-/// jumps along rays, so that iterations to a steady state settle there.
+/// weights_z with δ = u²: jumps by less than the value count as smooth. Weights then hardly change where f
+/// jumps along rays, so that iterations to a steady state converge there.
 struct weights_z_smooth : weights_z {
   template <class Window>
   static APSIS_FORMULA auto smoothness(const Window& u) {

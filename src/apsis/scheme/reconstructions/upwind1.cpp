@@ -10,8 +10,8 @@ void copy_row(const double* row, int width, double* edge) {
   for (int k = 0; k < width; ++k) edge[k] = scalar::upwind1_edge(row[k]);
 }
 
-/// Both edges equal the value of the cell: with upwind fluxes, the first-order upwind scheme, monotone and
-/// entropy-decaying up to CFL 1.
+/// Both edges equal the value of the cell. Upwind fluxes of these edges are the first-order upwind scheme,
+/// which is monotone and entropy-decaying up to CFL 1.
 class upwind1 final : public reconstruction {
  public:
   int ghost_width() const override { return 1; }

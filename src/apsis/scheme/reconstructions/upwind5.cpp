@@ -53,9 +53,9 @@ HWY_EXPORT(outflow_edges);
 
 }  // namespace
 
-/// The linear scheme that WENO approaches on smooth data, without protection against oscillations. Sums of
-/// its fluxes over a line are those of the values: Σ û_{i+1/2} = Σ u_i and Σ x_{i+1/2} û_{i+1/2} = Σ x_i u_i
-/// for data that vanish at the ends, since each û reproduces linear functions.
+/// The linear scheme that WENO approaches on smooth data, without protection against oscillations. Its fluxes
+/// û reproduce linear functions. For data that vanish at the ends of a line, Σ û_{i+1/2} = Σ u_i and Σ
+/// x_{i+1/2} û_{i+1/2} = Σ x_i u_i.
 extern const reconstruction_entry reconstruction_upwind5;
 const reconstruction_entry reconstruction_upwind5 = {
     .name = "upwind5",

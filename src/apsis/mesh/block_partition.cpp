@@ -8,7 +8,7 @@
 namespace apsis {
 namespace {
 
-/// Calls body(blocks) for every product of three numbers that is `processes`.
+/// Calls body(blocks) for all three numbers of blocks whose product is `processes`.
 template <class Body>
 void for_products(int processes, const Body& body) {
   for (int i = 1; i <= processes; ++i) {
@@ -24,7 +24,8 @@ std::optional<block_partition> best_partition(const grid& mesh, int processes) {
     for (int k = 0; k < 3; ++k)
       if (blocks[static_cast<std::size_t>(k)] > mesh.cells(k)) return;
     const block_partition one(mesh, blocks);
-    // Of equal ones that with most blocks along x, whose rows lie together in memory and in files.
+    // Among equally good partitions, take the one with most blocks along x: their rows are contiguous in
+    // memory and in files.
     if (!best || one.halo_cells(1) <= best->halo_cells(1)) best = one;
   });
   return best;
@@ -78,7 +79,7 @@ int block_partition::block_of(int direction, int cell) const {
 }
 
 double block_partition::halo_cells(int width) const {
-  // The largest block.
+  // Sides of the largest block.
   std::array<double, 3> side{};
   for (std::size_t k = 0; k < 3; ++k) {
     const int longest = (cells_[k] + blocks_[k] - 1) / blocks_[k];

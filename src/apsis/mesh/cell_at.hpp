@@ -6,7 +6,8 @@
 
 namespace apsis {
 
-/// Returns the cell that contains a point of the domain; of two, the upper one.
+/// Returns the cell that contains the point x of the domain, given by mesh.dimensions() coordinates. On a
+/// face between two cells it is the upper one. Points outside belong to the nearest cell.
 int cell_at(const grid& mesh, std::span<const double> x);
 
 }  // namespace apsis

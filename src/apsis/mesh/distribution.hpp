@@ -8,9 +8,9 @@
 
 namespace apsis {
 
-/// A mesh that several processes share: each holds a block of its cells.
+/// A mesh that several processes share. Each process holds one block of cells.
 struct distribution {
-  std::shared_ptr<communicator> processes;  ///< who shares the mesh
+  std::shared_ptr<communicator> processes;  ///< processes that share the mesh
   block_partition blocks;                   ///< the block of each process
   grid whole;                               ///< the mesh
 
@@ -19,9 +19,9 @@ struct distribution {
     const cell_box box = blocks.box(processes->rank());
     return whole.block(box.first, box.cells);
   }
-  /// Returns the process that holds a cell of the mesh.
+  /// Returns the rank of the process that holds a cell of the mesh.
   int holder(int cell) const;
-  /// Returns the number in its block of a cell of the mesh that this process holds; −1 for others.
+  /// Returns the number of a cell of the mesh in the block of this process; −1 if another process holds it.
   int number_in_block(int cell) const;
 };
 

@@ -21,8 +21,9 @@ std::size_t field::numbers(int cells, int stride) {
 
 namespace {
 
-/// Calls work(first number, count) for parts of all rows: in the parts of all other loops over cells if the
-/// host does the work, since memory is near to the core that writes it first; otherwise once.
+/// Calls work(first number, count) for parts of all rows. On the host these are the parts of all other loops
+/// over cells, because the core that first writes a page is near its memory. In other memory there is one
+/// call for all rows.
 template <class Work>
 void for_parts(const field& of, const Work& work) {
   if (!of.memory().on_host()) {

@@ -6,13 +6,14 @@
 
 namespace apsis {
 
-/// One row of `components` numbers per cell, stored in the order of the grid: the storage of the unknowns of
-/// a semi-discrete problem, and of nothing else. Rows of eight or more numbers are padded with zeros to whole
-/// cache lines, so that every row is aligned and vector loops have no remainder.
+/// Storage for the unknowns of a semi-discrete problem: one row of `components` numbers per cell, in the
+/// order of the grid. Rows of eight or more numbers are padded with zeros to whole cache lines. Every row is
+/// then aligned, and vector loops have no remainder.
 class field {
  public:
   field() = default;
-  /// A field of zeros in the given memory. Throws std::bad_alloc, also if its size exceeds the address space.
+  /// Makes a field of zeros in the given memory. Throws std::bad_alloc if memory does not suffice, or if the
+  /// size exceeds the address space.
   field(int cells, int components, const memory_space& memory = host_memory())
       : cells_(cells),
         components_(components),
@@ -20,8 +21,8 @@ class field {
         data_(numbers(cells, stride_), memory) {
     clear();
   }
-  /// Copies rows, including padding, into the same memory, on the threads that will work on them (first
-  /// touch).
+  /// Copies rows, including padding, into new rows of the same memory space. The threads that will work on
+  /// the rows copy them (first touch).
   field(const field& other)
       : cells_(other.cells_),
         components_(other.components_),
@@ -29,7 +30,7 @@ class field {
         data_(other.data_.size(), other.memory()) {
     copy_numbers(other);
   }
-  /// Does not allocate if the sizes and the memory are equal.
+  /// Copies rows. Allocates nothing if the sizes and the memory space are equal.
   field& operator=(const field& other) {
     if (data_.size() != other.data_.size() || &memory() != &other.memory()) return *this = field(other);
     cells_ = other.cells_;
@@ -44,19 +45,19 @@ class field {
 
   int cells() const { return cells_; }            ///< number of rows
   int components() const { return components_; }  ///< numbers of a row without padding
-  /// Distance between rows, including padding.
+  /// Returns the distance between rows, including padding.
   int stride() const { return stride_; }
   std::size_t size() const { return data_.size(); }             ///< numbers of all rows with their padding
-  const memory_space& memory() const { return data_.space(); }  ///< where the rows live
+  const memory_space& memory() const { return data_.space(); }  ///< memory space of the rows
 
   /// Returns the stride of rows with the given number of components.
   static int padded(int components) { return components < 8 ? components : (components + 7) / 8 * 8; }
 
-  /// Copies the rows of a field of equal sizes, whose memory may be another one.
-  /// Throws std::invalid_argument if the sizes differ.
+  /// Copies the rows of a field of equal sizes, which may be in another memory space. Throws
+  /// std::invalid_argument if the sizes differ.
   void copy_rows(const field& from);
 
-  /// Returns the row of a cell, 0 … cells() − 1 (not checked). The pointer leads into memory().
+  /// Returns the row of a cell, 0 … cells() − 1 (not checked). The pointer refers to memory().
   double* row(int cell) {
     return data_.data() + static_cast<std::size_t>(cell) * static_cast<std::size_t>(stride_);
   }

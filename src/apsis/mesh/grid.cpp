@@ -55,7 +55,7 @@ grid grid::block(std::array<int, 3> first, std::array<int, 3> cells) const {
       box.first[k] = begin;
       box.cells[k] = end - begin;
     }
-    // Kept in their order, so that boxes of all blocks have the same numbers.
+    // Empty boxes stay in the list, so that boxes have the same numbers in all blocks.
     if (!meets) box.cells = {0, 0, 0};
     inside.push_back(box);
   }
@@ -124,7 +124,7 @@ grid grid::with_cut_cells(std::shared_ptr<const cut_cells> cut) const {
   return made;
 }
 
-/// The bodies of a mesh in its block.
+/// Copies the bodies of the whole mesh to this block.
 void grid::copy_bodies(const grid& whole) {
   if (!solid_) solid_ = std::make_shared<std::vector<int>>(at(size()), -1);
   group_ = std::make_shared<std::vector<int>>(at(size()), -1);

@@ -25,7 +25,8 @@ halo_exchange::~halo_exchange() {
   finish();
 }
 
-/// Global numbers of the planes beyond a block, counted outwards; `outside` beyond a face of the domain.
+/// Returns the global numbers of the planes beyond a block, counted outwards; `outside` beyond a face of
+/// the domain.
 std::vector<int> halo_exchange::planes_beyond(int direction, int block, bool periodic, bool upper) const {
   std::array<int, 3> place{};
   place[at(direction)] = block;

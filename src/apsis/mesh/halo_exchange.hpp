@@ -10,44 +10,44 @@
 
 namespace apsis {
 
-/// The halo of a block: whole rows of the cells of other processes that continue its pencils, received before
-/// they are read. Sweeps along one direction at a time read no cells beyond edges and corners of the block,
-/// which are not sent.
+/// The halo of a block: whole rows of the cells of other processes that continue its pencils. Cells beyond
+/// edges and corners of the block are not exchanged, because sweeps along single directions do not read them.
 class halo_exchange {
  public:
-  /// `periodic`: of each direction; `width`: number of cells at either end of a pencil.
+  /// Plans the exchange. `periodic` has a flag for each direction. `width` is the number of cells of the halo
+  /// at either end of a pencil.
   halo_exchange(const distribution& of, const std::array<bool, 3>& periodic, int width);
   ~halo_exchange();
   halo_exchange(const halo_exchange&) = delete;
   halo_exchange& operator=(const halo_exchange&) = delete;
 
-  /// Starts to send the rows of u that others need, and to receive theirs. Collective.
+  /// Starts to send the rows of u that other processes need, and to receive their rows. Collective.
   void begin(const field& u);
-  /// Lets them advance during other work; for the thread that communicates.
+  /// Advances the exchange during other work. Only the thread that communicates may call it.
   void advance() const {
     if (under_way_) of_.processes->advance_exchange();
   }
-  /// Waits until they are received; without effect if nothing was begun.
+  /// Waits until the rows are received. Without effect if no exchange was started.
   void finish();
 
-  /// Whether pencils along a direction are continued by other processes.
+  /// Whether the cells of a direction are divided among several processes.
   bool splits(int direction) const { return lines_[static_cast<std::size_t>(direction)].split; }
-  /// Returns the row of the cell `ghost` = 0 … width − 1, counted outwards from the lower or upper border of
-  /// the block, on a pencil of a direction that is split; u is the field of begin().
+  /// Returns the row of a halo cell on a pencil of a split direction. `ghost` = 0 … width − 1 counts outwards
+  /// from the lower or upper border of the block. u is the field of begin().
   const double* row(const field& u, int direction, int pencil, bool upper, int ghost) const;
 
  private:
-  /// A plane of cells across a direction: one of the block, or received into a buffer.
+  /// A plane of cells across a direction, either of the block or received into a buffer.
   struct plane_source {
-    int own = -1;       ///< its cell along the direction in the block; −1: received
-    int peer = -1;      ///< number of the peer that sends it
-    int received = -1;  ///< its place among the planes of this peer
+    int own = -1;       ///< number along the direction in the block; −1 for a received plane
+    int peer = -1;      ///< number of the peer that sends the plane
+    int received = -1;  ///< place of the plane among those of this peer
   };
-  /// A process with which planes are exchanged.
+  /// A process that exchanges planes with this one.
   struct peer {
     int rank;
-    std::vector<int> wanted,  ///< global numbers of the planes that it sends, increasing
-        given;  ///< local numbers of the planes that it gets, in the order of their global numbers
+    std::vector<int> wanted,  ///< global numbers of the planes that the peer sends, increasing
+        given;  ///< local numbers of the planes that the peer receives, in the order of their global numbers
     aligned_vector<double> received, sent;
   };
   /// The pencils along one direction.

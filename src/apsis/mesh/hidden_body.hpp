@@ -9,15 +9,15 @@
 
 namespace apsis {
 
-/// A body without a wall in the domain.
+/// The error for a body without a wall in the domain.
 class hidden_body final : public input_error {
  public:
   /// `body` counts from 0.
   explicit hidden_body(std::size_t body)
       : input_error(message(fmt::format("body {}", body + 1))), body_(body) {}
 
-  std::size_t body() const { return body_; }  ///< from 0
-  /// Returns the message with another name of the body.
+  std::size_t body() const { return body_; }  ///< number of the body, from 0
+  /// Returns the message for a body called `name`.
   static std::string message(const std::string& name) {
     return name +
            " has no wall in the domain (it lies outside, in another body, or between the corners of cells); "

@@ -9,8 +9,7 @@
 
 namespace apsis {
 
-/// Returns the field where the host can read it: the field itself, or a copy in `room` of one in other
-/// memory.
+/// Returns the field in memory of the host: the field itself, or a copy in `room` if it is in other memory.
 inline const field& on_host(const field& u, field& room) {
   if (u.memory().on_host()) return u;
   if (room.cells() != u.cells() || room.components() != u.components() || !room.memory().on_host())
@@ -19,7 +18,7 @@ inline const field& on_host(const field& u, field& room) {
   return room;
 }
 
-/// Returns a row of the field where the host can read it: the row itself, or a copy in `room`.
+/// Returns the row of a cell in memory of the host: the row itself, or a copy in `room`.
 inline std::span<const double> row_on_host(const field& u, int cell, std::vector<double>& room) {
   const auto width = static_cast<std::size_t>(u.components());
   if (u.memory().on_host()) return {u.row(cell), width};
@@ -28,7 +27,7 @@ inline std::span<const double> row_on_host(const field& u, int cell, std::vector
   return room;
 }
 
-/// Returns the field in other memory: itself where it lives there already.
+/// Returns the field in `memory`: the field itself if it is there already, else a copy.
 inline field moved_to(const memory_space& memory, field u) {
   if (&u.memory() == &memory) return u;
   field there(u.cells(), u.components(), memory);

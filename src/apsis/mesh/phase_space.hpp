@@ -7,16 +7,16 @@
 
 namespace apsis {
 
-/// A mesh times a set of velocities: where the unknowns f(x, v) live.
+/// The product of a mesh and a set of velocities, on which unknowns f(x, v) are defined.
 struct phase_space {
   grid mesh;                ///< cells in space
-  velocity_set velocities;  ///< of every cell
+  velocity_set velocities;  ///< velocities in every cell
 
-  /// Both; without velocities for operators that do not ask for them.
+  /// Takes the mesh and its velocities. Operators that do not use velocities need none.
   phase_space(const grid& cells, velocity_set of_every_cell = {})  // NOLINT(google-explicit-constructor)
       : mesh(cells), velocities(std::move(of_every_cell)) {}
 
-  /// Number of unknowns.
+  /// Returns the number of unknowns.
   long points() const { return static_cast<long>(mesh.size()) * velocities.components(); }
 };
 

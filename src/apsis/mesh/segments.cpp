@@ -12,7 +12,7 @@ segment_table::segment_table(const grid& whole, const grid& block, const std::ar
   for (int solid = -1; solid < solids; ++solid)
     for (std::size_t k = 0; k < 2 * at(dimensions); ++k) {
       face where = face_of(k);
-      if (solid >= 0) where.upper = !where.upper;  // segments end at the lower face with their upper end
+      if (solid >= 0) where.upper = !where.upper;  // upper ends of segments lie at lower faces
       surfaces_.push_back({where, solid, {}, 0});
     }
   for (int direction = 0; direction < dimensions; ++direction) {
@@ -42,7 +42,7 @@ void segment_table::cut(const grid& mesh, int direction) {
   first_of.push_back(static_cast<int>(made.size()));
 }
 
-/// Finds what lies beyond both ends of every segment.
+/// Sets both ends of every segment of a direction that is not divided among processes.
 void segment_table::link(int direction, bool periodic, const grid& mesh) {
   const int n = mesh.cells(direction), stride = mesh.stride(direction), faces = 2 * mesh.dimensions();
   auto& segments = along_[at(direction)];
@@ -67,13 +67,14 @@ void segment_table::link(int direction, bool periodic, const grid& mesh) {
           }
         }
         const int solid = mesh.obstacle(pencil_first + beside * stride);
-        // The face of the box that looks at the segment.
+        // Upper ends of segments lie at lower faces of obstacles, lower ends at upper faces.
         end_at(faces * (solid + 1) + 2 * direction + (upper ? 0 : 1), direction, number, upper);
       }
   }
 }
 
-/// The same where other processes continue the pencils. Ends at own cells come first at each surface.
+/// Sets both ends of every segment of a direction in which other processes continue the pencils. At each
+/// surface, ends at cells of this process come first.
 void segment_table::continue_beyond(const grid& whole, const grid& block, int direction, bool periodic,
                                     int reach) {
   struct other_end {
@@ -95,8 +96,8 @@ void segment_table::continue_beyond(const grid& whole, const grid& block, int di
   for (const auto& [surface, number, upper] : others) end_at(surface, direction, number, upper);
 }
 
-/// Counts the cells of others beyond an end, and returns the surface behind them; −1 if it is farther away
-/// than `reach`.
+/// Counts the cells of other processes beyond an end, and returns the surface behind them. Returns −1 if the
+/// surface is farther away than `reach` cells.
 int segment_table::surface_beyond(const grid& whole, const grid& block, int direction, bool periodic,
                                   int reach, int number, bool upper) {
   segment& one = along_[at(direction)][at(number)];
@@ -109,7 +110,7 @@ int segment_table::surface_beyond(const grid& whole, const grid& block, int dire
     if (!periodic && (beside < 0 || beside >= all)) return static_cast<int>(face{direction, upper}.index());
     beside = (beside % all + all) % all;
     const int solid = whole.obstacle(cell + (beside - here) * whole.stride(direction));
-    // The face of the box that looks at the segment.
+    // Upper ends of segments lie at lower faces of obstacles, lower ends at upper faces.
     if (solid >= 0) return 2 * block.dimensions() * (solid + 1) + 2 * direction + (upper ? 0 : 1);
     if (beyond == reach) return -1;
   }

@@ -10,29 +10,30 @@
 
 namespace apsis {
 
-/// A row of numbers that a process has and another one needs.
+/// A row of numbers that one process has and another process needs.
 struct shared_row {
-  int key,   ///< its number, known to all processes
-      from,  ///< who has it
-      to;    ///< who needs it
-  /// In the order in which rows are sent: by process, then by key.
+  int key,   ///< number of the row, the same on all processes
+      from,  ///< process that has the row
+      to;    ///< process that needs the row
+  /// Orders rows by key, then by the processes `from` and `to`.
   auto operator<=>(const shared_row&) const = default;
 };
 
-/// Single rows that processes send to each other: those of neighbours that no halo_exchange has.
+/// Single rows that processes send to each other, in addition to those of a halo_exchange.
 class shared_rows {
  public:
-  /// Nothing is sent.
+  /// Makes an exchange without rows.
   shared_rows() = default;
-  /// `all`: the rows of all processes, equal on all of them; one may stand there several times.
+  /// Takes the rows of all processes. The list must be the same on all processes and may repeat rows.
   shared_rows(std::shared_ptr<communicator> processes, std::vector<shared_row> all);
 
-  /// Sends rows of `length` numbers; row_of(key) is a row that this process has. Collective.
+  /// Sends and receives rows of `length` numbers. row_of(key) returns a row that this process
+  /// has. Collective.
   void exchange(int length, const std::function<const double*(int key)>& row_of);
-  /// Returns the place of a row that this process needs among those received. Throws std::out_of_range for
-  /// another row.
+  /// Returns the place, among the received rows, of a row that this process needs. Throws std::out_of_range
+  /// for other rows.
   int place_of(int key) const;
-  /// Returns a row of the last exchange.
+  /// Returns a row that the last exchange() received, by place_of() its key.
   const double* row(int place) const {
     return received_.data() + static_cast<std::size_t>(place) * static_cast<std::size_t>(length_);
   }

@@ -8,9 +8,11 @@
 namespace apsis {
 namespace {
 
-/// Open faces whose areas differ by less are equal, so that mirrored meshes have mirrored groups.
+/// Open faces with a smaller relative difference of areas count as equal, so that mirrored meshes have
+/// mirrored groups.
 constexpr double equal_areas = 1e-9;
-/// A cell that a wall halves from corner to corner has the outflow 1 up to rounding. It joins others.
+/// A cell that a wall halves from corner to corner has the outflow 1 up to rounding. Such a cell
+/// joins others.
 constexpr double largest_outflow = 1.0 - 1e-9;
 
 }  // namespace
@@ -53,11 +55,11 @@ double mesh_cutter::outflow(const std::vector<int>& cells) {
   return cut_cells::cfl_number * most / volume;
 }
 
-/// Returns the neighbours of a group behind its largest open faces, one cell of each.
+/// Returns the roots of the neighbouring groups with the largest open area towards a group.
 std::vector<mesh_cutter::candidate> mesh_cutter::best_neighbours(const std::vector<int>& cells) {
   struct open_part {
     double all = 0.0, largest = 0.0;
-    int direction = 0;  ///< of the largest face, the first one of equal ones
+    int direction = 0;  ///< of the largest face; of equal ones, the first
   };
   std::map<int, open_part> areas;  // by root
   for (const int cell : cells)
@@ -77,9 +79,9 @@ std::vector<mesh_cutter::candidate> mesh_cutter::best_neighbours(const std::vect
   return best;
 }
 
-/// Of equally good neighbours of small groups leaves those in the first direction, where another such group
-/// would join one of them too: along a wall at 45° to the grid all groups would become one. Mirrored meshes
-/// have mirrored groups.
+/// Reduces the choices of small groups with several equally good neighbours. If another such group would join
+/// one of these neighbours too, only neighbours in the first direction remain. Otherwise all groups along a
+/// wall at 45° to the grid would become one group. Mirrored meshes have mirrored groups.
 void mesh_cutter::break_chains(std::map<int, std::vector<candidate>>& wanted) {
   std::map<int, int> claims;
   for (const auto& [first, best] : wanted)
@@ -95,7 +97,8 @@ void mesh_cutter::break_chains(std::map<int, std::vector<candidate>>& wanted) {
   }
 }
 
-/// Joins small cells to others, all of a round in the same state, so that no order of cells matters.
+/// Joins small cells to others in rounds. All cells of a round use the same state, so that the order of cells
+/// does not matter.
 void mesh_cutter::join() {
   for (bool changed = true; changed;) {
     changed = false;
@@ -114,7 +117,7 @@ void mesh_cutter::join() {
         unite(first, other.cell);
         changed = true;
       }
-    // A pocket of a few small cells has no way out, and no neighbour sees it.
+    // A pocket of a few small cells without open faces becomes solid. No neighbour has a face towards it.
     for (const int cell : closed) {
       kinds_[at(cell)] = kind::body;
       result_.body_of_[at(cell)] = body_at(mesh_.centre(cell));
@@ -139,7 +142,8 @@ void mesh_cutter::number_groups() {
   for (int group = 0; group < static_cast<int>(result_.groups_.size()); ++group) add_faces(group);
 }
 
-/// Shifts the coordinates of cells across periodic faces to the side of the first cell of their group.
+/// Computes the volume and centroid of a group. At periodic faces, coordinates of cells are shifted to the
+/// side of the first cell of the group.
 void mesh_cutter::find_centre(int number) {
   cut_group& group = result_.groups_[at(number)];
   std::vector<int> reached = {group.cells.front()};
@@ -165,7 +169,7 @@ void mesh_cutter::find_centre(int number) {
   for (std::size_t d = 0; d < 3; ++d) group.centre[d] = moment[d] / group.volume;
 }
 
-/// Adds the faces and walls of a group; a face between two groups with the one below it.
+/// Adds the faces and walls of a group. A face between two groups is added with the group below it.
 void mesh_cutter::add_faces(int number) {
   cut_group& group = result_.groups_[at(number)];
   const auto from_centre = [&](int cell, const position& x) {
@@ -180,7 +184,7 @@ void mesh_cutter::add_faces(int number) {
     for (const way_out& one : ways_out(cell)) {
       const int other = one.neighbour < 0 ? -1 : result_.group_of(one.neighbour);
       if (one.neighbour >= 0 && (other == number || (other >= 0 && !one.upper))) continue;
-      position beyond = one.middle;  // in the coordinates of the neighbour
+      position beyond = one.middle;  // the middle in the coordinates of the neighbour
       if (one.neighbour >= 0)
         beyond[at(one.direction)] = mesh_.centre(one.neighbour)[at(one.direction)] -
                                     (one.upper ? 0.5 : -0.5) * mesh_.spacing(one.direction);

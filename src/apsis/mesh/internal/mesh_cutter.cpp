@@ -17,13 +17,15 @@ namespace {
 
 /// A cell with a smaller share of gas in its volume is solid.
 constexpr double no_gas = 1e-15;
-/// A cell with more than this share of its volume is whole.
+/// A cell with a larger share of gas in its volume is whole.
 constexpr double all_gas = 1.0 - 1e-9;
-/// Bodies with a larger share of cells in which they are too thin are refused: the others have tips.
+/// Bodies are refused if they are too thin in a larger share of their cells. With a smaller share, only tips
+/// are too thin.
 constexpr double most_thin_cells = 0.2;
-/// Bodies that lose a larger share of their volume between corners of cells are refused: they have holes.
+/// Bodies that lose a larger share of their volume between corners of cells are refused, because they would
+/// have holes.
 constexpr double largest_loss = 0.2;
-/// All cells of a body that has no more of them are looked at for what it loses.
+/// The lost volume of a body with at most this number of cells is computed in all of its cells.
 constexpr std::size_t cells_of_small_body = 64;
 
 std::array<double, 3> cross(const std::array<double, 3>& a, const std::array<double, 3>& b) {
@@ -61,7 +63,7 @@ double mesh_cutter::outside(const position& x) const {
   double least = std::numeric_limits<double>::infinity();
   for (const outside_function& one : bodies_) {
     const double here = one(x);
-    if (!(here >= least)) least = here;  // NaN too
+    if (!(here >= least)) least = here;  // also true for NaN
   }
   return least;
 }
@@ -87,7 +89,7 @@ int mesh_cutter::neighbour(int cell, int direction, bool upper) const {
   return cell + (there - here) * mesh_.stride(direction);
 }
 
-/// The open part of a face; none to a cell without gas, whose part may be a sliver.
+/// Returns the open part of a face. Towards a cell without gas the part, which may be a sliver, is closed.
 open_parts::part mesh_cutter::open_face_of(int cell, int direction, bool upper) {
   open_parts::corner corner = lowest_corner(cell);
   corner[at(direction)] += upper ? 1 : 0;
@@ -99,7 +101,7 @@ open_parts::part mesh_cutter::open_face_of(int cell, int direction, bool upper) 
 
 /// Throws input_error if a body that crosses a periodic face does not continue at the opposite one.
 void mesh_cutter::check_periodic_faces() {
-  // Zeros of φ at both faces are found at coordinates that differ by rounding.
+  // The coordinates of zeros of φ at the two faces differ by rounding.
   constexpr double equal_shares = 1e-9;
   for (int k = 0; k < mesh_.dimensions(); ++k) {
     if (!periodic_[at(k)]) continue;
@@ -116,7 +118,7 @@ void mesh_cutter::check_periodic_faces() {
   }
 }
 
-/// Finds out what each cell is.
+/// Determines the kind of each cell.
 void mesh_cutter::sort_cells() {
   std::vector<int> cut, thin, losing;
   result_.body_of_.assign(at(mesh_.size()), -1);
@@ -152,7 +154,7 @@ void mesh_cutter::sort_cells() {
   if (!any) throw input_error("no cell is left (all lie in bodies); give smaller bodies");
 }
 
-/// Throws input_error if no cell lies in a body or has a wall of it.
+/// Throws hidden_body for a body without solid cells and walls.
 void mesh_cutter::check_bodies() const {
   std::vector<bool> seen(bodies_.size(), false);
   const auto boxes = mesh_.solids().size();
@@ -168,7 +170,7 @@ void mesh_cutter::check_bodies() const {
 void mesh_cutter::check_thin_cells(const std::vector<int>& thin, std::size_t of_bodies) const {
   result_.thin_cells_ = static_cast<int>(thin.size());
   if (static_cast<double>(thin.size()) <= most_thin_cells * static_cast<double>(of_bodies)) return;
-  // The cell in the middle, by thickness: tips have cells in which nothing is left.
+  // The message refers to the cell of median thickness, because tips have arbitrarily thin cells.
   std::vector<std::pair<double, int>> by_thickness;
   for (const int cell : thin) by_thickness.emplace_back(parts_.thickness(lowest_corner(cell)), cell);
   std::sort(by_thickness.begin(), by_thickness.end());
@@ -182,8 +184,8 @@ double mesh_cutter::volume_of_body(int cell) const {
   return cut == gas_.end() ? 0.0 : mesh_.cell_volume() - cut->second.volume;
 }
 
-/// Throws input_error if a body has lost too much between the corners of some cells: of those where a part
-/// lies between two corners, and of all cells of a small body.
+/// Throws input_error if a body has lost too much volume between the corners of cells. Checks the cells where
+/// a part lies between two corners, and all cells of small bodies.
 void mesh_cutter::check_lost_volume(const std::vector<int>& losing) const {
   std::vector<double> kept(bodies_.size(), 0.0), lost(bodies_.size(), 0.0), most(bodies_.size(), 0.0);
   std::vector<int> worst(bodies_.size(), -1);
@@ -209,7 +211,7 @@ void mesh_cutter::check_lost_volume(const std::vector<int>& losing) const {
       parts_.refuse_as_thin("a body", lowest_corner(worst[body]));
 }
 
-/// Whether no face of a cell is open in part.
+/// Whether no face of a cell is partly open.
 bool mesh_cutter::is_whole(int cell) {
   for (int k = 0; k < mesh_.dimensions(); ++k)
     for (const bool upper : {false, true}) {
@@ -219,7 +221,7 @@ bool mesh_cutter::is_whole(int cell) {
   return true;
 }
 
-/// Whether a cell differs from others in nothing: its closed faces are those of solid cells.
+/// Whether a cell is like cells far from bodies: no face is partly open, and no face of the domain is closed.
 bool mesh_cutter::is_like_whole(int cell) {
   if (!is_whole(cell)) return false;
   for (int k = 0; k < mesh_.dimensions(); ++k)
@@ -228,8 +230,8 @@ bool mesh_cutter::is_like_whole(int cell) {
   return true;
 }
 
-/// Looks at the closed faces of a whole cell. A cut cell may lie behind one, which then is a wall of this
-/// cell. Throws input_error if another whole cell does.
+/// Checks the closed faces of a whole cell. If a cut cell lies behind such a face, the face becomes a wall of
+/// this cell. Throws input_error if another whole cell lies behind it.
 void mesh_cutter::check_closed_faces(int cell) {
   for (int k = 0; k < mesh_.dimensions(); ++k)
     for (const bool upper : {false, true}) {
@@ -241,7 +243,7 @@ void mesh_cutter::check_closed_faces(int cell) {
     }
 }
 
-/// Gives a whole cell walls of its own.
+/// Turns a whole cell into a cut cell with its own walls.
 void mesh_cutter::make_cut(int cell) {
   gas_of_cell whole{.volume = mesh_.cell_volume(), .centre = mesh_.centre(cell)};
   kinds_[at(cell)] = kind::cut;
@@ -249,8 +251,8 @@ void mesh_cutter::make_cut(int cell) {
   gas_.emplace(cell, std::move(whole));
 }
 
-/// Measures the gas of a cell by the cones from the middle of the zeros of φ to the open faces: the cone to
-/// the wall has no volume where the wall is flat.
+/// Measures the gas of a cell by the cones from the middle of the zeros of φ to the open faces. The cone to a
+/// flat wall has no volume.
 mesh_cutter::gas_of_cell mesh_cutter::measured(int cell) {
   const open_parts::corner corner = lowest_corner(cell);
   const position apex = parts_.middle_of_zeros(corner);
@@ -270,7 +272,7 @@ mesh_cutter::gas_of_cell mesh_cutter::measured(int cell) {
   return made;
 }
 
-/// Makes a cell with corners in a body cut, unless all of it is gas.
+/// Adds a cell with corners in a body as a cut cell, unless all of it is gas.
 void mesh_cutter::add_cut_cell(int cell) {
   gas_of_cell made = measured(cell);
   if (made.volume > all_gas * mesh_.cell_volume() && is_like_whole(cell)) return;
@@ -279,7 +281,8 @@ void mesh_cutter::add_cut_cell(int cell) {
   gas_.emplace(cell, std::move(made));
 }
 
-/// Moves a point along a normal to the zero of φ within a cell.
+/// Returns the zero of φ on the normal through a point, at most half a cell away. Returns the point itself if
+/// there is no such zero.
 position mesh_cutter::on_surface(position from, const std::array<double, 3>& normal) const {
   double reach = 0.0;
   for (int k = 0; k < mesh_.dimensions(); ++k) reach = std::max(reach, 0.5 * mesh_.spacing(k));
@@ -297,8 +300,8 @@ position mesh_cutter::on_surface(position from, const std::array<double, 3>& nor
   return moved(0.5 * (open + closed));
 }
 
-/// Returns the corners of the zeros of φ in a cell. Where they form several loops, or their loop has no area,
-/// those of a flat piece at `middle` with the area and the normal of the wall.
+/// Returns the loop of the zeros of φ on the edges of a cell. If the zeros form several loops, or a loop
+/// without area, returns a flat piece at `middle` with the area and the normal of the wall.
 std::vector<position> mesh_cutter::corners_of_wall(int cell, const position& middle,
                                                    const std::array<double, 3>& vector) {
   auto loops = parts_.wall_loops(lowest_corner(cell));
@@ -328,26 +331,28 @@ std::vector<position> mesh_cutter::corners_of_wall(int cell, const position& mid
   return square;
 }
 
-/// Returns the corners of a face of a cell that is wall, or of its open part.
+/// Returns the corners of a face of a cell that is a wall, or of its open part.
 std::vector<position> mesh_cutter::corners_of_closed(int cell, int direction, bool upper, bool open_part) {
   open_parts::corner lowest = lowest_corner(cell);
   lowest[at(direction)] += upper ? 1 : 0;
   std::vector<position> corners =
       open_part ? parts_.corners_of_face(direction, lowest) : parts_.corners_of_square(direction, lowest);
-  // In the plane these ends go upwards: the solid is on the left of the direction of x, and on the right of
-  // that of y.
+  // In the plane the ends are in increasing order. Seen along them, the upper side of a face normal to x is
+  // on the right, and that of a face normal to y on the left.
   if (mesh_.dimensions() == 2 ? upper == (direction == 0) : upper)
     std::reverse(corners.begin(), corners.end());
   return corners;
 }
 
-/// Adds the pieces of wall of a cell: what its open faces lack, and the faces of solid boxes.
+/// Adds the pieces of wall of a cell: the rest of its partly open faces, closed faces, and faces of
+/// solid boxes.
 void mesh_cutter::add_walls(int cell, gas_of_cell& to) {
   const open_parts::corner corner = lowest_corner(cell);
-  // A plane through corners of a cell leaves its faces open or closed, and cuts off half of its volume.
+  // A plane through corners of a cell may leave no face partly open, but cuts off half of the volume.
   const bool whole = is_whole(cell) && to.volume > all_gas * mesh_.cell_volume();
   const position centre = mesh_.centre(cell);
-  // Area and moment about the centre of a closed surface are 0: the wall has the opposite of the open faces'.
+  // Vector area and moment of a closed surface about the centre are 0. Those of the wall are therefore
+  // opposite to those of the open faces.
   std::array<double, 3> vector{}, moment{};
   double size = 0.0;
   for (int k = 0; k < mesh_.dimensions(); ++k)

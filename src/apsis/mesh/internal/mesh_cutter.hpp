@@ -27,13 +27,13 @@ class mesh_cutter {
     std::vector<position> corners;
     std::array<double, 3> moment = {};  ///< ∫ (x − middle) × n dA
   };
-  /// The gas of a cell that is cut, or that has joined one.
+  /// The gas of a cell that is cut, or that has joined a cut cell.
   struct gas_of_cell {
     double volume = 0.0;
     position centre = {};
     std::vector<piece> walls = {};
   };
-  /// The open part of a face of a cell; no neighbour (−1) at a face of the domain.
+  /// The open part of a face of a cell. `neighbour` is −1 at a face of the domain.
   struct way_out {
     int direction;
     bool upper;
@@ -42,7 +42,7 @@ class mesh_cutter {
     position middle;  ///< in the coordinates of the cell
   };
 
-  /// A neighbour of a group: a cell behind its largest face, normal to this direction.
+  /// A neighbouring group by its root, and the direction of the largest face towards it.
   struct candidate {
     int cell, direction;
   };
@@ -94,8 +94,8 @@ class mesh_cutter {
   open_parts parts_;
   std::vector<kind> kinds_;
   std::map<int, gas_of_cell> gas_;
-  std::vector<int> parents_;             ///< of joined cells
-  std::map<int, position> shifts_ = {};  ///< from the coordinates of a cell to those of its group
+  std::vector<int> parents_;             ///< parents of joined cells; −1 for roots
+  std::map<int, position> shifts_ = {};  ///< shift from the coordinates of a cell to those of its group
 };
 
 }  // namespace apsis

@@ -12,15 +12,16 @@
 namespace apsis {
 namespace {
 
-/// Shares of an edge below it count as 0, and those above 1 − it as 1: the surface goes through the corner.
-/// The zero of a surface that touches an edge has half of the digits of other zeros.
+/// Shares of an edge below this number count as 0, and shares above 1 minus this number as 1: the
+/// surface passes through the corner. If a surface touches an edge, its zero has only half of the digits
+/// of other zeros.
 constexpr double at_corner = 1e-6;
-/// Halvings of an edge. The rest is below the rounding of coordinates.
+/// Number of bisections of an edge. The remaining interval is below the rounding of coordinates.
 constexpr int halvings = 52;
-/// Parts of a line in which φ is sampled for the thickness of a body, and on the sides of a cell.
+/// Numbers of samples of φ, on lines for the thickness of a body and on the sides of a cell.
 constexpr int samples_of_line = 64, samples_of_edge = 16;
-/// A corner with |φ| below this share of its neighbours' values lies on the surface. The sign of its rounding
-/// would differ between mirror images.
+/// A corner with |φ| below this share of its neighbours' values counts as a point of the surface. The sign of
+/// its rounding error would differ between mirror images.
 constexpr double on_surface = 1e-12;
 
 open_parts::corner shifted(open_parts::corner from, int direction, int by = 1) {
@@ -48,7 +49,7 @@ open_parts::open_parts(const grid& mesh, const outside_function& phi) : mesh_(me
   close_corners_on_surface();
 }
 
-/// Sets φ to 0 at corners where it is rounding.
+/// Sets φ to 0 at corners where it is a rounding error.
 void open_parts::close_corners_on_surface() {
   std::vector<long> touched;
   for (int i = 0; i < corners_[0]; ++i)
@@ -97,8 +98,8 @@ double open_parts::zero_on_edge(int direction, const corner& lower) {
   return found->second;
 }
 
-/// Bisection from the open end, so that mirrored edges have mirrored zeros. Where the closed end is on the
-/// surface, a part of the edge may lie in a wall, on which φ is rounding. That counts as closed.
+/// Bisects from the open end, so that mirrored edges have mirrored zeros. If the closed end is on the
+/// surface, a part of the edge may lie in a wall, where φ is a rounding error. This part counts as closed.
 double open_parts::find_zero(int direction, const corner& lower) const {
   const bool from_lower = is_open(lower);
   const corner upper = shifted(lower, direction);
@@ -128,7 +129,7 @@ open_parts::part open_parts::open_edge(int direction, const corner& lower) {
   return {end - begin, point(lower, shift)};
 }
 
-/// The polygon of the open corners of a square, and of the zeros on its sides.
+/// Returns the polygon of the open corners of a square and the zeros on its sides.
 open_parts::polygon open_parts::open_vertices(const plane& of, const corner& lowest) {
   constexpr std::array<std::array<int, 2>, 4> around = {{{0, 0}, {1, 0}, {1, 1}, {0, 1}}};
   polygon made;
@@ -169,7 +170,7 @@ open_parts::part open_parts::face(int direction, const corner& lowest) {
   return open_polygon({(direction + 1) % 3, (direction + 2) % 3}, lowest);
 }
 
-/// A zero at a corner has the bits of the corner.
+/// Returns the point of a vertex. A zero at a corner has the bits of the corner.
 position open_parts::point_of(const vertex& of) {
   if (of.edge < 0) return point(of.lower);
   const double zero = zero_on_edge(of.edge, of.lower);
@@ -201,8 +202,8 @@ std::vector<position> open_parts::corners_of_square(int direction, const corner&
   return {point(lowest), point(next), point(shifted(next, second)), point(shifted(lowest, second))};
 }
 
-/// Adds the sides of the open part of a square that lie inside of it: from the zero where its outline leaves
-/// the open corners to the next zero.
+/// Adds the sides of the open part of a square that cross the square. Each leads from the zero behind open
+/// corners to the next zero.
 void open_parts::add_wall_sides(const plane& of, const corner& lowest, bool reversed, zero_chain& chain) {
   const auto [vertices, count] = open_vertices(of, lowest);
   const auto key = [this](const vertex& one) { return edge_key{one.edge, number(one.lower)}; };
@@ -277,7 +278,7 @@ bool open_parts::corners_are_connected(const corner& lowest) const {
     unsigned members = 0, reached = 0;
     for (int c = 0; c < count; ++c)
       if (of(c) == open) members |= 1U << c;
-    reached = members & (~members + 1U);  // one of them
+    reached = members & (~members + 1U);  // the lowest member
     for (int round = 0; round < count; ++round)
       for (int c = 0; c < count; ++c)
         for (int k = 0; k < mesh_.dimensions(); ++k)
@@ -319,7 +320,7 @@ double open_parts::thickness(const corner& lowest) const {
 }
 
 /// Counts the stretches of a side of a square that reach neither of its ends. A strip through the square
-/// crosses two sides in such stretches, a tip that ends in it crosses one.
+/// crosses two sides in such stretches. A tip that ends in the square crosses one.
 void open_parts::count_stretches(const corner& lowest, const std::array<double, 3>& from, int direction,
                                  stretches& found) const {
   std::array<double, 3> shift = from;
@@ -350,7 +351,8 @@ open_parts::thin_cell open_parts::thin_in_square(const corner& lowest, const pla
   return {found, sides.bodies > 0};
 }
 
-/// Whether the middle of a cell differs from all its corners, and no side shows why.
+/// Returns the gap or the body in the middle of a cell whose corners and middles of faces are on the other
+/// side of the surface.
 open_parts::thin_part open_parts::island_in(const corner& lowest) const {
   const state corners = of_cell(lowest);
   if (corners == state::cut) return thin_part::none;
@@ -360,7 +362,7 @@ open_parts::thin_part open_parts::island_in(const corner& lowest) const {
   };
   const bool inside = open_at(0.5, 0.5, 0.5);
   if (inside == (corners == state::open)) return thin_part::none;
-  // The tip of a body reaches the middle through a face.
+  // The tip of a body would reach the middle through a face.
   for (const double side : {0.0, 1.0})
     if (open_at(side, 0.5, 0.5) == inside || open_at(0.5, side, 0.5) == inside ||
         (deep && open_at(0.5, 0.5, side) == inside))
@@ -368,8 +370,9 @@ open_parts::thin_part open_parts::island_in(const corner& lowest) const {
   return inside ? thin_part::gap : thin_part::body;
 }
 
-/// Finds the gap or the body between closed or open corners of a cell that no edges connect. The middle of a
-/// face whose corners alternate decides, otherwise the middle of the cell.
+/// Returns the gap between closed corners, or the body between open corners, that no edges of the cell
+/// connect. The middle of a face whose corners alternate decides between the two. Without such a face the
+/// middle of the cell decides.
 open_parts::thin_part open_parts::between_corners(const corner& lowest) const {
   if (corners_are_connected(lowest)) return thin_part::none;
   const bool deep = mesh_.dimensions() == 3;
@@ -394,7 +397,8 @@ open_parts::thin_cell open_parts::thin_in(const corner& lowest) const {
   for (const thin_part one : {island_in(lowest), between_corners(lowest)})
     if (one != thin_part::none) return {one, one == thin_part::body};
   if (!deep) return thin_in_square(lowest, {0, 1}, {});
-  // A plate leaves strips in two faces at least, an edge of a body that ends in the cell in one.
+  // A plate leaves strips in at least two faces. The edge of a body that ends in the cell leaves a strip in
+  // one face.
   int gaps = 0, strips = 0;
   thin_cell found;
   for (int normal = 0; normal < 3; ++normal)
@@ -431,12 +435,12 @@ bool open_parts::may_be_thin(const corner& lowest) const {
     for (int j = 0; j < 2; ++j)
       for (int k = 0; k < (deep ? 2 : 1); ++k)
         change = std::max(change, std::abs(value({lowest[0] + i, lowest[1] + j, lowest[2] + k}) - middle));
-  // The surface is far from the cell.
+  // True unless the surface is far from the cell.
   return !(std::abs(middle) > 3.0 * change);
 }
 
 void open_parts::refuse_as_thin(const std::string& something, const corner& lowest) const {
-  // Half of the stretch: a cell must have a corner in it wherever it lies.
+  // Cells half as long as the stretch have a corner in it, wherever it lies.
   const double needed = 2.0 / std::min(thickness(lowest), 1.0);
   std::array<long, 3> cells{};
   for (int k = 0; k < mesh_.dimensions(); ++k)

@@ -116,14 +116,14 @@ class stl_words {
   int line_ = 1;
 };
 
-/// The number in four bytes, the lowest first.
+/// Returns the number in four bytes, with the lowest byte first.
 std::uint32_t word_at(std::string_view bytes, std::size_t at) {
   std::uint32_t word = 0;
   for (std::size_t k = 4; k-- > 0;) word = (word << 8U) | static_cast<unsigned char>(bytes[at + k]);
   return word;
 }
 
-/// The size of a binary file with the number of triangles that its header states.
+/// Returns the size of a binary file according to the number of triangles in its header.
 std::uint64_t size_by_header(std::string_view bytes) {
   return header_bytes + std::uint64_t{facet_bytes} * word_at(bytes, header_bytes - 4);
 }
@@ -131,7 +131,7 @@ std::uint64_t size_by_header(std::string_view bytes) {
 bool is_text(std::string_view bytes) {
   const auto first = std::find_if_not(bytes.begin(), bytes.end(), is_blank);
   const std::string_view rest = bytes.substr(static_cast<std::size_t>(first - bytes.begin()));
-  // A truncated binary file has bytes 0, if only those behind a triangle.
+  // Even a truncated binary file has bytes 0, at least those behind a triangle.
   return equals_word(rest.substr(0, 5), "solid") && bytes.find('\0') == std::string_view::npos;
 }
 

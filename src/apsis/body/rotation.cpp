@@ -9,7 +9,7 @@
 namespace apsis {
 
 angle_functions functions_of_degrees(double degrees) {
-  // The remainders are exact, so multiples of 90° leave the angle 0, whose functions are exact as well.
+  // The remainders are exact. Multiples of 90° leave the angle 0, for which cosine and sine are exact too.
   const double turn = std::remainder(degrees, 360.0);
   const double rest = std::remainder(turn, 90.0);
   const auto quarters = static_cast<int>(std::lround((turn - rest) / 90.0));

@@ -18,9 +18,9 @@ angle_functions functions_of_degrees(double degrees);
 /// A rotation R of space about an axis through the origin.
 class rotation {
  public:
-  /// The identity.
+  /// Makes the identity.
   rotation() = default;
-  /// R = c I + (1 − c) a aᵀ + s [a]× for a unit vector a, c and s being cosine and sine of the angle
+  /// R = c I + (1 − c) a aᵀ + s [a]× for a unit vector a, where c and s are cosine and sine of the angle
   /// (Rodrigues' formula). R has no rounding errors at multiples of 90° about coordinate axes.
   rotation(const position& unit_axis, double degrees);
 

@@ -13,9 +13,9 @@ namespace apsis {
 struct shape_entry {
   std::string name;                      ///< name in a case file: "sphere"
   std::string description;               ///< one line
-  std::vector<shape_key> keys;           ///< its keys, without those of all shapes
-  std::vector<int> dimensions = {2, 3};  ///< numbers of dimensions that it serves
-  std::string alternative = {};          ///< for other dimensions: "use 'circle'"
+  std::vector<shape_key> keys;           ///< keys of this kind, without those of all shapes
+  std::vector<int> dimensions = {2, 3};  ///< supported numbers of dimensions
+  std::string alternative = {};          ///< advice for other numbers of dimensions: "use 'circle'"
   /// Returns a new shape. Throws input_error for values that contradict each other, and io_error for a file
   /// that cannot be read.
   std::shared_ptr<const shape> (*make)(const shape_arguments& from) = nullptr;
@@ -27,7 +27,7 @@ std::vector<const shape_entry*> shape_entries();
 /// Returns the names of all kinds: "box", "circle", …
 std::vector<std::string> shape_names();
 
-/// Returns the kind of a name. Throws input_error with the nearest name for an unknown one.
+/// Returns the kind called `name`. Throws input_error with the nearest name for an unknown one.
 const shape_entry& find_shape(const std::string& name);
 
 /// Returns the keys that every shape accepts in d = 2 or 3 dimensions: `shift`, a vector, and `rotate`. The
@@ -35,9 +35,9 @@ const shape_entry& find_shape(const std::string& name);
 /// followed by the angle.
 std::vector<shape_key> common_shape_keys(int dimensions);
 
-/// Returns the shape of a kind in d = 2 or 3 dimensions, rotated about the origin first, and then shifted.
-/// Throws input_error for an unknown kind, or for a number of dimensions that the kind does not serve. Throws
-/// also what check_shape_values() and shape_entry::make throw.
+/// Returns the shape of a kind in d = 2 or 3 dimensions, first rotated about the origin, then shifted. Throws
+/// input_error for an unknown kind, or for an unsupported number of dimensions. Also throws the errors of
+/// check_shape_values() and shape_entry::make.
 std::shared_ptr<const shape> make_shape(const std::string& name, const shape_values& values, int dimensions);
 
 }  // namespace apsis

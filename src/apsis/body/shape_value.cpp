@@ -16,7 +16,7 @@ namespace {
 // Squares and fourth powers of numbers within these limits are finite and positive.
 constexpr double largest_number = 1e100, smallest_size = 1e-100;
 
-/// The name of a kind in messages, with its article.
+/// Returns the name of a kind for messages, with its article.
 const char* kind_name(shape_value_kind kind) {
   static constexpr std::array names = {"a number", "a list of numbers", "a list of points",
                                        "a text",   "a formula",         "a list of shapes"};

@@ -15,13 +15,13 @@
 
 namespace apsis {
 
-/// A function of the position, which may be called concurrently.
+/// A function φ of the position. It must be thread-safe.
 using level_set_function = std::function<double(const position&)>;
 
 /// Shapes that another shape combines.
 using shape_list = std::vector<std::shared_ptr<const shape>>;
 
-/// A value of a key of a shape; its alternatives have the order of shape_value_kind.
+/// A value of a key of a shape. The alternatives have the order of shape_value_kind.
 using shape_value = std::variant<double, std::vector<double>, std::vector<std::vector<double>>, std::string,
                                  level_set_function, shape_list>;
 
@@ -41,21 +41,21 @@ enum class shape_value_kind {
 /// A key of a shape.
 struct shape_key {
   std::string name;                                  ///< name in a case file: "radius"
-  std::string doc;                                   ///< what it is, without an article
+  std::string doc;                                   ///< meaning of the value, without an article
   shape_value_kind kind = shape_value_kind::number;  ///< type of its value
-  std::optional<shape_value> value = {};             ///< default; a key without one must be given
+  std::optional<shape_value> value = {};             ///< default; a key without a default is required
   bool positive = false;                             ///< whether its numbers must be positive
-  std::size_t components = 0;  ///< of a vector and of each point; 0 stands for the dimensions of the mesh
+  std::size_t components = 0;  ///< of a vector or point; 0 stands for the dimensions of the mesh
   std::size_t fewest = 0;      ///< least number of points or shapes
   std::size_t most = 0;        ///< largest number of points or shapes; 0 stands for no limit
   bool is_length = true;       ///< whether its numbers are lengths; others have no unit
   bool planar = false;         ///< whether its shapes lie in the plane (x, y), in a body of 3 dimensions
 };
 
-/// Checked values of all keys of a shape, from which it is made.
+/// Checked values of all keys from which a shape is made.
 class shape_arguments {
  public:
-  /// `values` has a value of every key of the shape `name`.
+  /// `values` must have a value for every key of the shape `name`.
   shape_arguments(std::string name, shape_values values, int dimensions)
       : name_(std::move(name)), values_(std::move(values)), dimensions_(dimensions) {}
 
@@ -63,7 +63,7 @@ class shape_arguments {
   double number(const std::string& key) const;                       ///< returns a number
   const std::vector<double>& numbers(const std::string& key) const;  ///< returns all numbers of a vector
   position vector(const std::string& key) const;                     ///< returns a vector, filled with 0
-  /// Returns a vector divided by its length. Throws input_error for 0.
+  /// Returns a vector divided by its length. Throws input_error for the vector 0.
   position direction(const std::string& key) const;
   std::vector<position> points(const std::string& key) const;       ///< returns points, filled with 0
   const std::string& text(const std::string& key) const;            ///< returns a text

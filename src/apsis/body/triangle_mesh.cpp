@@ -32,10 +32,10 @@ std::vector<edge_side> sorted_sides(const triangle_mesh& mesh) {
   return sides;
 }
 
-/// Edges with the same defect.
+/// The edges with a certain defect.
 struct edge_defect {
   std::size_t count = 0;
-  position at = {};  ///< the middle of the first
+  position at = {};  ///< the middle of the first edge
   void add(const position& a, const position& b) {
     if (count++ == 0) at = {0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1]), 0.5 * (a[2] + b[2])};
   }
@@ -74,7 +74,8 @@ struct flatness {
 };
 
 flatness flatness_of(const triangle_mesh& mesh, std::size_t t) {
-  // Coordinates of files have 24 bits: other triangles are higher than 1e-8 of their length.
+  // Coordinates of files have 24 bits. The height of other triangles is therefore more than 1e-8 of
+  // their length.
   constexpr double least_height = 1e-12;
   flatness found;
   double longest = 0.0;
@@ -90,7 +91,7 @@ flatness flatness_of(const triangle_mesh& mesh, std::size_t t) {
 }
 
 /// Replaces flat triangles and their neighbours beyond the longest side by the two triangles of the other
-/// diagonal. This leaves the surface unchanged. Returns whether there were any.
+/// diagonal. This leaves the surface unchanged. Returns true if there were flat triangles.
 bool flip_flat_triangles(triangle_mesh& mesh) {
   std::vector<bool> is_changed(mesh.corners.size(), false);
   bool found = false;
@@ -158,7 +159,7 @@ triangle_mesh make_closed_mesh(const std::vector<space_triangle>& triangles) {
     throw input_error(fmt::format("the surface is empty ({} of its {} triangles have an area); give another",
                                   mesh.corners.size(), triangles.size()));
   pair_sides(mesh);
-  // A chain of flat triangles needs a pass for each of them.
+  // A chain of flat triangles needs one pass per triangle.
   constexpr int most_passes = 100;
   for (int pass = 0; flip_flat_triangles(mesh); ++pass) {
     if (pass == most_passes)

@@ -14,7 +14,7 @@
 namespace apsis {
 namespace {
 
-/// Smallest box around a shell.
+/// The smallest box around a shell.
 struct shell_bounds {
   position low, high;
   bool contain(const position& x) const {
@@ -36,7 +36,8 @@ shell_bounds bounds_of(const triangle_mesh& mesh, const std::vector<std::size_t>
   return box;
 }
 
-/// Signed solid angle of a triangle seen from x (Van Oosterom, Strackee, IEEE Trans. Biomed. Eng. 30, 1983).
+/// Returns the signed solid angle of a triangle seen from x (Van Oosterom, Strackee, IEEE Trans. Biomed. Eng.
+/// 30, 1983).
 double solid_angle(const triangle_mesh& mesh, std::size_t t, const position& x) {
   const position a = vectors::difference(mesh.corner(t, 0), x), b = vectors::difference(mesh.corner(t, 1), x),
                  c = vectors::difference(mesh.corner(t, 2), x);
@@ -52,8 +53,9 @@ double area_of(const triangle_mesh& mesh, const std::vector<std::size_t>& shell)
   return sum;
 }
 
-/// Checks that a shell with positive volume is outside the body of the other shells, and one with negative
-/// volume inside: their winding number at a point of the shell is 0 or 1.
+/// Checks that a shell with positive volume is outside the body of the other shells, and a shell with
+/// negative volume inside it. The winding number of the other shells at a point of the shell must be 0 or
+/// 1, respectively.
 void check_nesting(const triangle_mesh& mesh, const std::vector<std::vector<std::size_t>>& shells,
                    const std::vector<double>& volumes) {
   std::vector<shell_bounds> bounds;
@@ -65,7 +67,7 @@ void check_nesting(const triangle_mesh& mesh, const std::vector<std::vector<std:
       if (other != s && bounds[other].contain(x))
         for (const std::size_t t : shells[other])
           winding += solid_angle(mesh, t, x) / (4.0 * std::numbers::pi);
-    // Fractions occur where shells touch each other.
+    // Winding numbers are fractions where shells touch each other.
     if (volumes[s] > 0.0 ? winding < 0.75 : winding > 0.25) continue;
     throw input_error(fmt::format(
         "a part of the surface has the wrong orientation ({} with the corner ({:.6g}, {:.6g}, {:.6g})); {}",
@@ -104,7 +106,7 @@ double compute_volume(const triangle_mesh& mesh, const std::vector<std::size_t>&
 }
 
 void orient_shells(triangle_mesh& mesh, const std::vector<std::vector<std::size_t>>& shells) {
-  // Rounding errors of the volume are some 1e-16 of this power of the area.
+  // Rounding errors of the volume are some 1e-16 of the power 3/2 of the area.
   constexpr double least_volume = 1e-12;
   std::vector<double> volumes;
   double total = 0.0;

@@ -74,7 +74,7 @@ std::vector<triangle_normals> compute_normals(const triangle_mesh& mesh) {
   return normals;
 }
 
-/// Squared distance of a point from a triangle, and a number with the sign of its side.
+/// The squared distance of a point from a triangle, and a number whose sign is that of the side of the point.
 struct triangle_distance {
   double squared = std::numeric_limits<double>::infinity();
   double side = 1.0;
@@ -151,8 +151,8 @@ double triangle_surface::signed_distance(const position& x) const {
   const std::size_t all = mesh.corners.size();
   triangle_distance nearest;
   std::vector<tree_entry> found;
-  // The box of the nearest triangle need not be the nearest box: boxes are requested until the others are
-  // farther.
+  // The nearest triangle need not have the nearest box. Boxes are requested until all others are
+  // farther away.
   for (std::size_t requested = 16, seen = 0; seen < all; seen = requested, requested *= 4) {
     found.clear();
     parts_->tree.query(

@@ -11,16 +11,16 @@ namespace apsis {
 /// Corners of a triangle in space, counterclockwise seen from the gas.
 using space_triangle = std::array<position, 3>;
 
-/// A closed surface of triangles, which may have several disjoint shells, one inside another for a cavity.
-/// Whether shells intersect themselves or touch each other is not checked; signs are undefined near such
-/// points.
+/// A closed surface of triangles, which may have several disjoint shells. A shell inside another one bounds a
+/// cavity. Shells must neither intersect themselves nor touch each other. This is not checked; signs are
+/// undefined near such points.
 class triangle_surface {
  public:
   /// Merges equal corners and drops triangles with fewer than three distinct ones. Flips the edges of
   /// triangles with collinear corners. Reverses all triangles if the signed volume is negative. Throws
   /// input_error for a surface without triangles, with open or branching edges, or with neighbours of
-  /// contrary orientation. Throws input_error for a shell that has no volume, or whose orientation does not
-  /// fit the shells around it.
+  /// contrary orientation. Also throws it for a shell without volume, or for a shell whose orientation does
+  /// not fit the shells around it.
   explicit triangle_surface(const std::vector<space_triangle>& triangles);
   ~triangle_surface();
   triangle_surface(triangle_surface&&) noexcept;             ///< the source can then only be destroyed

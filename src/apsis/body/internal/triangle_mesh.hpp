@@ -25,7 +25,8 @@ struct triangle_mesh {
 /// input_error as the constructor of triangle_surface does, except for errors of shells.
 triangle_mesh make_closed_mesh(const std::vector<space_triangle>& triangles);
 
-/// Finds the neighbours of all triangles. Throws input_error unless each edge has two of opposite directions.
+/// Finds the neighbours of all triangles. Throws input_error unless each edge has two triangles with
+/// opposite directions.
 void pair_sides(triangle_mesh& mesh);
 
 /// Returns the triangles of each connected part.
@@ -35,7 +36,7 @@ std::vector<std::vector<std::size_t>> compute_shells(const triangle_mesh& mesh);
 double compute_volume(const triangle_mesh& mesh, const std::vector<std::size_t>& shell);
 
 /// Reverses all triangles if the total volume is negative. Throws input_error for a shell without volume, or
-/// if a shell lies inside others and its orientation contradicts that.
+/// for a shell whose orientation contradicts its place inside or outside of others.
 void orient_shells(triangle_mesh& mesh, const std::vector<std::vector<std::size_t>>& shells);
 
 }  // namespace apsis

@@ -12,7 +12,7 @@ namespace apsis {
 namespace box_shape {
 namespace {
 
-/// Signed distance of a box along the axes, exactly 0 on the faces.
+/// The signed distance from a box along the axes. It is exactly 0 on the faces.
 class box final : public shape {
  public:
   box(const position& from, const position& to, int dimensions)

@@ -10,14 +10,14 @@ namespace apsis {
 namespace cylinder_shape {
 namespace {
 
-/// Signed distance of a round cylinder with flat ends, or without ends.
+/// The signed distance from a round cylinder with flat ends, or without ends.
 class cylinder final : public shape {
  public:
   cylinder(const position& centre, const position& axis, double radius, double length)
       : centre_(centre), axis_(axis), radius_(radius), half_(0.5 * length) {}
   double outside(const position& x) const override {
     const position y = vectors::difference(x, centre_);
-    // The length of the product is accurate close to the axis too.
+    // The length of the cross product is accurate even close to the axis.
     const double across = vectors::length(vectors::cross(axis_, y)) - radius_;
     return combined_distance(across, std::abs(vectors::dot(axis_, y)) - half_);
   }

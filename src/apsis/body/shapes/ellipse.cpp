@@ -8,7 +8,7 @@ namespace apsis {
 namespace ellipse_shape {
 namespace {
 
-/// First-order approximation of the distance (ellipsoid_distance).
+/// A first-order approximation of the distance, by ellipsoid_distance().
 class ellipse final : public shape {
  public:
   explicit ellipse(const position& semi_axes) : semi_axes_(semi_axes) {}

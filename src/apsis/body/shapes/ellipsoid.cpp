@@ -8,7 +8,7 @@ namespace apsis {
 namespace ellipsoid_shape {
 namespace {
 
-/// First-order approximation of the distance (ellipsoid_distance).
+/// A first-order approximation of the distance, by ellipsoid_distance().
 class ellipsoid final : public shape {
  public:
   ellipsoid(const position& centre, const position& semi_axes) : centre_(centre), semi_axes_(semi_axes) {}

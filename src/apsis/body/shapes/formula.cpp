@@ -11,7 +11,7 @@ namespace apsis {
 namespace formula_shape {
 namespace {
 
-/// A given φ.
+/// A shape with a given function φ, whose values it checks.
 class level_set final : public shape {
  public:
   explicit level_set(level_set_function phi) : phi_(std::move(phi)) {}

@@ -13,8 +13,9 @@ namespace apsis {
 namespace polygon_shape {
 namespace {
 
-/// Signed distance of a simple closed polygon. The sign is that of the number of edges that a ray along x
-/// crosses; each edge has one of its ends, so a ray through a corner is counted correctly.
+/// The signed distance from a simple closed polygon. The sign follows from the number of edges that a ray
+/// along x crosses: an odd number means inside. Each edge includes only one of its ends, so that a ray
+/// through a corner is counted correctly.
 class polygon final : public shape {
  public:
   explicit polygon(std::vector<position> corners) : corners_(std::move(corners)) {}
@@ -31,7 +32,8 @@ class polygon final : public shape {
   }
 
  private:
-  /// Of x from the segment a b. The distance from the line vanishes exactly where the side of x changes.
+  /// Returns the squared distance of x from the segment a b. The distance from the line vanishes exactly
+  /// where the side of x changes.
   static double squared_distance(const position& x, const position& a, const position& b) {
     const double ux = b[0] - a[0], uy = b[1] - a[1], vx = x[0] - a[0], vy = x[1] - a[1];
     const double wx = x[0] - b[0], wy = x[1] - b[1];

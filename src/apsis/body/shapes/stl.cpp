@@ -11,7 +11,7 @@ namespace apsis {
 namespace stl_shape {
 namespace {
 
-/// Signed distance of a closed surface of triangles.
+/// The signed distance from a closed surface of triangles.
 class solid final : public shape {
  public:
   explicit solid(const std::vector<space_triangle>& triangles) : surface_(triangles) {}

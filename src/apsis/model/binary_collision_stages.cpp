@@ -180,7 +180,7 @@ class binary_collision_solver final : public point_collision {
 
   /// v_ ← the solution of the stage. If collisions are few, Newton's method starts at u. If that fails, or
   /// with more collisions, it starts at the solution of a relaxation with the same equilibrium, then at the
-  /// equilibrium, then at u.
+  /// equilibrium, then at u. Returns false if all starts fail.
   bool solve(const stage_weights& of, double weight_of_e) {
     constexpr double few = 0.2;
     loses_directions_ = false;

@@ -16,7 +16,7 @@ struct data_variable {
   std::string doc;                   ///< meaning with unit
   int size = 1;                      ///< number of components of a vector
   std::optional<double> value = {};  ///< default of every component; the variable is required without it
-  apsis::dimension dimension = {};   ///< its dimension in units of a gas (gas_scales.hpp)
+  apsis::dimension dimension = {};   ///< gives its unit for a gas (gas_scales.hpp)
   /// Whether it also depends on the velocity. Its values at all velocities are then contiguous.
   bool of_velocity = false;
   /// Name of a variable that may replace this one, or "". Neither has a default then.
@@ -38,7 +38,7 @@ struct source_of_state {
 /// One way to prescribe a row, for example as a Maxwellian by density, velocity and temperature.
 struct data_form {
   std::string description;               ///< "Maxwellian"
-  std::vector<data_variable> variables;  ///< in the order of the values below, vectors component by component
+  std::vector<data_variable> variables;  ///< in the order of `values` below, vectors by component
   /// u ← the row with these values of the variables. Returns "", or the reason why no such row exists:
   /// "density -1 is not positive".
   std::function<std::string(std::span<const double> values, std::span<double> u)> row;

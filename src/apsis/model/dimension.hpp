@@ -25,7 +25,7 @@ struct dimension {
 
 /// Dimensions by name.
 namespace dimensions {
-inline constexpr dimension none{};                           ///< of a number
+inline constexpr dimension none{};                           ///< pure numbers
 inline constexpr dimension mass{1, 0, 0, 0};                 ///< kg
 inline constexpr dimension length{0, 1, 0, 0};               ///< m
 inline constexpr dimension time{0, 0, 1, 0};                 ///< s
@@ -40,7 +40,7 @@ inline constexpr dimension heat_flux = pressure * velocity;  ///< W/m^2
 inline constexpr dimension viscosity = pressure * time;      ///< Pa s
 }  // namespace dimensions
 
-/// Returns the SI unit of a dimension: "Pa", "W/m^2", "kg/(m^2 s)"; "dimensionless" of a number.
+/// Returns the SI unit of a dimension: "Pa", "W/m^2", "kg/(m^2 s)"; "dimensionless" for a number.
 std::string unit_of(const dimension& d);
 /// Returns the SI unit of an amount of mass, momentum or energy, or of its change per unit of time. The
 /// domain has `lacking` fewer directions than space, so that amounts are per length or area. In the plane

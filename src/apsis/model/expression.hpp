@@ -16,9 +16,9 @@ using formula_constants = std::map<std::string, double>;
 
 /// Variables and constants of a formula, and a constraint on its values.
 struct formula_kind {
-  std::vector<std::string> variables = {"x"};  ///< its free names, at least one
-  bool nonnegative = true;                     ///< evaluate() refuses values below 0
-  formula_constants constants = {};            ///< in addition to pi and e
+  std::vector<std::string> variables = {"x"};  ///< names of its variables, at least one
+  bool nonnegative = true;                     ///< whether evaluate() refuses values below 0
+  formula_constants constants = {};            ///< constants in addition to pi and e
 };
 
 /// Returns the kind of formulas in the coordinates of D = 0 … 3 space dimensions: x for D ≤ 1, then x and y,
@@ -49,9 +49,9 @@ struct value_conversion {
 /// Points at which a formula is evaluated: the value of variable k at point p is
 /// variables[k to_next_variable + p to_next_point].
 struct formula_points {
-  const double* variables;       ///< of the first point
-  std::size_t to_next_variable,  ///< distance of variables
-      to_next_point;             ///< distance of points
+  const double* variables;       ///< variables of the first point
+  std::size_t to_next_variable,  ///< distance between variables of a point
+      to_next_point;             ///< distance between points
 };
 
 /// A formula for coefficients that a case file gives as text (ε(x), a flux F(u)); dimensionless. Operators

@@ -133,7 +133,8 @@ void gas::fill_h(double energy, double* row) const {
   grid_sums::scale(energy, row, grid_.size(), row + grid_.size());
 }
 
-/// Otherwise the moments of the formula would have errors of one sign, which add up from step to step.
+/// Whether the equilibrium is the formula. By default it is the formula only if its moments are exact. Errors
+/// of the moments would have one sign and add up from step to step.
 template <class State>
 bool gas::keeps_formula(const State& state) const {
   return choice_ == equilibrium_choice::formula ||

@@ -61,9 +61,10 @@ class gas {
 
   /// Returns why the grid does not support a row of data, by the rule of velocity_support.hpp.
   unsupported_initial_data check_supported(const double* row) const;
-  /// Returns the equilibrium of (ρ, u, T) as data of a case. This object must outlive it.
+  /// Returns the form of data that prescribes the equilibrium of (ρ, u, T). This object must outlive it.
   data_form maxwellian_form() const;
-  /// Returns f, or g and h of a reduced gas, as functions of the velocity. This object must outlive it.
+  /// Returns the form of data that prescribes f, or g and h of a reduced gas, as functions of the velocity.
+  /// This object must outlive it.
   data_form distribution_form() const;
 
  private:

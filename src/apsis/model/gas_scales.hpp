@@ -11,7 +11,7 @@ namespace apsis {
 /// A quantity in SI units, with its name and dimension.
 struct named_quantity {
   std::string name;                 ///< "number_density"
-  double value = 0.0;               ///< in unit_of(dimension)
+  double value = 0.0;               ///< value in unit_of(dimension)
   apsis::dimension dimension = {};  ///< its dimension
 };
 

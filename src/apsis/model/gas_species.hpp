@@ -12,7 +12,7 @@ struct gas_species {
   double viscosity = 0.0;              ///< μ_ref in Pa s
   double viscosity_temperature = 0.0;  ///< T_ref in K
   double viscosity_exponent = 0.5;     ///< ω
-  int degrees_of_freedom = 3;          ///< D, translation and rotation
+  int degrees_of_freedom = 3;          ///< D of translation and rotation
   double prandtl = 0.0;                ///< Pr
 };
 

@@ -11,7 +11,7 @@ namespace apsis {
 /// (integrate/newton_problem.hpp). They fail if ε = 0, if 1/ε² overflows, or if the stage is singular.
 class general_model : public model {
  public:
-  /// A number with two independent first derivatives: ∂/∂s, ∂/∂t and ∂²/∂s∂t.
+  /// A number with its derivatives ∂/∂s, ∂/∂t and ∂²/∂s∂t with respect to two parameters.
   using number = boost::math::differentiation::autodiff_fvar<double, 1, 1>;
 
   /// q ← Q(u); rows of components() numbers.

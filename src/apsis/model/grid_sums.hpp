@@ -17,7 +17,7 @@ struct axis {
 
 /// Σ_j w_j c_j^p s_j, p = 0 … 3, c = v − u.
 using powers = std::array<double, 4>;
-/// The same, p = 0 … 5.
+/// Σ_j w_j c_j^p s_j, p = 0 … 5, c = v − u.
 using six_powers = std::array<double, 6>;
 
 /// Largest number of functions a_k in a call.

@@ -104,8 +104,8 @@ class line_family {
   int n_ = 0, padded_ = 0, left_ = 0, right_ = 0;  // zeros of C
   int nearest_ = 0;
   double offset_ = 0.0, ends_ = 0.0;      // sum of the distances of the zeros from nearest_
-  double mean_ = 0.0, from_right_ = 0.0;  // from left_, and to right_
-  double sign_ = 1.0;                     // of the curvature of C
+  double mean_ = 0.0, from_right_ = 0.0;  // distances of the mean from left_ and right_
+  double sign_ = 1.0;                     // sign of the curvature of C
   bool fixed_ = false;
   aligned_vector<double> x_, c_, base_, weights_, values_;
 };

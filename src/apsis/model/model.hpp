@@ -68,7 +68,7 @@ struct initial_data {
 /// A tensor product of velocities: all combinations of points in each of d directions, with the last
 /// direction fastest.
 struct velocity_lattice {
-  std::vector<int> points;      ///< n_k of each direction; empty if the velocities are no lattice
+  std::vector<int> points;      ///< n_k of each direction; empty if the velocities are not a lattice
   std::vector<double> spacing;  ///< Δv_k; 0 if the points are not equidistant
 };
 
@@ -87,7 +87,7 @@ class model : public construction_count<model> {
 
   /// Returns this model as a relaxation towards E(ω); null for other models.
   virtual const relaxation_model* as_relaxation() const { return nullptr; }
-  /// Returns this model as that of a gas with density, velocity and temperature; null for other models.
+  /// Returns this model as a gas with density, velocity and temperature; null for other models.
   virtual const gas_model* as_gas() const { return nullptr; }
 
   /// Returns the number of components of a row.
@@ -119,8 +119,8 @@ class model : public construction_count<model> {
   /// s ← S(u), the explicit local source, which is part of the operator T; 0 by default.
   virtual void source(const double* u, double* s) const;
 
-  /// Returns a solver of collisions at points with scratch memory for one thread and batches within `limits`.
-  /// The model must outlive it.
+  /// Returns a solver of collisions at points, for batches within `limits`. It has scratch memory for one
+  /// thread. The model must outlive it.
   virtual std::unique_ptr<point_collision> make_collision(const batch_limits& limits) const = 0;
   /// Whether make_collision() provides the exact solution of v' = Q(v)/ε.
   virtual bool has_exact_collision() const { return false; }

@@ -18,7 +18,7 @@ struct model_parameter {
   double lowest;         ///< smallest allowed value
   double highest;        ///< largest allowed value
   std::string doc;       ///< description with unit
-  bool integer = false;  ///< integers only
+  bool integer = false;  ///< whether only integers are allowed
   /// Whether a case may set it to "auto", which is then the default. model::automatic_value() computes an
   /// automatic value from the initial data. `value` applies to models without data.
   bool automatic = false;
@@ -48,7 +48,7 @@ struct model_list {
 struct model_config {
   std::map<std::string, double> parameters;                    ///< complete: defaults filled in
   std::map<std::string, std::string> options;                  ///< complete; each a choice or a valid formula
-  velocity_config velocity;                                    ///< only where the entry has_velocity_grid
+  velocity_config velocity;                                    ///< only for entries with has_velocity_grid
   formula_constants constants = {};                            ///< constants of formulas
   std::map<std::string, std::vector<std::string>> lists = {};  ///< complete; each a valid name or formula
   int space_dimensions = 1;                              ///< D, for models that exist in several dimensions

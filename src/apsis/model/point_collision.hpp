@@ -13,7 +13,7 @@ struct point_batch {
   const double* epsilon = nullptr;  ///< ε ≥ 0 at each point
   int first_cell = 0;               ///< cell of the first point, for error messages
   int points_per_cell = 1;          ///< consecutive points that share a cell, for error messages
-  bool cached = false;  ///< whether the rows are in cache, so that the profiler counts no memory traffic
+  bool cached = false;              ///< whether the rows were just written; they cause no memory traffic then
 };
 
 /// Result of point_collision::solve_stage().

@@ -53,7 +53,7 @@ class dual_minimum {
 
  private:
   static constexpr double rounding = 1e-15;  ///< rounding of sums, reached in most cases
-  static constexpr double close = 1e-12;     ///< sums of thousands of terms may not come nearer than this
+  static constexpr double close = 1e-12;  ///< rounding may keep sums of thousands of terms at this distance
 
   /// Takes one step that reduces the dual or the residual; near the minimum the dual varies by less than its
   /// rounding. If nearly all mass is at few points, some directions change nothing. Steps are then damped by

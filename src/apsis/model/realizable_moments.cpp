@@ -18,7 +18,7 @@ double rounding_of_sums(const velocity_grid& grid) {
 
 /// Moments of a vacuum up to this size count as 0.
 constexpr double vacuum = 1e-300;
-/// For larger moments, subnormal terms of the sums are a hundred orders of magnitude below ρ.
+/// For larger moments, subnormal terms of the sums lie far below the rounding of ρ.
 constexpr double large_enough = 1e-200;
 
 bool all_finite(const double* omega, int count) {

@@ -123,7 +123,8 @@ class relaxation_collision final : public point_collision {
         {-1, unknown, cell(p, at), *omega(p)});
   }
 
-  /// Returns the number of points before the first without a target.
+  /// Computes the targets of stages with relaxing moments. Returns the number of points before the first
+  /// without a target.
   int relaxed_targets(double a, double b, const point_batch& at, const double* u, bool explicit_rate) {
     for (int p = 0; p < at.count; ++p) {
       const double* row = u + p * at.pitch;
@@ -195,7 +196,7 @@ class relaxation_collision final : public point_collision {
 
   const relaxation_model& equation_;
   bool keeps_sign_, exact_;
-  double cut_ = 0.0;  ///< of take_cut()
+  double cut_ = 0.0;  ///< result of the next take_cut()
   std::ptrdiff_t moments_, pitch_;
   aligned_vector<double> omega_, equilibria_, rates_, weight_of_u_, weight_of_e_;
   std::vector<double> relaxing_;  ///< s of one point

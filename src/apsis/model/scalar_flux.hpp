@@ -44,7 +44,7 @@ class scalar_flux {
   std::string text_;
   kind kind_;
   double b_, M_;
-  std::unique_ptr<system_flux> formula_;  ///< of the single variable u
+  std::unique_ptr<system_flux> formula_;  ///< a formula in the single variable u
 };
 
 }  // namespace apsis

@@ -146,14 +146,14 @@ struct slope_of_four {
 /// The slopes of several states by their first step. F is evaluated for all states together. Numbers of a
 /// kind are contiguous over the states.
 struct system_flux::differences {
-  std::vector<double> u, sizes,  ///< of variable k
-      at, F,                     ///< of variable j and of F_j: state p with step s of variable k is number
-                                 ///< (4 k + s) states + p
-      slopes,                    ///< of F_j by variable k
-      accurate,                  ///< 1 if all slopes by variable k are accurate, else 0
-      derivative;                ///< F' of one state
+  std::vector<double> u, sizes,  ///< values and sizes of variable k
+      at, F,  ///< variables j and fluxes F_j after step s of variable k: state p is number (4 k + s) states +
+              ///< p of j
+      slopes,      ///< slopes of F_j by variable k
+      accurate,    ///< 1 if all slopes by variable k are accurate, else 0
+      derivative;  ///< F' of one state
 
-  /// Number of states whose values fit into the first-level cache.
+  /// Returns the number of states whose values fit into the first-level cache.
   static std::size_t together(std::size_t n) { return std::clamp<std::size_t>(512 / (n * n), 1, 32); }
   void resize(std::size_t n) {
     const std::size_t states = together(n);

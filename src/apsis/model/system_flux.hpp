@@ -17,8 +17,8 @@ class system_flux {
   static constexpr int most_variables = 16;
 
   /// Takes one formula of a flux per variable, in the variables and `constants`. Messages name `key` as the
-  /// key of the case. Throws input_error if a formula is invalid, if there are no or too many variables, or
-  /// if the number of formulas differs from theirs.
+  /// key of the case. Throws input_error if a formula or a name is invalid, if there are no or too many
+  /// variables, or if the number of formulas differs from theirs.
   system_flux(std::vector<std::string> variables, const std::vector<std::string>& formulas,
               const formula_constants& constants = {}, const std::string& key = "model.flux");
 

@@ -89,10 +89,10 @@ class velocity_support {
 /// Returns the support of the velocities of a gas; nothing for models other than gases.
 std::optional<velocity_support> support_of(const model& equation);
 
-/// Words of a message about velocities.
+/// Parts of a message about velocities.
 struct velocity_words {
   std::string subject;                 ///< "the data"
-  const gas_scales* scales = nullptr;  ///< adds values in SI units
+  const gas_scales* scales = nullptr;  ///< if given, the message adds values in SI units
   bool from_file = false;              ///< whether the case gives the velocities, not velocity.max
   double needed = 0.0;                 ///< sufficient largest velocity, if more than the state needs
 };

@@ -47,13 +47,13 @@ struct weighted_direction {
 /// numbers. The caller changes the weights and sums them:
 ///   while (newton.advance()) for all k: w ← w exp(newton.beta[k] c + newton.gamma c²), newton.of[k].sums ← …
 struct nearby_newton {
-  weighted_direction of[3];  ///< of each direction
+  weighted_direction of[3];  ///< weights of each direction
   int dimensions;            ///< number of directions
   double square, speed;      ///< d T, √T
   double beta[3], gamma;     ///< parameters of the next change
   double before;             ///< defect before the last change
   int changes;               ///< number of changes of the weights so far
-  bool found;                ///< whether the weights are those of the state
+  bool found;                ///< whether the weights have the moments of the state
 
   /// Returns the start for a temperature T. The caller then sets `of`.
   static APSIS_FORMULA nearby_newton start(int dimensions, double T) {

@@ -11,7 +11,7 @@ namespace apsis {
 /// are numbered from 0.
 struct binary_collision {
   int i, j, k, l;
-  double rate = 1.0;  ///< A > 0 of A (f_k f_l − f_i f_j) (dimensionless)
+  double rate = 1.0;  ///< A > 0 in the rate A (f_k f_l − f_i f_j) of f_i (dimensionless)
 };
 
 /// Elastic collisions of a gas of n velocities v_j (Gatignol, Théorie cinétique des gaz à répartition

@@ -17,7 +17,7 @@
 namespace apsis {
 namespace {
 
-/// The nine velocities of a square grid with its centre. This is the smallest regular set in the plane whose
+/// The nine velocities of a square grid of 3 × 3 points. This is the smallest regular set in the plane whose
 /// only invariants are mass, momentum and energy.
 const std::vector<std::string> default_velocities = {"0, 0", "1, 0",  "-1, 0", "0, 1",  "0, -1",
                                                      "1, 1", "-1, 1", "1, -1", "-1, -1"};

@@ -34,8 +34,8 @@ class point_counts {
 
 /// Velocity grid of a kinetic model.
 struct velocity_config {
-  double max = 0.0;         ///< largest |v| (dimensionless); 0 where the set chooses it
-  point_counts points = 0;  ///< at least 4; 0 where the set chooses it
+  double max = 0.0;         ///< largest |v| (dimensionless); 0 if the set determines it
+  point_counts points = 0;  ///< at least 4; 0 if the set determines it
   equilibrium_choice equilibrium = equilibrium_choice::automatic;  ///< computation of the equilibrium
   /// Names of velocity lines or files (velocity_line_registry.hpp): one for all directions, or one for each
   /// direction. Empty stands for "uniform".

@@ -39,7 +39,7 @@ class velocity_grid {
 
   int dimensions() const { return dimensions_; }  ///< d
   int size() const { return size_; }              ///< number of velocities
-  /// Whether two components are those of rings about an axis.
+  /// Whether this is a polar grid, with rings about an axis.
   bool is_polar() const { return !polar_.empty(); }
   /// Returns the rings; empty for a product of lines.
   const polar_layout& polar() const { return polar_; }

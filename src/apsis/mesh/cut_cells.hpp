@@ -30,7 +30,7 @@ struct open_face {
 /// A flat piece of wall in a cut cell.
 struct wall_segment {
   int cell = -1;                      ///< cell whose gas it bounds
-  int solid = -1;                     ///< number of the solid box or body: boxes first
+  int solid = -1;                     ///< number of the solid box or body; boxes come first
   double area = 0.0;                  ///< area of the piece; a length in two dimensions
   std::array<double, 3> normal = {};  ///< unit vector into the gas
   position middle = {};               ///< point on the wall
@@ -64,7 +64,7 @@ struct cut_group {
 /// group. A step of Δt ≤ κ / max Σ_k |v_k|/Δx_k then empties no cell. Indeed, the outflow is a convex
 /// function of the velocity. Under the condition Σ_k |v_k|/Δx_k = 1, it has its maximum on an axis.
 ///
-/// Dimensionless lengths.
+/// Lengths are dimensionless.
 class cut_cells {
  public:
   /// The CFL number κ. Larger values join more cells. For κ = 1, the cells along a wall would have to
@@ -88,8 +88,8 @@ class cut_cells {
   int body_of(int cell) const { return body_of_[at(cell)]; }
   int bodies() const { return bodies_; }                             ///< number of bodies
   const std::vector<cut_group>& groups() const { return groups_; }   ///< groups of cut cells
-  const std::vector<open_face>& faces() const { return faces_; }     ///< of all groups
-  const std::vector<wall_segment>& walls() const { return walls_; }  ///< of all groups
+  const std::vector<open_face>& faces() const { return faces_; }     ///< open faces of all groups
+  const std::vector<wall_segment>& walls() const { return walls_; }  ///< walls of all groups
   /// Returns the volume of the gas in a cut cell.
   double volume_of(int cell) const;
   /// Returns κ max_k max_± Δx_k Σ_out area / volume of a group.
@@ -105,7 +105,7 @@ class cut_cells {
   std::vector<open_face> faces_;
   std::vector<wall_segment> walls_;
   std::unordered_map<int, double> volumes_;  ///< volume of gas in each cut cell
-  std::vector<double> outflows_;             ///< of each group
+  std::vector<double> outflows_;             ///< outflow() of each group
   int thin_cells_ = 0, bodies_ = 0;
 };
 

@@ -89,7 +89,8 @@ class grid {
   double cell_volume() const;                                              ///< Π Δx over the D directions
   /// Returns the area of a face of a cell: 1 in one dimension.
   double face_area(const face& where) const { return cell_volume() / spacing(where.direction); }
-  /// Returns the coordinate of the lower edge of a cell 0 … n along a direction, counted along it.
+  /// Returns the coordinate of the lower edge of cell 0 … n along a direction. Cells are counted along
+  /// this direction.
   double edge(int direction, int cell) const {
     return lower_[at(direction)] + spacing(direction) * (first(direction) + cell);
   }

@@ -337,8 +337,8 @@ std::vector<position> mesh_cutter::corners_of_closed(int cell, int direction, bo
   lowest[at(direction)] += upper ? 1 : 0;
   std::vector<position> corners =
       open_part ? parts_.corners_of_face(direction, lowest) : parts_.corners_of_square(direction, lowest);
-  // In the plane the ends are in increasing order. Seen along them, the upper side of a face normal to x is
-  // on the right, and that of a face normal to y on the left.
+  // In the plane the ends are in increasing order. On the way along a face normal to x the upper side is on
+  // the right; along a face normal to y it is on the left.
   if (mesh_.dimensions() == 2 ? upper == (direction == 0) : upper)
     std::reverse(corners.begin(), corners.end());
   return corners;

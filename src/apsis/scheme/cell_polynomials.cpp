@@ -49,7 +49,7 @@ cell_polynomials::cell_polynomials(const line_rows& rows, bool nonnegative)
         of_.push_back({value, 0.0, 0.0});
         continue;
       }
-      // In units of the scale, so that squares neither overflow nor vanish.
+      // Differences are in units of the scale, so that their squares neither overflow nor vanish.
       const double left = (value - continued(rows, cell - 1, k)) / scale,
                    right = (continued(rows, cell + 1, k) - value) / scale;
       const double slope = 0.5 * (left + right), bend = right - left;

@@ -16,9 +16,9 @@ struct pencil_loops {
   /// Counts operations; see reconstruction::operations().
   using operation_count = double (*)(bool both_edges);
 
-  edge_loop edges;             ///< of both edges
-  outflow_loop outflow_edges;  ///< of outflow edges alone
-  operation_count operations;  ///< per number
+  edge_loop edges;             ///< loop for both edges
+  outflow_loop outflow_edges;  ///< loop for outflow edges alone
+  operation_count operations;  ///< operations per number
 };
 
 /// Returns a scheme of fifth order, which needs two neighbours on either side.

@@ -12,8 +12,8 @@ inline double turn_of(const position& a, const position& b, const position& c) {
   return (b[0] - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (b[1] - a[1]);
 }
 
-/// Throws input_error, which names two points or two edges, unless a closed polygon is simple: no edge has
-/// the length 0, and no two edges touch except at the point that they share.
+/// Throws input_error unless a closed polygon is simple: no edge has the length 0, and no two edges touch
+/// except at their common end. The message names two points or two edges.
 void check_simple_polygon(const std::vector<position>& corners, const shape_arguments& from);
 
 }  // namespace apsis

@@ -26,7 +26,7 @@ class point_counts {
   operator int() const { return of_.empty() ? 0 : of_.front(); }  // NOLINT(google-explicit-constructor)
   const std::vector<int>& each() const { return of_; }            ///< one number, or one per direction
   bool operator==(const point_counts&) const = default;           ///< equal numbers
-  bool operator==(int all) const { return of_ == std::vector<int>{all}; }  ///< one number
+  bool operator==(int all) const { return of_ == std::vector<int>{all}; }  ///< this one number
 
  private:
   std::vector<int> of_;

@@ -38,7 +38,7 @@ class velocity_line {
   /// Returns the largest distance between neighbours in the range `from` … `to`, and at least
   /// spacing() (widest_gap.hpp).
   double widest_gap(double from, double to) const;
-  bool operator==(const velocity_line&) const = default;  ///< equal points and weights
+  bool operator==(const velocity_line&) const = default;  ///< equal points, weights and places
 
  private:
   void complete();

@@ -22,19 +22,19 @@ double product(const list& a, const list& b) {
   return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
 }
 
-/// Returns a × b: in the plane its component along z.
+/// Returns a × b; in the plane, its component along z.
 list cross(const list& a, const list& b) {
   if (a.size() == 2) return {a[0] * b[1] - a[1] * b[0]};
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 
-/// "moment", or in space "moment_x", "moment_y", "moment_z".
+/// Returns "moment" in the plane; "moment_x", "moment_y" and "moment_z" in space.
 std::vector<std::string> names_of_torque(const std::string& head, int dimensions) {
   if (dimensions == 2) return {head};
   return {head + "_x", head + "_y", head + "_z"};
 }
 
-/// The columns of a history in which the load of a body is.
+/// Reads the load of a body from the columns of a history.
 class load_reader {
  public:
   load_reader(const run_setup& setup, const loaded_body& body, const std::vector<std::string>& columns)
@@ -93,7 +93,7 @@ std::vector<body_load> body_loads(const run_setup& setup, const step_record& ste
     body_load& made = all.emplace_back();
     made.name = bodies[b].name;
     for (int k = 0; k < setup.whole_mesh().dimensions(); ++k) made.force.push_back(flux(momenta[at(k)]));
-    if (setup.whole_mesh().has_axis()) made.force[1] = 0.0;  // those on a ring cancel
+    if (setup.whole_mesh().has_axis()) made.force[1] = 0.0;  // radial forces on a ring cancel
     const std::size_t count = step.torque.size() / bodies.size();
     const auto first = step.torque.begin() + static_cast<std::ptrdiff_t>(b * count);
     made.torque.assign(first, first + static_cast<std::ptrdiff_t>(count));
@@ -136,7 +136,7 @@ std::vector<std::string> torque_columns(const run_setup& setup) {
 
 namespace {
 
-/// "C_D_NAME", "moment_NAME_x".
+/// Returns a column name such as "C_D_NAME" or "moment_NAME_x".
 std::string column_of(const std::string& load, const std::string& body) {
   const bool component = load.size() > 2 && load[load.size() - 2] == '_' && std::islower(load.back()) != 0;
   if (!component) return fmt::format("{}_{}", load, body);

@@ -16,10 +16,11 @@
 namespace apsis {
 
 std::vector<double> linear_edge(const reconstruction& scheme) {
-  // Small enough for the linear weights, whose errors are quadratic, and large against rounding.
+  // Small enough that nonlinear weights differ from the linear ones by quadratic errors only; large
+  // compared with rounding.
   constexpr double small = 1e-7;
   const int g = scheme.ghost_width(), width = 2 * g + 1;
-  // Velocity k of the row sees a disturbance of cell k − g.
+  // Component k of the rows has a disturbance in cell k − g.
   std::vector<std::vector<double>> data(static_cast<std::size_t>(width),
                                         std::vector<double>(static_cast<std::size_t>(width), 1.0));
   std::vector<const double*> rows;
@@ -45,21 +46,21 @@ namespace {
 
 constexpr double largest_number = 100.0;
 
-/// The points Δx λ(θ)/v of `count` wavenumbers in (0, π]; those of −θ are conjugate.
+/// Returns Δx λ(θ)/v for `count` wavenumbers in (0, π]; the values for −θ are conjugate.
 std::vector<std::complex<double>> sample_symbol(const std::vector<double>& edge, int count) {
   std::vector<std::complex<double>> points;
   for (int k = 1; k <= count; ++k) points.push_back(transport_symbol(edge, std::numbers::pi * k / count));
   return points;
 }
 
-/// Whether all waves are stable at the CFL number nu and Δt/ε = −w.
+/// Returns whether all waves are stable at the CFL number nu and Δt/ε = −w.
 bool is_stable(const amplification& R, const std::vector<std::complex<double>>& points, double nu, double w) {
   const double bound = std::exp(growth_per_cell * nu);
   return std::all_of(points.begin(), points.end(),
                      [&](const auto& point) { return R.is_within(bound, nu * point, w); });
 }
 
-/// Returns the number in [stable, unstable] up to which `holds`, by bisection.
+/// Returns by bisection the number in [stable, unstable] up to which `holds` is true.
 template <class Holds>
 double last_that_holds(const Holds& holds, double stable, double unstable) {
   constexpr int halvings = 24;
@@ -70,7 +71,7 @@ double last_that_holds(const Holds& holds, double stable, double unstable) {
   return stable;
 }
 
-/// Δt/ε from 0.01 to 1e6, six for each decade: beyond, Q̇ has reached its limit.
+/// Returns −Δt/ε for Δt/ε from 0.01 to 1e6, six values per decade. Beyond 1e6, Q̇ has reached its limit.
 std::vector<double> stiff_rates() {
   std::vector<double> rates;
   for (int k = -12; k <= 36; ++k) rates.push_back(-std::pow(10.0, k / 6.0));
@@ -86,8 +87,8 @@ double find_limit(const amplification& R, const std::vector<double>& edge) {
   double limit = 0.0;
   while (limit < largest_number && without_collisions(limit + stride)) limit += stride;
   if (limit < largest_number) limit = last_that_holds(without_collisions, limit, limit + stride);
-  // The limit without collisions is that of all methods in the catalogue of type A. Others are checked from
-  // below.
+  // Collisions do not reduce the limit of any method of type A in the catalogue. Scans from below for the
+  // limits of other methods.
   if (R.is_stiff()) {
     const auto few = sample_symbol(edge, coarse);
     const auto rates = stiff_rates();
@@ -104,7 +105,7 @@ double find_limit(const amplification& R, const std::vector<double>& edge) {
   return limit < largest_number ? limit : std::numeric_limits<double>::infinity();
 }
 
-/// find_limit(), computed once for each method and scheme: a setup asks at every construction.
+/// Returns find_limit(). It is computed once for each method and scheme, because every setup needs it.
 double known_limit(const amplification& R, const std::vector<double>& edge) {
   static std::mutex access;
   static std::map<std::pair<std::vector<double>, std::vector<double>>, double> known;

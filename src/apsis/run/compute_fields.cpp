@@ -17,7 +17,7 @@ bool names_one_of(const std::vector<std::string>& wanted, const std::vector<fiel
   });
 }
 
-/// The fields of solid cells.
+/// Value of the fields in solid cells.
 constexpr double undefined = std::numeric_limits<double>::quiet_NaN();
 
 void add_names(field_table& table, const std::vector<field_name>& names) {
@@ -37,7 +37,8 @@ void differentiate(const domain& space, int direction, const field& phi, std::ve
   for (int number = 0; number < static_cast<int>(segments.size()); ++number) {
     const segment& one = segments[static_cast<std::size_t>(number)];
     const int n = one.cells;
-    // The cell across an end, of another process or across periodic faces; none where the gas ends.
+    // Values of the cells across the two ends, on another process or beyond a periodic face; null
+    // where the gas ends.
     const double* before = space.row_across(phi, direction, number, false);
     const double* after = space.row_across(phi, direction, number, true);
     for (int k = 0; k < n; ++k) {
@@ -68,12 +69,12 @@ std::vector<gradient> gradients_of(const run_setup& setup, const std::vector<dou
   return slopes;
 }
 
-/// Completes the gradient of the velocity about an axis: u_r e_r + u_θ e_θ changes along θ because e_r and
-/// e_θ do, by u_r/r e_θ − u_θ/r e_r per length.
+/// Completes the gradient of the velocity about an axis. The unit vectors e_r and e_θ turn with θ. Therefore
+/// u_r e_r + u_θ e_θ changes along θ by u_r/r e_θ − u_θ/r e_r per unit length.
 void add_turning(const run_setup& setup, const field_table& table, std::vector<std::vector<gradient>>& of) {
   const grid& mesh = setup.mesh();
   if (!mesh.has_axis()) return;
-  // ρ is the first field, the component along r that of the last direction, that along θ the next.
+  // Field 0 is ρ. The velocity along r is the component of the last direction; the one along θ follows it.
   const auto r = static_cast<std::size_t>(mesh.dimensions() - 1), angle = r + 1;
   for (int cell = 0; cell < mesh.size(); ++cell) {
     const auto c = static_cast<std::size_t>(cell);
@@ -110,7 +111,7 @@ void add_group(const run_setup& setup, const field& u, const field_group& group,
   }
 }
 
-/// Of the whole mesh, on the root alone.
+/// Adds the shape of the whole mesh and, on the root only, the centres of its cells.
 void add_centres(const run_setup& setup, field_table& table) {
   const grid& mesh = setup.whole_mesh();
   for (int direction = 0; direction < mesh.dimensions(); ++direction)

@@ -20,13 +20,13 @@
 namespace apsis {
 namespace {
 
-/// The face of the domain at which a surface is, or the face of a box: it is the upper one where segments
-/// begin.
+/// Returns the face of the domain on which a surface lies, or the face of a box. A box has its upper face
+/// where segments begin.
 face face_beside(const surface& one) {
   return {one.where.direction, one.solid < 0 ? one.where.upper : !one.where.upper};
 }
 
-/// Arc length in the plane at a point of a surface.
+/// Returns the arc length in the plane at a point of a surface.
 double arc_length(const grid& mesh, const surface& one, const position& x) {
   const int along = 1 - one.where.direction;
   if (one.solid < 0) return x[at(along)] - mesh.edge(along, 0);
@@ -49,7 +49,7 @@ double arc_length(const grid& mesh, const surface& one, const position& x) {
   }
 }
 
-/// The table of one budget surface, whose amounts begin at `first`.
+/// Makes the tables of budget surfaces. The amounts of a surface begin at index `first`.
 class surface_writer {
  public:
   surface_writer(const run_setup& setup, const domain& space, const surface_values& last)
@@ -155,7 +155,8 @@ class surface_writer {
     return row;
   }
 
-  /// Returns the area of the ring that a piece of a surface makes about an axis; the area without one.
+  /// Returns the area of the ring that a surface element sweeps about an axis; without an
+  /// axis, the area itself.
   double of_ring(double area, const position& x) const {
     return space_.mesh().measure() * space_.mesh().radius(x) * area;
   }
@@ -170,8 +171,8 @@ class surface_writer {
     return given;
   }
 
-  /// Adds the state at the end whose amounts begin at `first`, what arrives there and leaves, and the
-  /// temperature of a wall.
+  /// Adds the state of the gas at the face whose amounts begin at `first`, the arriving and leaving fluxes,
+  /// and the temperature of a wall.
   void add_state(std::vector<double>& row, std::size_t first, const boundary* side,
                  const std::array<double, 3>& n, const position& x) const {
     const double r = space_.mesh().radius(x);
@@ -213,7 +214,7 @@ class surface_writer {
     return one.solid >= static_cast<int>(space_.mesh().solids().size());
   }
 
-  /// Returns the mean of the pieces of a body in the plane.
+  /// Returns the mean position of the surface of a body in the plane, weighted by length.
   position middle_of(const budget_surface& one) const {
     position mean{};
     double all = 0.0;

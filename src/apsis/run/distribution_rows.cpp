@@ -12,11 +12,11 @@
 namespace apsis {
 namespace {
 
-/// Every stride-th cell of the mesh in each direction, and those of them in the block of this process.
+/// Every stride-th cell of the mesh in each direction, and the kept cells in the block of this process.
 struct thinned_mesh {
   std::vector<mesh_axis> axes;
-  std::vector<int> cells;  ///< numbers in the block
-  dataset_part part;       ///< the block among the cells kept
+  std::vector<int> cells;  ///< indices of the kept cells in the block
+  dataset_part part;       ///< position of the block among all kept cells
 };
 
 thinned_mesh thinned(const simulation& run, int stride) {
@@ -53,7 +53,7 @@ std::vector<double> rows_of(const simulation& run, const std::vector<int>& cells
   return rows;
 }
 
-/// The number in the block of a cell of the mesh; −1 if another process has it.
+/// Returns the index within the block of a cell of the mesh; −1 if another process owns the cell.
 int own_cell(const simulation& run, int cell) {
   const grid &mesh = run.mesh(), &block = run.setup().mesh();
   int number = 0;
@@ -65,9 +65,9 @@ int own_cell(const simulation& run, int cell) {
   return number;
 }
 
-/// The rows of cells of the mesh in their order, on the root.
+/// Returns the rows of the given cells of the mesh in their order, on the root.
 std::vector<double> gathered_rows(const simulation& run, const std::vector<int>& cells) {
-  std::vector<double> mine;  // place and row
+  std::vector<double> mine;  // for each own cell its index in `cells`, then its row
   for (std::size_t k = 0; k < cells.size(); ++k) {
     const int own = run.setup().has_space() ? own_cell(run, cells[k]) : 0;
     if (own < 0) continue;

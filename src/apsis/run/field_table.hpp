@@ -7,15 +7,15 @@
 
 namespace apsis {
 
-/// Macroscopic fields on the mesh at one time: values[field][cell], the last direction of space fastest.
+/// Macroscopic fields on the mesh at one time. The last direction of space varies fastest.
 struct field_table {
-  std::vector<double> x;                    ///< of the centre of every cell; {0} without space
+  std::vector<double> x;                    ///< x of every cell centre; {0} without space
   std::vector<std::string> names,           ///< field names: "rho"
       labels;                               ///< for plots: "density (dimensionless)"
   std::vector<std::vector<double>> values;  ///< [field][cell]
-  std::vector<dimension> dimensions = {};   ///< dimensions in units of a gas
-  std::vector<double> y = {},               ///< of the centre of every cell; empty in one dimension
-      z = {};                               ///< of the centre of every cell; empty in fewer than three
+  std::vector<dimension> dimensions = {};   ///< physical dimensions of the fields
+  std::vector<double> y = {},               ///< y of every cell centre; empty in one dimension
+      z = {};                               ///< z of every cell centre; empty in fewer than three dimensions
   std::vector<int> shape = {};              ///< number of cells along x, y, z; {1} without space
 };
 

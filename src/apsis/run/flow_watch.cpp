@@ -9,7 +9,7 @@
 namespace apsis {
 namespace {
 
-/// The faces of the domain, and then the solid boxes.
+/// Numbers the sides: first the faces of the domain, then the solid boxes.
 std::size_t number_of_side(const surface& one) {
   return one.solid < 0 ? one.where.index() : face_names.size() + static_cast<std::size_t>(one.solid);
 }

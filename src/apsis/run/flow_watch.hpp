@@ -10,19 +10,19 @@
 
 namespace apsis {
 
-/// Warns once for each side whose flow is not reached, such as an outlet to which too little gas comes.
+/// Warns once for each side that does not reach its flow, such as an outlet at which too little gas arrives.
 class flow_watch {
  public:
-  /// `setup`, whose problem has been made, must outlive the object. Collective.
+  /// `setup` must outlive the object, and its problem must have been made. Collective.
   explicit flow_watch(const run_setup& setup);
 
-  /// Warns of the stages since the last call. Collective.
+  /// Warns about the stages since the last call. Collective.
   void update(const step_record& at);
 
  private:
   const run_setup& setup_;
-  std::vector<std::pair<std::size_t, const limited_flow*>> ends_;  ///< with the numbers of their sides
-  std::vector<bool> warned_;                                       ///< of each side; empty without such ends
+  std::vector<std::pair<std::size_t, const limited_flow*>> ends_;  ///< limited boundaries with side numbers
+  std::vector<bool> warned_;  ///< for each side; empty without such boundaries
 };
 
 }  // namespace apsis

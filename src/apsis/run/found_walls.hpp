@@ -8,18 +8,18 @@
 
 namespace apsis {
 
-/// A side of the domain, a solid box or a body with a temperature that follows from the gas, such as that of
-/// an adiabatic wall.
+/// A side of the domain, a solid box or a body whose temperature follows from the gas, such
+/// as an adiabatic wall.
 struct found_wall {
-  std::string name;  ///< run_setup::open_faces()
-  std::size_t face;  ///< its place among these
+  std::string name;  ///< as in run_setup::open_faces()
+  std::size_t face;  ///< index in run_setup::open_faces()
   bool is_side;      ///< whether it is a side of the domain
 };
 
-/// Returns these walls in the order of run_setup::open_faces().
+/// Returns the walls whose temperature follows from the gas, in the order of run_setup::open_faces().
 std::vector<found_wall> found_walls(const run_setup& setup);
 
-/// Returns the columns of their mean temperatures in the history, T_w_NAME.
+/// Returns the history columns T_w_NAME, the mean temperatures of found_walls().
 std::vector<std::string> temperature_columns(const run_setup& setup);
 
 }  // namespace apsis

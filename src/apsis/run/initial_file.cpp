@@ -22,11 +22,11 @@ std::size_t size(int n) {
   return static_cast<std::size_t>(n);
 }
 
-/// Names of the columns of a variable, in the order of preference.
+/// Returns the possible column names of a variable, in order of preference.
 std::vector<std::string> columns_of(const data_variable& variable, int k) {
   static const char* const axes[] = {"_x", "_y", "_z"};
   if (variable.size > 1) return {variable.name + axes[k]};
-  return {variable.name, variable.name + "_x"};  // of a vector along a line
+  return {variable.name, variable.name + "_x"};  // "_x" for a vector along a line
 }
 
 class reader {
@@ -34,7 +34,7 @@ class reader {
   reader(const case_config& config, const model& equation)
       : config_(config), equation_(equation), source_(config, equation) {}
 
-  /// Reads the rows, and whether they stand for the equilibria of their moments.
+  /// Returns the rows, and whether they stand for the equilibria of their moments.
   std::pair<line_rows, bool> read() {
     line_rows rows;
     rows.components = equation_.components();
@@ -59,7 +59,8 @@ class reader {
   }
 
  private:
-  /// The form with most variables that the file has: the others describe equilibria.
+  /// Returns the form with the most variables for which the file has all columns. Forms with fewer variables
+  /// describe equilibria.
   data_form form_in_file() const {
     std::optional<data_form> best;
     std::vector<std::string> missing;
@@ -106,7 +107,7 @@ class reader {
     return static_cast<int>(given.size()) < rows.components;
   }
 
-  /// Sets the ends of the line, those of the domain where they agree up to the digits of the file.
+  /// Sets the ends of the line. An end becomes that of the domain if both agree up to the digits of the file.
   void set_ends(line_rows& rows) const {
     const auto [lower, upper, tolerance] = source_.ends(rows.cells);
     const auto [first, last] = config_.space.domain.front();
@@ -125,7 +126,7 @@ class reader {
   initial_table_file source_;
 };
 
-/// u ← E(ℛu), so that data that are given as equilibria are so at every point.
+/// u ← E(ℛu), so that interpolated equilibria are equilibria at every point.
 void project(const model& equation, std::span<double> u) {
   const auto* relaxation = equation.as_relaxation();
   if (relaxation == nullptr) return;
@@ -134,7 +135,7 @@ void project(const model& equation, std::span<double> u) {
   relaxation->equilibrium(omega.data(), u.data());
 }
 
-/// The rows of the cells of a block of the mesh that the file has.
+/// Returns the rows of the file for the cells of this block. The file must have the mesh of the case.
 field copied(const line_rows& rows, const problem_builder& builder) {
   const grid& mesh = builder.mesh();
   field u(builder.has_space() ? mesh.size() : rows.cells, rows.components);
@@ -147,8 +148,8 @@ field copied(const line_rows& rows, const problem_builder& builder) {
   return u;
 }
 
-/// The rows of the file on the mesh of the case, in several dimensions, with the regions of the case above
-/// them.
+/// Returns the rows of the file on the mesh of the case, in several dimensions. Regions of the
+/// case override them.
 state_of_file on_the_same_mesh(const case_config& config, const model& equation,
                                const problem_builder& builder, const line_rows& rows, bool equilibrium) {
   if (config.prescribed.regions.empty()) return {copied(rows, builder), !equilibrium};
@@ -156,7 +157,7 @@ state_of_file on_the_same_mesh(const case_config& config, const model& equation,
   const prescribed_data data(
       config, equation, [&config](const std::string& path) { return place_of(config, path); },
       [&](const position& x, std::span<double> u) {
-        const int cell = cell_at(mesh, x);  // point values are sampled at centres alone
+        const int cell = cell_at(mesh, x);  // point values are sampled only at centres
         std::copy_n(rows.values.begin() + static_cast<std::ptrdiff_t>(cell) * rows.components,
                     rows.components, u.begin());
       });

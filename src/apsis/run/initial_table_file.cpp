@@ -22,13 +22,13 @@ namespace {
 
 const std::string none = "dimensionless";
 
-/// No table is longer, so that a damaged file does not exhaust memory.
+/// Largest number of rows of a table, so that a damaged file cannot exhaust memory.
 constexpr std::uint64_t most_rows = 1'000'000'000;
 
-/// Datasets of a result that are no columns.
+/// Datasets of a result that are not columns.
 const std::set<std::string> not_columns = {"f", "v", "v_weights", "v_x", "v_y", "v_z", "t"};
 
-/// Member of a JSON object by dotted path; null without one.
+/// Returns the member of a JSON object at a path of names; null if it is missing.
 nlohmann::ordered_json at(const nlohmann::ordered_json& object, std::initializer_list<const char*> path) {
   const nlohmann::ordered_json* found = &object;
   for (const char* name : path) {
@@ -38,7 +38,7 @@ nlohmann::ordered_json at(const nlohmann::ordered_json& object, std::initializer
   return *found;
 }
 
-/// The cells of a dataset [cells…][components] as in a case: a number, or a list.
+/// Returns the numbers of cells of a dataset [cells…][components] as a case has them: a number or a list.
 nlohmann::ordered_json cells_as_value(const hdf5_file::shape& extents) {
   if (extents.size() == 2) return extents.front();
   return std::vector<std::uint64_t>(extents.begin(), extents.end() - 1);
@@ -77,7 +77,8 @@ std::string initial_table_file::place_of_row(std::size_t row) const {
   return row < lines_.size() ? fmt::format("line {}", lines_[row]) : fmt::format("cell {}", row);
 }
 
-/// Of an earlier result: its model, units and discretization.
+/// Takes the manifest of an earlier result. Refuses a model, units or a discretization that
+/// the case cannot use.
 void initial_table_file::take_manifest(const std::string& text) {
   manifest_ = json::parse(text, nullptr, false);
   const auto name = at(manifest_, {"case", "model", "name"});
@@ -121,7 +122,7 @@ void initial_table_file::read_csv() {
   } catch (const input_error& problem) {
     refuse(problem.what());
   }
-  // The table of a result has its units and its mesh beside it.
+  // The manifest beside the table of a result has its units and its mesh.
   const auto manifest = std::filesystem::path(path_).parent_path() / "manifest.json";
   if (std::filesystem::path(path_).filename() == "fields.csv" && std::filesystem::exists(manifest)) {
     constexpr std::size_t longest = 100'000'000;
@@ -167,7 +168,7 @@ void initial_table_file::read_hdf5() {
 void initial_table_file::read_fields(const hdf5_file& file) {
   const bool several = !manifest_.is_null() && file.has("snapshots") && file.has("snapshots/t");
   const bool result = !manifest_.is_null();
-  std::optional<std::size_t> earlier;  // a snapshot before the end
+  std::optional<std::size_t> earlier;  // index of a snapshot before the last
   std::vector<double> times = {result ? file.read_attribute("t") : 0.0};
   if (several) times = file.read("snapshots/t");
   if (times.empty()) refuse("it has no snapshots (damaged file); give another file");
@@ -185,8 +186,8 @@ void initial_table_file::read_fields(const hdf5_file& file) {
   read_snapshot_of_state(times[*earlier]);
 }
 
-/// Finds the datasets of a group with a number for each cell; `snapshot`: one of `snapshots`, which are their
-/// first extent.
+/// Finds the datasets of a group that have a number for each cell. If `snapshot` is given, it selects one of
+/// `snapshots`, the first extent of these datasets.
 void initial_table_file::find_columns(const std::string& group, std::optional<std::size_t> snapshot,
                                       std::size_t snapshots) {
   for (const auto& name : file_->number_sets(group)) {
@@ -202,7 +203,7 @@ void initial_table_file::find_columns(const std::string& group, std::optional<st
   }
 }
 
-/// Returns the number of cells of a column, as the file claims it.
+/// Returns the number of cells that the file claims for a column.
 std::uint64_t initial_table_file::rows_of(const std::string& name) const {
   const auto stored = stored_.find(name);
   if (stored == stored_.end()) return columns_.at(name).size();
@@ -217,8 +218,8 @@ std::uint64_t initial_table_file::rows_of(const std::string& name) const {
   return rows;
 }
 
-/// The numbers of a column as they are in the file. Its size is known before it is read: a small file may
-/// claim to be large.
+/// Returns the numbers of a column in the units of the file. Checks its size before reading, because a small
+/// file may claim to be large.
 std::vector<double> initial_table_file::load(const std::string& name) const {
   if (const auto problem = problems_.find(name); problem != problems_.end()) refuse(problem->second);
   check_rows(name, rows_of(name));
@@ -247,7 +248,8 @@ std::vector<double> initial_table_file::load(const std::string& name) const {
   return values;
 }
 
-/// In several space dimensions the rows are those of the cells of the case, on a line those of x.
+/// Refuses a column of wrong size: in several space dimensions it must have a row for each cell of the case,
+/// on a line as many rows as x.
 void initial_table_file::check_rows(const std::string& name, std::uint64_t rows) const {
   if (mesh_rank() > 1) {
     const auto cells = static_cast<std::uint64_t>(make_mesh(config_).size());
@@ -265,20 +267,20 @@ void initial_table_file::refuse_cells(std::uint64_t rows, std::uint64_t cells) c
                   rows, cells));
 }
 
-/// The unit that the file gives for a column.
+/// Returns the unit that the file gives for a column; empty without one.
 std::string initial_table_file::unit_text(const std::string& name) const {
   if (const auto unit = units_.find(name); unit != units_.end()) return unit->second;
   const auto stored = stored_.find(name);
   return stored == stored_.end() ? "" : file_->units(stored->second.dataset);
 }
 
-/// Dimensions of the datasets with a number for each cell.
+/// Returns the rank of the datasets with a number for each cell.
 std::size_t initial_table_file::mesh_rank() const {
   return static_cast<std::size_t>(std::max(equation_.space_dimensions(), 1));
 }
 
-/// In several dimensions the file has a coordinate for each axis: repeats them for every cell, if there are
-/// as many as the case has.
+/// Expands the coordinates of the axes to a column for each axis, with a row for each cell. Does nothing in
+/// one dimension, or if the number of cells is not that of the case.
 void initial_table_file::expand_coordinates(const hdf5_file& file) {
   if (mesh_rank() < 2) return;
   const auto cells = static_cast<std::uint64_t>(make_mesh(config_).size());
@@ -316,7 +318,7 @@ std::vector<bool> initial_table_file::solid_rows(std::size_t rows) const {
 void initial_table_file::check_cells(const grid& mesh, int rows) const {
   if (rows != mesh.size())
     refuse_cells(static_cast<std::uint64_t>(rows), static_cast<std::uint64_t>(mesh.size()));
-  constexpr double digits = 1e-2;  // of a cell, for centres written with few digits
+  constexpr double digits = 1e-2;  // in cell widths, for centres written with few digits
   for (int k = 0; k < mesh.dimensions(); ++k) {
     const std::string name(1, "xyz"[k]);
     if (!has_column(name)) refuse(fmt::format("it has no column '{}' (centres of the cells); add it", name));
@@ -352,7 +354,7 @@ void initial_table_file::read_state(const hdf5_file& file) {
   state_ = file.read("f");
 }
 
-/// The distribution of an earlier time is in a file of its own, if it was written in every cell.
+/// Reads the distribution of an earlier time. It has its own file, if it was written in every cell.
 void initial_table_file::read_snapshot_of_state(double t) {
   namespace fs = std::filesystem;
   const fs::path folder = fs::path(path_).parent_path() / "snapshots";
@@ -392,7 +394,7 @@ bool initial_table_file::same_unknowns(const hdf5_file& file) const {
          at(manifest_, {"case", "model", kept}) == mine_of->second;
 }
 
-/// Index of initial.time among times in the units of the file; the last one if no time is given.
+/// Returns the index of initial.time among `times`, in the units of the file; without it, the last index.
 std::size_t initial_table_file::chosen(const std::vector<double>& times) const {
   if (!config_.prescribed.time) return times.size() - 1;
   const auto unit_of_t = units_.find("t");
@@ -418,7 +420,7 @@ std::vector<std::string> initial_table_file::columns() const {
   return {names_.begin(), names_.end()};
 }
 
-/// The unit of a column of the file in units of the case.
+/// Returns the factor that converts a column of the file to units of the case.
 double initial_table_file::factor(const std::string& name, const std::string& unit,
                                   const dimension& dims) const {
   if (unit.empty() || unit == none) return 1.0;
@@ -467,7 +469,7 @@ initial_table_file::line_ends initial_table_file::ends(int cells) const {
     refuse(fmt::format("'x' has {} numbers and the state has {} cells (each cell has one); give as many",
                        x.size(), cells));
   if (x.size() < 2) refuse("it has one row (the width of a cell is not known from it); give several");
-  constexpr double digits = 1e-2;  // of a cell, for centres written with few digits
+  constexpr double digits = 1e-2;  // in cell widths, for centres written with few digits
   const double width = (x.back() - x.front()) / (cells - 1);
   for (std::size_t k = 1; k < x.size(); ++k) {
     if (!(x[k] > x[k - 1]))

@@ -16,24 +16,25 @@
 
 namespace apsis {
 
-/// The file `initial.file` of a case at the time `initial.time`: columns of numbers and, of an earlier
-/// result, the state. All numbers are converted to the units of the case. Columns that nobody asks for, and
-/// other content of an HDF5 file, are not read.
+/// The file `initial.file` of a case at the time `initial.time`: columns of numbers and, in an
+/// earlier result, the state. Returned columns have the units of the case. Columns of an HDF5 file
+/// are read only on request.
 class initial_table_file {
  public:
-  /// Reads the file. Throws input_error at the place of the key.
+  /// Reads the file. Throws input_error at the place of the key if the file cannot be used.
   initial_table_file(const case_config& config, const model& equation);
 
-  /// Whether the file has the unknowns of the model, on the same velocities.
+  /// Returns whether the file has the unknowns of the model, on the same velocities.
   bool has_state() const { return !state_.empty(); }
   /// Returns the unknowns, [cells][components].
   std::vector<double> state() const { return state_; }
-  /// Returns what the numbers are: those of a result as in its case, others cell averages.
+  /// Returns the kind of unknown that the numbers are: for a result that of its case, for other
+  /// files cell averages.
   const cell_unknown& unknown() const { return *unknown_; }
 
-  /// Whether the file has a column of one of these names.
+  /// Returns whether the file has a column of one of these names.
   bool has_any(const std::vector<std::string>& names) const;
-  /// Returns the first of these columns, in units of the case.
+  /// Returns the first of these columns that the file has, in units of the case. has_any() must be true.
   std::vector<double> column(const std::vector<std::string>& names, const dimension& dims) const;
   /// Returns the names of all columns.
   std::vector<std::string> columns() const;
@@ -42,15 +43,16 @@ class initial_table_file {
   struct line_ends {
     double lower,   ///< lower end
         upper,      ///< upper end
-        tolerance;  ///< in cell widths
+        tolerance;  ///< uncertainty in cell widths
   };
-  /// Returns the ends: those of the domain of a result, or from the centres `x`, which must be equidistant.
+  /// Returns the ends of the domain of a result; for other files those of the cells with the centres `x`.
+  /// Refuses centres that are not equidistant.
   line_ends ends(int cells) const;
 
-  /// Whether each of the rows is that of a cell of the case inside a solid, in several space dimensions.
+  /// Returns for each row whether its cell in the case is inside a solid; on a line, false.
   std::vector<bool> solid_rows(std::size_t rows) const;
-  /// Checks in several space dimensions that the rows are those of the cells of a mesh, by the columns x, y
-  /// and z of their centres.
+  /// Checks in several space dimensions that the rows belong to the cells of a mesh. Compares the columns x,
+  /// y and z with the centres of the cells. Throws input_error otherwise.
   void check_cells(const grid& mesh, int rows) const;
 
   /// Returns "line 7" or "cell 5", for messages.
@@ -82,18 +84,18 @@ class initial_table_file {
   const case_config& config_;
   const model& equation_;
   std::string path_;
-  json manifest_;  ///< of an earlier result; null for other files
+  json manifest_;  ///< manifest of an earlier result; null for other files
   const cell_unknown* unknown_ = &cell_averages();
-  /// A column of an HDF5 file: its dataset, and which snapshot of one with several.
+  /// A column of an HDF5 file: its dataset and, if this has several snapshots, the index of one.
   struct stored_column {
     std::string dataset;
     std::optional<std::size_t> snapshot;
   };
   std::optional<hdf5_file> file_;
-  std::set<std::string> names_;                  ///< of the columns
-  std::map<std::string, stored_column> stored_;  ///< those that are read when they are asked for
+  std::set<std::string> names_;                  ///< names of all columns
+  std::map<std::string, stored_column> stored_;  ///< HDF5 columns, read on request
   std::map<std::string, std::vector<double>> columns_;
-  std::map<std::string, std::string> problems_;  ///< of columns with entries that are not finite numbers
+  std::map<std::string, std::string> problems_;  ///< messages for columns with entries that are not finite
   std::map<std::string, std::string> units_;
   std::vector<int> lines_;
   std::vector<double> state_;

@@ -14,9 +14,9 @@
 namespace apsis {
 namespace {
 
-/// A response below this is exact for every purpose.
+/// Responses below this bound count as exact.
 constexpr double exact_response = 1e-9;
-/// State-sized buffers of an estimate.
+/// Number of state-sized buffers of an estimate.
 constexpr int buffers_of_estimate = 10;
 /// Least number of steps between estimates: one costs about three steps.
 constexpr long steps_between = 64;
@@ -96,13 +96,13 @@ void loss_watch::warn(double t, const field& u, double dt, bool layer, const los
 std::string loss_watch::remedy(double t, const field& u, double dt, bool layer) {
   const std::string finer = fmt::format("give time.dt below {:.1g} to resolve the relaxation",
                                         0.1 * problem_.relaxation_time(t, u));
-  // Given steps need methods with a step bound on a mesh: those of the rows that preserve bounds.
+  // On a mesh, given steps need a method with a step bound. The rows that preserve bounds have such methods.
   std::vector<std::string> names = {choose_method(request_of(setup_.config())).method};
   for (const choice_row& row : choice_table())
     if (!row.longest_steps && (row.signs.value_or(true) || (!setup_.has_space() && !row.explicit_method)))
       names.push_back(row.method);
   std::string best;
-  double least = expected_ / 10.0;  // another method is worth its name where it loses ten times less
+  double least = expected_ / 10.0;  // a suggested method must lose ten times less
   for (const std::string& name : names) {
     if (!best.empty() || name == setup_.integrator_name()) continue;
     const auto of = compute_rate_response(name);

@@ -45,7 +45,7 @@ json numbers(const simulation& run) {
   return out;
 }
 
-/// Adds how far the iteration to a steady state came, in a case with a table [steady].
+/// Adds the progress of the iteration to a steady state, in a case with a table [steady].
 void add_iterations(json& out, const simulation& run) {
   const auto& tolerance = run.config().steady_state.tolerance;
   if (!tolerance || run.last().residual.empty()) return;
@@ -70,8 +70,8 @@ void add_steady(json& out, const simulation& run, const steady_estimate& estimat
                    {"distance", number(estimate.distance)}};
 }
 
-/// Adds force, torque and heat of the bodies in the last step, and with reference values drag, lift, moment
-/// and the coefficients; in the units of the results.
+/// Adds force, torque and heat of the bodies in the last step, in the units of the results. With reference
+/// values it also adds drag, lift, moment and the coefficients.
 void add_bodies(json& out, const simulation& run) {
   const result_units units(run.config());
   const auto& reference = run.config().output.reference;
@@ -92,7 +92,7 @@ void add_bodies(json& out, const simulation& run) {
   }
 }
 
-/// Adds the mean temperatures of walls that find them, at bodies and at sides of the domain.
+/// Adds the mean temperatures of found_walls(), at bodies and at sides of the domain.
 void add_wall_temperatures(json& out, const simulation& run) {
   const double kelvin = result_units(run.config()).factor(dimensions::temperature);
   const auto walls = found_walls(run.setup());
@@ -103,7 +103,7 @@ void add_wall_temperatures(json& out, const simulation& run) {
   }
 }
 
-/// Adds the scales of a gas, and the units of history and fields if they have any.
+/// Adds the scales of a gas and, if results are in SI units, the units of history, surfaces and fields.
 void add_units(json& out, const simulation& run) {
   const auto& scales = run.config().scales;
   if (!scales) return;
@@ -122,7 +122,7 @@ void add_units(json& out, const simulation& run) {
   out["units"] = names;
 }
 
-/// Adds how the method was given where the program chose it.
+/// Adds the reason of the choice, if the program chose the method.
 void add_choice(json& out, const case_config& config) {
   if (config.time.method_reason.empty()) return;
   out["method_given"] = automatic_method;

@@ -33,8 +33,8 @@ struct session_record {
   std::string started;                     ///< time_stamp() at the start
   std::vector<std::string> command;        ///< command line; empty if unknown
   std::optional<std::string> restart;      ///< checkpoint of a restart, as given
-  steady_estimate steady = {};             ///< with time.steady
-  std::vector<std::string> warnings = {};  ///< so far
+  steady_estimate steady = {};             ///< estimate of a run with time.steady
+  std::vector<std::string> warnings = {};  ///< warnings so far
 };
 
 /// Returns the content of manifest.json: resolved case, version, commit, command line, times, totals, scales

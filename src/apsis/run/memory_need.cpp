@@ -18,10 +18,10 @@
 namespace apsis {
 namespace {
 
-constexpr int fewest_points = 4;  ///< of velocity.points
+constexpr int fewest_points = 4;  ///< smallest number suggested for velocity.points
 
-/// Fields of steady_iterations: the state, the first one, the residual, the images of the mixture, and a
-/// temporary one.
+/// Returns the number of fields of steady_iterations: the state, the first state, the residual, a temporary
+/// field, and the images of the mixture.
 int buffers_of_iterations(const case_config& config) {
   return 4 + config.steady_state.images;
 }
@@ -62,7 +62,7 @@ std::string in_units(double bytes) {
   return bytes < 1e9 ? fmt::format("{:.0f} MB", bytes / 1e6) : fmt::format("{:.1f} GB", bytes / 1e9);
 }
 
-/// The list as in a case file: "40" or "[16, 12]".
+/// Returns the list as in a case file: "40" or "[16, 12]".
 std::string as_value(const std::vector<int>& numbers) {
   return numbers.size() == 1 ? fmt::format("{}", numbers.front())
                              : fmt::format("[{}]", fmt::join(numbers, ", "));
@@ -118,7 +118,7 @@ memory_need::memory_need(const run_setup& setup, int copies)
 double memory_need::bytes(double cells, double components) const {
   const double padded = field::padded(static_cast<int>(std::min(components, 1e9)));
   constexpr double of_monitor = 2.0;  // step_differences
-  // Surfaces of a mesh of the same shape.
+  // The rows at surfaces grow like the surface of a mesh of the same shape.
   const double dimensions = std::max(1.0, static_cast<double>(shape_.size())),
                at_surfaces = rows_at_surfaces_ * std::pow(cells / cells_, 1.0 - 1.0 / dimensions);
   return sizeof(double) * at_surfaces * padded +
@@ -151,7 +151,7 @@ std::vector<int> memory_need::points_that_fit(double limit) const {
   const double of_each = points_.size() > 1 ? 1.0 : velocity_dimensions_;
   const double sets = components_ / std::pow(product(points_), of_each);
   std::vector<int> best;
-  // The number of components is not linear in the memory: rows are padded.
+  // Memory is not linear in the number of components, because rows are padded.
   for (int most = *std::max_element(points_.begin(), points_.end()); most >= fewest_points; --most) {
     const double factor = static_cast<double>(most) / *std::max_element(points_.begin(), points_.end());
     best = scaled(points_, factor, fewest_points);
@@ -160,7 +160,8 @@ std::vector<int> memory_need::points_that_fit(double limit) const {
   return {};
 }
 
-/// The states of a step live on the device, beside rows at surfaces; the host has a copy for records.
+/// The device has the states of a step and the rows at surfaces; the host has a copy of
+/// the state for records.
 void check_device_memory(const run_setup& setup) {
   const device* on = setup.runs_on();
   if (on == nullptr) return;
@@ -175,7 +176,7 @@ void check_device_memory(const run_setup& setup) {
 void check_memory(const run_setup& setup, int copies) {
   const memory_need need(setup, copies);
   memory_limit limit = available_memory();
-  // Of all machines, if they are like this one.
+  // Memory of all machines, if they are like this one.
   const communicator& processes = setup.processes();
   limit.bytes *= 1.0 * processes.size() / processes.processes_here();
   if (need.bytes() <= limit.bytes) return;

@@ -17,12 +17,12 @@
 namespace apsis {
 
 struct monitor::partial {
-  std::vector<exact_sum> sums;  ///< invariants, their scales, change and turn of the last, the entropy
-  std::vector<double> densities, scales;                    ///< of the cells of a block
-  double lowest = std::numeric_limits<double>::infinity();  ///< of solid cells
+  std::vector<exact_sum> sums;  ///< of invariants, their scales, change and turn of the last one, entropy
+  std::vector<double> densities, scales;                    ///< densities and scales of the cells of a block
+  double lowest = std::numeric_limits<double>::infinity();  ///< smallest value; infinity without cells of gas
   long negative = 0;
-  int not_finite = none, violating = none;  ///< first cells
-  double value = 0.0;                       ///< that is not finite
+  int not_finite = none, violating = none;  ///< first cell of each kind
+  double value = 0.0;                       ///< the value that is not finite
   velocity_extremes velocities;
 
   static constexpr int none = std::numeric_limits<int>::max();
@@ -53,7 +53,7 @@ constexpr int cells_of_block = 16;
 
 }  // namespace
 
-/// Rows are read once, cell by cell; formulas of the densities are evaluated for all cells together.
+/// Reads the rows once, cell by cell. Evaluates formulas of the densities for all cells together.
 void monitor::check_cells(const field& u, int begin, int end, partial& own) const {
   const auto cells = static_cast<std::size_t>(end - begin), count = equation_.invariants().size();
   const profile::section timed(kernel::monitor, static_cast<double>(cells) * u.stride(),
@@ -78,7 +78,7 @@ void monitor::find_scales(int cells, partial& own) const {
     equation_.invariant_scales({own.densities.data() + first, count}, own.scales.data() + first);
 }
 
-/// The number of cells before the first that violates the condition of the model.
+/// Returns the number of cells before the first that violates the condition of the model.
 int monitor::cells_with_condition(const field& u, int begin, int end) const {
   if (equation_.condition().empty()) return end - begin;
   if (of_rows_ != nullptr) return of_rows_->first_unsupported(u.row(begin), u.stride(), end - begin);
@@ -87,7 +87,8 @@ int monitor::cells_with_condition(const field& u, int begin, int end) const {
   return fit - begin;
 }
 
-/// The extremes, densities and entropy of a row; the latter only where it counts.
+/// Returns the extremes, densities and entropy of a row. The entropy of rows with negative or invalid
+/// values is not computed.
 device_row_checks::row monitor::look_at(const field& u, int cell, double* densities) const {
   if (on_device_) {
     const auto found = on_device_->of(cell);
@@ -101,7 +102,8 @@ device_row_checks::row monitor::look_at(const field& u, int cell, double* densit
   return {extremes, densities, counts ? entropy_->density(row) : 0.0};
 }
 
-/// Takes the extremes, densities and entropy of a row. Returns whether it is finite.
+/// Computes the densities of a row, and adds its extremes and entropy to `own`. Returns
+/// whether the row is finite.
 bool monitor::check_row(const field& u, int cell, double* densities, partial& own) const {
   const device_row_checks::row found = look_at(u, cell, densities);
   const auto [low, below] = found.extremes;
@@ -132,19 +134,19 @@ void monitor::add_densities(int cell, std::span<const double> densities, const d
   own.sums[2 * count + 1].add(share * turn);
 }
 
-/// The entropy of a cell, from that of its row and the density ρ of its row. About an axis the row is r f,
-/// and r η(f) = η(r f) − r ρ log r of a gas.
+/// Returns the entropy of a cell, from the entropy and the density of its row. About an axis the row is r f,
+/// with density r ρ, and r η(f) = η(r f) − r ρ log r for a gas.
 double monitor::entropy_of(double entropy, int cell, double density) const {
   if (!setup_.mesh().has_axis()) return entropy;
   return entropy - density * std::log(setup_.mesh().radius(setup_.mesh().centre(cell)));
 }
 
-/// The state where its rows are checked: a copy on the host, unless it may stay on the device.
+/// Returns the state where its rows are checked: on the device if possible, otherwise a copy on the host.
 const field& monitor::checkable(const field& u, field& room) const {
   return on_device_ ? u : on_host(u, room);
 }
 
-/// The parts of all threads.
+/// Returns the sums and extremes over the cells of this process, added over all threads.
 monitor::partial monitor::check_block(const field& u) const {
   const std::size_t count = equation_.invariants().size();
   partial empty;
@@ -219,7 +221,7 @@ step_record monitor::start(const field& state) {
   if (velocities_.active()) {
     velocities_.set_mass(invariants_.front());
     differences_.restart();
-    t = sum(u);  // without cells of little mass
+    t = sum(u);  // now without cells of little mass
   }
   keep_velocities(t);
   step_record record;
@@ -279,7 +281,7 @@ step_record monitor::check(const budgeted_state& after, double dt, const step_re
   return record;
 }
 
-/// Takes the losses of a force from the end of what was received.
+/// Moves the losses of a force from the end of `received` into the record.
 void monitor::take_losses(std::vector<double>& received, double dt, const totals& t, step_record& record) {
   const auto first = received.end() - static_cast<std::ptrdiff_t>(losses_.size());
   std::copy(first, received.end(), losses_.begin());
@@ -296,7 +298,7 @@ void monitor::take_losses(std::vector<double>& received, double dt, const totals
   record.lost_share = {std::sqrt(square) / drive, std::abs(record.lost.back() * dt) / (speed * drive)};
 }
 
-/// The sums of the amounts of all ends at each face, [face][invariant], then the losses of a force.
+/// Returns the amounts summed over the ends of each face, [face][invariant], then the losses of a force.
 std::vector<double> monitor::received_through_faces(const std::vector<double>& amounts) const {
   const std::size_t count = invariants_.size();
   std::vector<exact_sum> sums(ends_.size() * count + losses_.size());
@@ -310,10 +312,10 @@ std::vector<double> monitor::received_through_faces(const std::vector<double>& a
   return global_values(setup_.processes(), sums);
 }
 
-/// The violation in the first cell of the mesh.
+/// Returns the violation in the first such cell of the mesh; nothing without one.
 std::optional<condition_violation> monitor::violation_in(const field& u, const totals& t) const {
   if (!t.violated) return std::nullopt;
-  // As an error, on which all processes agree.
+  // An error makes all processes agree on the first cell.
   try {
     run_collectively(setup_.processes(), [&] {
       if (t.violating < 0) return;

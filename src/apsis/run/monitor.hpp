@@ -18,8 +18,8 @@
 
 namespace apsis {
 
-/// Checks the state after every step: smallest value, conservation, entropy. Sums are exact before they are
-/// rounded once, so that results depend neither on the number of threads nor on that of processes. All
+/// Checks the state after every step: smallest value, conservation, entropy. Sums are exact and rounded
+/// once. Results therefore depend neither on the number of threads nor on that of processes. All
 /// members are collective.
 class monitor {
  public:
@@ -27,20 +27,20 @@ class monitor {
   explicit monitor(const run_setup& setup);
   ~monitor();
 
-  /// Sets the reference state of conservation and returns its record: defects are relative to Σ_cells volume
+  /// Sets the reference state of conservation and returns its record. Defects are relative to Σ_cells volume
   /// · model::invariant_scales().
   step_record start(const field& u);
 
-  /// Returns the record of the state after a step of length dt, whose budget is that of the step; without
-  /// step and t. `cut`: semidiscrete_problem::take_cut() of the step. Throws numerical_error at the first
-  /// number that is not finite.
+  /// Returns the record of the state after a step of length dt, without step and t. `after` has the budget of
+  /// this step; `cut` is its semidiscrete_problem::take_cut(). Throws numerical_error at the first number
+  /// that is not finite.
   step_record check(const budgeted_state& after, double dt, const step_record& previous, double cut = 0.0);
 
-  /// Enters what the last start() or check() found about the velocities of a gas into `summary`; see
-  /// velocity_watch::update() for warnings and errors. `u`: the state that was checked.
+  /// Enters the findings of the last start() or check() about the velocities of a gas into `summary`. `u` is
+  /// the state that was checked. velocity_watch::update() describes warnings and errors.
   void watch_velocities(const field& u, const step_record& last, run_summary& summary);
 
-  /// Forgets earlier steps, which are not those before a restart.
+  /// Discards differences from earlier steps, which do not precede a restart.
   void forget_steps() { differences_.restart(); }
 
  private:
@@ -49,10 +49,10 @@ class monitor {
     double entropy = 0.0, lowest = 0.0;
     double change = 0.0, turn = 0.0;  ///< step_record::density_change, density_turn
     long negative = 0;
-    bool violated = false;  ///< the condition of the model, in some cell
-    int violating = -1;     ///< the first such cell of this process
+    bool violated = false;  ///< whether some cell violates the condition of the model
+    int violating = -1;     ///< first such cell of this process
     velocity_extremes velocities;
-    velocity_margins margins;  ///< of all processes
+    velocity_margins margins;  ///< smallest of all processes
   };
   struct partial;
   device_row_checks::row look_at(const field& u, int cell, double* densities) const;
@@ -74,20 +74,20 @@ class monitor {
 
   const run_setup& setup_;
   const model& equation_;
-  const checks_of_rows* of_rows_;                 ///< null where the model has none
-  std::unique_ptr<device_row_checks> on_device_;  ///< null: rows are checked on the host
+  const checks_of_rows* of_rows_;                 ///< null if the model has no such checks
+  std::unique_ptr<device_row_checks> on_device_;  ///< null if rows are checked on the host
   std::optional<convex_entropy> entropy_;
   double volume_;                       ///< of a cell; 1 for an ordinary differential equation
-  std::vector<std::size_t> ends_;       ///< number at each face
-  std::vector<double> entropy_bounds_;  ///< of what is received, [face][invariant]
+  std::vector<std::size_t> ends_;       ///< number of ends at each face
+  std::vector<double> entropy_bounds_;  ///< bounds of entropy per received amount, [face][invariant]
   torque_sum torques_;
   std::unique_ptr<per_thread<partial>> parts_;
-  mutable step_differences differences_;     ///< of the last invariant
+  mutable step_differences differences_;     ///< differences of the last invariant
   std::vector<double> invariants_, scales_;  ///< of the initial state
   velocity_watch velocities_;
-  velocity_extremes extremes_;  ///< of the last state
-  velocity_margins margins_;    ///< of all processes
-  std::vector<double> losses_;  ///< force_losses in the last step; empty without force
+  velocity_extremes extremes_;  ///< extremes of the last state
+  velocity_margins margins_;    ///< smallest of all processes
+  std::vector<double> losses_;  ///< force_losses of the last step; empty without force
 };
 
 }  // namespace apsis

@@ -6,9 +6,9 @@
 
 namespace apsis {
 
-/// Adds probes/NAME.csv and slices/NAME.h5, slices/NAME.xdmf of the tables [[output.probe]] and
-/// [[output.slice]] to the results. `unit_of_length`: that of the axes of the fields in units of the case.
-/// Throws io_error.
+/// Adds probes/NAME.csv, slices/NAME.h5 and slices/NAME.xdmf to the results, for the tables
+/// [[output.probe]] and [[output.slice]]. `unit_of_length` converts lengths of the case to those of the
+/// axes of `fields`. Throws io_error.
 void write_probes(const case_config& config, const field_series& fields, double unit_of_length,
                   result_folder& folder);
 

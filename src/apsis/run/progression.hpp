@@ -14,7 +14,7 @@ class progression {
  public:
   virtual ~progression() = default;
 
-  /// Prepares the first step; running_case::first is that of the initial state.
+  /// Prepares the first step. running_case::first is the record of the initial state.
   virtual void start() = 0;
   /// Takes one step and enters it into the records of the run. Throws numerical_error with step and time.
   virtual void advance() = 0;
@@ -22,17 +22,18 @@ class progression {
   /// are allowed.
   virtual void check() {}
 
-  /// Whether advance() enters what the velocities miss into the totals (monitor::watch_velocities()).
+  /// Returns whether advance() itself calls monitor::watch_velocities() and enters its
+  /// findings into the totals.
   virtual bool watches_velocities() const { return false; }
 
-  /// Whether no step is left, or the state is steady.
+  /// Returns whether no step is left or the state is steady.
   virtual bool finished() const = 0;
   virtual double next_dt() = 0;  ///< length of the next step
   /// Returns an estimate of the steps that are left.
   virtual long steps_left() = 0;
-  /// Whether the next step depends on time.end.
+  /// Returns whether the next step depends on time.end.
   virtual bool next_step_depends_on_end() = 0;
-  /// Returns the evaluations of T(u) and solutions of stage equations in a step, for rates of work.
+  /// Returns the number of evaluations of T(u) and of stage solves in a step, for rates of work.
   virtual std::size_t stages_of_step() const = 0;
 
   virtual long rejected_steps() const { return 0; }        ///< run_summary::rejected_steps
@@ -40,9 +41,10 @@ class progression {
   virtual double expected_loss() const { return 0.0; }     ///< simulation::expected_loss()
   virtual double expected_plateau() const { return 0.0; }  ///< simulation::expected_plateau()
 
-  /// Adds to `saved` what a restart needs in addition to the state, its records and its position in time.
+  /// Adds to `saved` the data that a restart needs in addition to the state, its records and
+  /// its position in time.
   virtual void save(run_state& saved) const = 0;
-  /// Continues from where save() was called; the state and the position in time are restored.
+  /// Restores the data of save(). The state and the position in time are already restored.
   virtual void restore(const run_state& saved) = 0;
 };
 

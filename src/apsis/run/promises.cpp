@@ -61,7 +61,7 @@ std::string reason_of_defect(const step_record& last, const run_setup& setup, do
 
 bool conserves_to_rounding(const run_setup& setup, const field& initial, const rounding_bound& rounding) {
   const double defect = setup.equilibrium_defect(initial);
-  if (defect <= rounding.of_sums) return true;  // what two sums over the components may differ by
+  if (defect <= rounding.of_sums) return true;  // two sums over the components may differ this much
   log::warning(fmt::format(
       "collisions do not conserve to rounding (the moments of the equilibrium miss those of the initial data "
       "by {:.2g}, so that conservation and entropy decay are not promised){}",
@@ -90,7 +90,7 @@ void check_promises(const run_promises& promises, const step_record& last, const
   if (promises.positivity && last.negative_values > 0)
     broken(fmt::format("{} values are negative (the configuration entails positivity)", last.negative_values),
            last, last.min_value);
-  // The sum of the bounds of the steps is that of the run.
+  // The bound of a run is the sum of the bounds of its steps.
   const double allowed = rounding.in_one_step();
   for (std::size_t k = 0; promises.conservation && k < last.defect_of_step.size(); ++k) {
     const double change = last.defect_of_step[k];

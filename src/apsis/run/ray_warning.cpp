@@ -20,16 +20,16 @@
 namespace apsis {
 namespace {
 
-constexpr double visible = 2e-3;  // of the jump
+constexpr double visible = 2e-3;  // relative to the jump
 
 /// The gases that walls, boxes and ends emit at t = 0.
 struct emission {
-  double temperature = 0.0;  ///< lowest
+  double temperature = 0.0;  ///< lowest temperature
   double jump = 0.0;         ///< largest difference of √T log ρ, of a velocity, or of √T log T
 };
 
 std::optional<emission> emission_of(const case_config& config, const model& equation, const gas& molecules) {
-  // log ρ, log T and the velocity
+  // Extremes of log ρ, log T and the velocity.
   std::array<double, 5> lowest, highest;  // NOLINT(cppcoreguidelines-pro-type-member-init)
   lowest.fill(std::numeric_limits<double>::infinity());
   highest.fill(-std::numeric_limits<double>::infinity());
@@ -57,7 +57,7 @@ std::optional<emission> emission_of(const case_config& config, const model& equa
   return found;
 }
 
-/// The largest error of all pairs of space dimensions.
+/// Returns the largest error of all pairs of space dimensions.
 double largest_error(const std::vector<velocity_line>& lines, int dimensions, double T) {
   double largest = 0.0;
   for (int k = 1; k < dimensions; ++k)
@@ -67,7 +67,7 @@ double largest_error(const std::vector<velocity_line>& lines, int dimensions, do
   return largest;
 }
 
-/// Names a set with twice the points along the directions of space, and its error.
+/// Returns the advice to double the points along the directions of space, with the resulting error.
 std::string remedy(const case_config& config, int dimensions, int of_velocity, double T) {
   const auto& names = config.velocity.set;
   if (std::any_of(names.begin(), names.end(), is_velocity_file)) return "give more velocities";
@@ -89,17 +89,17 @@ void warn_of_rays(const run_setup& setup, double relaxation) {
   const model& equation = *setup.equation;
   const int dimensions = equation.space_dimensions();
   const auto support = support_of(equation);
-  // The time is infinite where nothing relaxes, and for epsilon = 0.
+  // `relaxation` is infinite if nothing relaxes, and for epsilon = 0.
   if (!support || dimensions < 2 || !std::isfinite(relaxation)) return;
   const case_config& config = setup.config();
-  // Directions about an axis are the angles of rings, which other errors limit.
+  // Directions about an axis are the angles of rings. Other errors limit these.
   if (support->molecules().grid().is_polar()) return;
   const auto emitted = emission_of(config, equation, support->molecules());
   if (!emitted || !(emitted->jump > 0.0)) return;
   double shortest = std::numeric_limits<double>::infinity();
   for (const auto& [from, to] : config.space.domain) shortest = std::min(shortest, to - from);
   const double thermal = std::sqrt(emitted->temperature);
-  // Half of the way across the domain collisions have removed the rest of a jump.
+  // Part of a jump that collisions leave halfway across the domain.
   const double left = std::exp(-0.5 * shortest / (thermal * relaxation));
   std::vector<velocity_line> lines;
   for (int k = 0; k < dimensions; ++k) lines.push_back(support->molecules().grid().line(k));

@@ -28,7 +28,7 @@ struct row_writer {
   }
 };
 
-/// Appends the names of the columns of a record; those of a vector are NAME_INVARIANT, NAME_FACE_INVARIANT,
+/// Appends the names of the columns of a record. Columns of a vector are NAME_INVARIANT, NAME_FACE_INVARIANT,
 /// cut_MOMENT, lost_force_INVARIANT, or those of torque_columns() and temperature_columns().
 struct column_writer {
   const std::vector<std::string>&invariants, &faces, &torques, &walls;
@@ -72,7 +72,7 @@ struct column_writer {
   }
 };
 
-/// Reads the numbers of a record from a row; a vector takes the columns whose names begin with its own.
+/// Reads the numbers of a record from a row. A vector takes the columns that begin with its name.
 class row_reader {
  public:
   row_reader(const std::vector<std::string>& columns, const std::vector<double>& row)
@@ -129,8 +129,8 @@ struct number_writer {
   }
 };
 
-/// Reads them. Counters travel as doubles, which hold them exactly up to 2^53; a damaged one must not
-/// overflow.
+/// Reads the numbers of number_writer. Counters are stored as doubles, exact up to 2^53. Refuses larger ones,
+/// because counters of a damaged file must not overflow.
 struct number_reader {
   std::string group;
   const checkpoint& from;

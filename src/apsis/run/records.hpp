@@ -7,7 +7,7 @@
 
 namespace apsis {
 
-/// History and snapshots of a run: translates between the run and the tables of the results.
+/// History and snapshots of a run, as the tables of the results.
 class run_records {
  public:
   /// Starts with a history row of the initial state, and a snapshot if the case requests snapshots.
@@ -21,8 +21,8 @@ class run_records {
   void add_snapshot(const simulation& run);
 
   /// Returns the history with columns step, t, dt, min_value, negative_values, conservation_NAME of every
-  /// invariant, entropy, entropy_change; a row for the initial state and every step, at most
-  /// output.history_rows of them (see apsis::history).
+  /// invariant, entropy, entropy_change. It has rows for the initial state and for steps, at most
+  /// output.history_rows in all (see apsis::history).
   const numeric_table& history() const { return history_.rows(); }
   /// Returns the number of steps between regular rows of the history.
   long history_stride() const { return history_.stride(); }

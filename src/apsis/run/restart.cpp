@@ -32,7 +32,8 @@ void warn_of_another_commit(const checkpoint& saved, const std::string& path) {
       path, saved.commit, version(), here));
 }
 
-// Keys that may differ between a run and its continuation, because they do not enter a step.
+// Returns the case as text, without keys that may differ between a run and its continuation: they
+// do not enter a step.
 std::string essential_text(case_config config) {
   config.title.clear();
   config.output = {};

@@ -10,7 +10,7 @@
 namespace apsis {
 namespace {
 
-/// "density (dimensionless)" with another unit.
+/// Returns a label such as "density (dimensionless)" with another unit.
 std::string with_unit(const std::string& label, const std::string& unit) {
   const std::string none = "(dimensionless)";
   const auto at = label.rfind(none);

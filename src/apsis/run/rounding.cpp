@@ -15,7 +15,7 @@ namespace {
 constexpr double unit_roundoff = 0.5 * std::numeric_limits<double>::epsilon();
 
 /// Returns √L for a moment of n numbers. Rows of velocities are summed in chains of at most 64 numbers and 16
-/// lines, then pairwise; shorter rows of other models sequentially.
+/// lines, then pairwise. Shorter rows of other models are summed sequentially.
 double root_of_chain(int n) {
   constexpr double longest = 64.0 + 16.0;
   const double numbers = std::max(n, 1);
@@ -43,7 +43,7 @@ rounding_bound rounding_of(const shu_osher_form<double>& m, const model& equatio
     }
     error[i] = carried + unit_roundoff * weights * (2.0 + std::sqrt(terms) + collisions * of_collision);
   }
-  // Unknowns of both signs: the terms of a sum may be larger than what it is measured against.
+  // With unknowns of both signs, the terms of a sum may exceed the scale of its bound.
   const double cancellation = equation.positive() && equation.why_signed().empty() ? 1.0 : 1024.0;
   return {2.0 * cancellation * unit_roundoff * (2.0 + of_moments), error.empty() ? 0.0 : error.back()};
 }

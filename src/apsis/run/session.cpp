@@ -39,7 +39,8 @@ precision stored_precision(const case_config& config) {
                                                                        : precision::float64;
 }
 
-/// `unit_of_time`: that of the other times of the results, in which the files are not written.
+/// Returns the files of f. Their times are in units of the case; `unit_of_time` converts them to those
+/// of the other results.
 std::vector<distribution_file> distribution_files(const result_folder& folder, double unit_of_time) {
   std::vector<distribution_file> files;
   for (const auto& path : folder.files_of_series(snapshots)) {
@@ -55,7 +56,7 @@ std::vector<distribution_file> distribution_files(const result_folder& folder, d
 
 constexpr long many_steps = 100'000'000;
 
-/// Names what a case with a table [steady] has for a run in time.
+/// Logs the keys for a run in time that a case with a table [steady] has and does not use.
 void log_unused_times(const case_config& config) {
   if (!config.steady_state.tolerance) return;
   const auto log_unused = [&config](const std::string& what) {
@@ -67,8 +68,8 @@ void log_unused_times(const case_config& config) {
   if (config.steady_state.ignores_every) log_unused("output.every, as a time,");
 }
 
-/// Returns the setup of a case if the state and, for results, its checkpoint and solution.h5 fit into memory
-/// together; reports what it needs.
+/// Returns the setup of a case. Throws input_error unless the state fits into memory, together with its
+/// checkpoint and solution.h5 if results are written. Logs the memory that the run needs.
 std::unique_ptr<run_setup> setup_with_room_for_results(const case_config& configured,
                                                        const session_options& options) {
   const case_config config =
@@ -88,14 +89,14 @@ std::unique_ptr<run_setup> setup_with_room_for_results(const case_config& config
   return setup;
 }
 
-/// Everything on which the collective operations of a run depend.
+/// Returns a text of everything on which the collective operations of a run depend.
 std::string description_of(const case_config& config, const session_options& options) {
   return fmt::format("{}results = {}\nrestart = \"{}\"\ninitial data = {}\n", to_toml(config),
                      options.out ? "given" : "not given", options.restart.value_or(""),
                      options.initial ? "given" : "not given");
 }
 
-/// Refuses different cases: they would be mixed, or wait for each other for ever.
+/// Refuses different cases: processes would mix them, or wait for each other forever.
 const case_config& same_on_all(const case_config& mine, const session_options& options) {
   communicator& processes = *options.processes;
   if (processes.is_single()) return mine;
@@ -114,7 +115,8 @@ const case_config& same_on_all(const case_config& mine, const session_options& o
   return mine;
 }
 
-/// Where a run starts: data that are not in the case are not needed by a restart.
+/// Returns the source of the initial state. A restart takes data that are not in the case
+/// from the checkpoint.
 state_source start_of(const case_config& config, const session_options& options) {
   if (!options.restart) return options.initial;
   return config.prescribed.given_elsewhere() ? state_of_checkpoint(*options.restart) : state_source{};
@@ -140,7 +142,7 @@ run_session::run_session(const case_config& configured, session_options options)
     : options_(std::move(options)),
       simulation_(setup_with_room_for_results(same_on_all(configured, options_), options_),
                   start_of(configured, options_)) {
-  // Locked first: a checkpoint in a folder that another run writes into must not be read.
+  // The folder is locked first: no checkpoint may be read from a folder into which another run writes.
   run_collectively(processes(), [this] {
     if (options_.out && processes().is_root()) folder_ = std::make_unique<result_folder>(*options_.out);
   });
@@ -290,7 +292,8 @@ void run_session::loop() {
   }
 }
 
-/// Whether a process was asked to stop, or the wall time of the root is over; run_end::complete if not.
+/// Returns interrupted if a process was asked to stop, wall_time if the wall time of the root is over, and
+/// otherwise complete.
 run_end run_session::end_requested() const {
   const bool late = options_.wall && processes().is_root() &&
                     std::chrono::duration<double>(clock::now() - start_).count() >= *options_.wall;
@@ -326,7 +329,7 @@ bool run_session::checkpoint_is_due() const {
   const auto& output = simulation_.config().output;
   if (output.checkpoint_every > 0 && simulation_.step() % output.checkpoint_every == 0) return true;
   if (!(output.checkpoint_minutes > 0.0)) return false;
-  // By the clock of the root.
+  // The clock of the root decides.
   const std::chrono::duration<double, std::ratio<60>> since = clock::now() - last_checkpoint_;
   return global_count(processes(),
                       processes().is_root() && since.count() >= output.checkpoint_minutes ? 1 : 0) > 0;
@@ -340,7 +343,7 @@ void run_session::publish_checkpoint() {
   last_checkpoint_ = clock::now();
 }
 
-/// `folder`: on the root alone.
+/// Only the root has a `folder`.
 void run_session::write_results(result_folder* folder, run_end end, const std::string& message) {
   std::string about =
       json_text(manifest(simulation_, {end, message, started_, options_.command, options_.restart,
@@ -359,7 +362,8 @@ void run_session::write_results(result_folder* folder, run_end end, const std::s
   by_all("solution.h5",
          [&](const std::string& path) { write_solution(path, final_state, options_.processes); });
   if (end != run_end::failed || simulation_.may_continue()) {
-    // Without the snapshot of the current time, which the continued run would not have taken.
+    // The checkpoint omits the extra snapshot of the current time, which the continued run
+    // would not have taken.
     if (end_ != run_end::complete || !before_end_) before_end_ = make_checkpoint(simulation_, *records_);
     by_all("checkpoint.h5",
            [&](const std::string& path) { write_checkpoint(path, *before_end_, options_.processes); });
@@ -386,7 +390,7 @@ void run_session::write_tables(result_folder& folder, const solution& final_stat
 void run_session::save_failure(const std::string& message) {
   if (!has_folder()) return;
   finish_records();
-  // Results of an earlier successful run are not replaced by those of a failed one.
+  // Results of a failed run do not replace those of an earlier successful run.
   std::unique_ptr<result_folder> beside;
   bool earlier = false;
   run_collectively(processes(), [&] {

@@ -15,14 +15,14 @@
 
 namespace apsis {
 
-/// Returns the default number of threads of each process for a case: OMP_NUM_THREADS if set, otherwise its
-/// share of the processors of this machine for at least 32768 unknowns in each process, and 1 for fewer,
-/// which gain little from threads.
+/// Returns the default number of threads of each process for a case. It is OMP_NUM_THREADS if set. Otherwise
+/// a process with at least 32768 unknowns takes its share of the processors of this machine. With fewer
+/// unknowns, which gain little from threads, it is 1.
 int threads_for(const case_config& config, const communicator& processes = *single_process());
 
 /// Session options: output, restart, limits, callbacks.
 struct session_options {
-  std::shared_ptr<communicator> processes = single_process();  ///< share the mesh; all get the same options
+  std::shared_ptr<communicator> processes = single_process();  ///< share the mesh; all need the same options
   std::shared_ptr<device> on;                                  ///< a device for the run; null: the host
   std::optional<std::string> out;      ///< result folder; without it nothing is written
   std::optional<std::string> restart;  ///< checkpoint of the same case to continue from
@@ -61,7 +61,7 @@ class run_session {
   void publish_checkpoint();
   run_end end_requested() const;
   communicator& processes() const { return *options_.processes; }
-  /// Whether results are written; the folder itself is on the root alone.
+  /// Returns whether results are written. Only the root has the folder itself.
   bool has_folder() const { return options_.out.has_value(); }
   void warn_of_many_steps();
   void take_snapshot();
@@ -75,7 +75,7 @@ class run_session {
                     const std::vector<surface_table>& walls);
   void save_failure(const std::string& message);
 
-  warning_record warnings_;  ///< also of the members below
+  warning_record warnings_;  ///< records warnings of the members below, too
   session_options options_;
   clock::time_point start_ = clock::now(), last_checkpoint_ = start_;
   std::string started_ = time_stamp();

@@ -33,7 +33,7 @@
 namespace apsis {
 namespace {
 
-/// Throws an input error at the place of a key, if it is known.
+/// Throws input_error, at the place of a key if this is known.
 [[noreturn]] void refuse(const case_config& config, const std::string& key, const std::string& message) {
   const bool prescribed = key == "model.initial" && !config.prescribed.empty();
   const source_place place = place_of(config, prescribed ? "initial" : key);
@@ -68,7 +68,7 @@ std::optional<std::array<int, 3>> given_blocks(const std::optional<std::vector<i
   return all;
 }
 
-/// The warning that bodies lose their parts in these cells.
+/// Returns the warning that thin parts of bodies are cut off in so many cells.
 std::string thin_cells_warning(int cells) {
   return fmt::format(
       "edges or thin parts of bodies are cut off in {} (they end between the corners of a cell); "
@@ -227,7 +227,7 @@ void run_setup::check_tolerance() const {
                "time.tolerance cannot be kept: method '{}' does not estimate the errors of its steps; give "
                "time.dt or time.cfl, or choose a Runge-Kutta method",
                integrator_name()));
-  // The estimate is a difference of two numbers of double precision, relative to them.
+  // The estimate is the relative difference of two double-precision numbers, so rounding limits it.
   constexpr double finest = 64.0 * std::numeric_limits<double>::epsilon();
   if (*config_.time.tolerance < finest)
     refuse(config_, "time.tolerance",
@@ -303,7 +303,7 @@ void run_setup::set_prescribed_data() {
 }
 
 const initial_data& run_setup::data() const {
-  if (!config_.prescribed.empty()) return prescribed_;  // without functions if given elsewhere
+  if (!config_.prescribed.empty()) return prescribed_;  // has no functions if the data are given elsewhere
   const auto& all = equation->initial();
   const auto found = std::find_if(all.begin(), all.end(), [this](const auto& item) {
     return config_.model.initial.empty() || item.name == config_.model.initial;
@@ -392,7 +392,7 @@ void run_setup::check_cells(const field& u, bool computed) const {
   if (support) warn_of_velocities(*support, missed, worst_cell, worst);
 }
 
-/// Warns of the cell of all processes whose Maxwellian the velocities miss most, if they miss too much.
+/// Warns about the cell whose Maxwellian the velocities miss most, over all processes, if they miss too much.
 void run_setup::warn_of_velocities(const velocity_support& support, double missed, int cell,
                                    const std::vector<double>& omega) const {
   const bool mine = cell >= 0 && missed > velocity_limits::good;
@@ -459,8 +459,8 @@ void run_setup::decide_promises(run_promises& promises, double dt, double limit,
   const bool explicit_collision = integrator_->needs.explicit_collision;
   promises.conservation =
       exact_equilibrium && !equation->invariants().empty() && (within || !explicit_collision);
-  // Stage solves keep the sign of every row; an explicit Q only where the target is an equilibrium, E ≥ 0,
-  // and averages are means of values at points.
+  // Stage solves keep the sign of every row. An explicit Q does so only if the target is an equilibrium, E ≥
+  // 0, and averages are means of values at points.
   const auto* relaxation = equation->as_relaxation();
   const bool relaxes = relaxation != nullptr && relaxation->relaxing_count() > 0;
   const bool collisions = equation->collisions_keep_sign() &&
@@ -468,7 +468,8 @@ void run_setup::decide_promises(run_promises& promises, double dt, double limit,
   promises.condition = equation->condition();
   promises.why_signed = equation->why_signed();
   promises.positivity = equation->positive() && collisions && nonnegative && within && builder_.keeps_sign();
-  // An equilibrium with other moments does not minimize the entropy among the states with those of the data.
+  // An equilibrium with other moments does not minimize the entropy among the states with the
+  // moments of the data.
   promises.entropy = collisions_decrease_entropy(*equation) && nonnegative && within &&
                      builder_.first_order() && exact_equilibrium && entropy_bounds().has_value();
 }

@@ -30,7 +30,7 @@ void write_by_all(communicator& processes, const std::function<void(const file_w
         write(path);
       });
     });
-    // Without a path there is nothing to write: the others must not wait for it.
+    // prepare() gave no path: releases the others, which wait for one.
     if (!asked) broadcast_text(processes, path);
   } else {
     broadcast_text(processes, path);

@@ -7,15 +7,15 @@
 
 namespace apsis {
 
-/// Writes the file of a path.
+/// Writes a file to a path.
 using file_writer = std::function<void(const std::string& path)>;
 
-/// Writes a file by all processes: the root calls prepare(w) with a function that it must call with the path
-/// of the file, and write(path) runs on all of them. Throws on all what one of them throws. Collective.
+/// Writes a file by all processes. The root calls prepare(w), which must call w(path) with the path of the
+/// file; write(path) then runs on all processes. If one process throws, all throw. Collective.
 void write_by_all(communicator& processes, const std::function<void(const file_writer&)>& prepare,
                   const file_writer& write);
 
-/// text ← that of the root.
+/// Replaces the text by that of the root. Collective.
 void broadcast_text(communicator& processes, std::string& text);
 
 }  // namespace apsis

@@ -36,8 +36,8 @@ struct simulation::impl {
     run.first.wall_temperature = run.last.wall_temperature;
   }
 
-  /// face_fluxes::observed() at the ends of this process; nothing where a step failed, or a boundary has no
-  /// condition for the state.
+  /// Returns face_fluxes::observed() at the ends of this process. Returns nothing after a failed step, or if
+  /// a boundary has no condition for the state.
   std::optional<std::vector<double>> observe_surfaces() {
     if (inside_step) return std::nullopt;
     try {
@@ -47,7 +47,7 @@ struct simulation::impl {
     }
   }
 
-  /// The same at the ends of the whole mesh.
+  /// Returns observe_surfaces() for the ends of the whole mesh; empty if nothing was observed.
   std::vector<double> observe_all_surfaces() {
     const auto own = observe_surfaces();
     if (!own) return {};
@@ -64,8 +64,8 @@ struct simulation::impl {
 
   running_case run;
   std::unique_ptr<progression> progress;
-  bool inside_step = false;  ///< also after a step that failed
-  std::vector<double> row;   ///< a copy of one of a state on a device
+  bool inside_step = false;  ///< true also after a failed step
+  std::vector<double> row;   ///< copy of a row of a state on a device
 };
 
 namespace {
@@ -229,7 +229,7 @@ run_state simulation::save() const {
   saved.march = run.march.save();
   impl_->progress->save(saved);
   saved.totals = summary();
-  // Times that every process measures are those of the root.
+  // Every process measures these times; the root's are saved.
   std::array<double, 2> seconds = {saved.totals.wall_s, saved.totals.cpu_s};
   processes().broadcast(std::as_writable_bytes(std::span(seconds)));
   saved.totals.wall_s = seconds[0];
@@ -246,14 +246,14 @@ void simulation::restore(const run_state& saved) {
   for (const kept_value& kept : saved.kept) check_sizes(run.setup, kept, run.state);
   copy_rows(saved.unknowns, run.state);
   run.watch.forget_steps();
-  // Before the first step the marcher is that of the case.
+  // Before the first step, the marcher of the case is the right one.
   if (saved.march.step > 0) run.march.resume(saved.march);
   impl_->progress->restore(saved);
   run.totals = saved.totals;
   run.first = saved.initial;
   run.last = saved.last;
   run.budget = own_budget(run.setup, saved.budget);
-  run.now.budget = boundary_budget(run.budget);  // the next step shifts those of kept values by it
+  run.now.budget = boundary_budget(run.budget);  // the next step shifts budgets of kept values by it
 }
 
 }  // namespace apsis

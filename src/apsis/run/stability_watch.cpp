@@ -15,7 +15,7 @@ bool limited(const run_setup& setup) {
   return setup.config().space.limiter == limiter_choice::positivity;
 }
 
-/// The limit as a value of time.cfl that does not exceed it.
+/// Returns the limit as a value of time.cfl, rounded down to two digits.
 std::string rounded_down(double limit) {
   const double unit = std::pow(10.0, std::floor(std::log10(limit)) - 1.0);
   return fmt::format("{:g}", std::floor(limit / unit * (1.0 + 1e-9)) * unit);

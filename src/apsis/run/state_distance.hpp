@@ -6,9 +6,9 @@
 
 namespace apsis {
 
-/// Returns ‖u − v‖₂/‖u‖₂ over all components of the cells of all processes; 0 where both are equal.
-/// Collective; independent of the numbers of processes and threads. `on`: the device that both live on; null
-/// for the host.
+/// Returns ‖u − v‖₂/‖u‖₂ over all components of the cells of all processes; 0 if both are equal. The result
+/// does not depend on the numbers of processes and threads. `on` is the device on which both live; null for
+/// the host. Collective.
 double relative_distance(const field& u, const field& v, communicator& processes, device* on);
 
 }  // namespace apsis

@@ -18,7 +18,7 @@ std::size_t column_of(const numeric_table& table, const std::string& name) {
 
 using points = std::vector<std::pair<double, double>>;  ///< (t, ln change)
 
-/// Slope of the regression line.
+/// Returns the slope of the regression line through the points from `first` on.
 double slope_of(const points& all, std::size_t first) {
   const auto n = static_cast<double>(all.size() - first);
   double t = 0.0, y = 0.0, tt = 0.0, ty = 0.0;
@@ -49,7 +49,7 @@ steady_estimate estimate_steady_state(const numeric_table& history) {
   const double twice = all.back().second + std::log(2.0);
   std::size_t first = all.size();
   while (first > 0 && all[first - 1].second < twice) --first;
-  if (first == 0) return found;  // it has not halved
+  if (first == 0) return found;  // the change has not halved
   const double slope = slope_of(all, first - 1);
   if (!(slope < 0.0)) return found;
   found.decay_time = -1.0 / slope;

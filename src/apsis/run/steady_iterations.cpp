@@ -17,16 +17,17 @@
 namespace apsis {
 namespace {
 
-/// Marches before a failure is final, and the length of the first one in times of flight through the domain.
+/// Number of marches before a failure is final, and length of the first one in times of flight
+/// through the domain.
 constexpr int most_marches = 3;
 constexpr double flights_of_first_march = 5.0;
 
-/// The message without its advice, which is that for a run in time.
+/// Returns the message without its advice, which is for a run in time.
 std::string cause_of(const numerical_error& failure) {
   return failure.problem().substr(0, failure.problem().find("; "));
 }
 
-/// Warns of weights that may change without end. A limiter is weak enough to settle.
+/// Warns about weights that may change without end. Limiters settle, and need no warning.
 void warn_of_weights(const run_setup& setup) {
   if (!setup.has_space()) return;
   const auto& space = setup.config().space;
@@ -46,7 +47,7 @@ void steady_iterations::start() {
   make_solver();
   warn_of_weights(run_.setup);
   warn_of_rays(run_.setup, run_.problem->relaxation_time(0.0, run_.state));
-  run_.problem->take_cut();  // of the first residual
+  run_.problem->take_cut();  // discards that of the first residual
 }
 
 void steady_iterations::make_solver() {
@@ -74,8 +75,8 @@ void steady_iterations::advance() {
   }
 }
 
-/// The next iteration where the last one is no start for it, such as a gas that is too hot for the
-/// velocities.
+/// Takes another iteration if the last one is no start for the next. An example is a gas too hot
+/// for the velocities.
 steady_iteration steady_iterations::replace(const numerical_error& failure) {
   if (march_) throw failure;
   if (!easier_ && begin_again(failure)) return iterate();
@@ -98,15 +99,15 @@ steady_iteration steady_iterations::iterate() {
   }
 }
 
-/// The next iteration where no pseudo-time term helps.
+/// Takes the next iteration if no pseudo-time term helps: of a continuation, or else a part of a march.
 steady_iteration steady_iterations::recover(const numerical_error& failure) {
   if (begin_continuation(failure)) return follow_continuation();
   begin_march(failure);
   return march();
 }
 
-/// Begins again from the first state with a stronger pseudo-time term. Returns false if there is none, or
-/// after a march.
+/// Begins again from the first state with a stronger pseudo-time term. Returns false if there is no stronger
+/// one, or after a march.
 bool steady_iterations::begin_again(const numerical_error& failure) {
   if (marches_ > 0 || !solver_->begin_again()) return false;
   log::info(
@@ -116,8 +117,8 @@ bool steady_iterations::begin_again(const numerical_error& failure) {
   return true;
 }
 
-/// Begins with easier problems from the first state. Returns false if none of the first `allowed`
-/// continuations is left.
+/// Begins a continuation of easier problems from the first state. Returns false if none of the first
+/// `allowed` continuations is left.
 bool steady_iterations::begin_continuation(const numerical_error& failure, std::size_t allowed) {
   easier_.reset();
   while (!easier_ && tried_ < allowed)
@@ -142,7 +143,7 @@ steady_iteration steady_iterations::follow_continuation() {
   }
 }
 
-/// Begins steps in time, twice as long as those before.
+/// Begins a march in time, twice as long as the previous one.
 void steady_iterations::begin_march(const numerical_error& failure) {
   if (marches_ == most_marches || !std::isfinite(solver_->flight_time())) throw failure;
   const double duration = std::ldexp(flights_of_first_march * solver_->flight_time(), marches_++);
@@ -153,7 +154,7 @@ void steady_iterations::begin_march(const numerical_error& failure) {
   march_.emplace(run_.setup, first_, duration);
 }
 
-/// A part of the march, with its residual.
+/// Takes a part of the march, and returns its residual.
 steady_iteration steady_iterations::march() {
   march_->advance(run_.state);
   return end_of_detour(march_->finished());

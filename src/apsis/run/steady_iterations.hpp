@@ -12,15 +12,14 @@
 
 namespace apsis {
 
-/// Iterations of a steady_solver in place of steps. They count as time. Fluxes are those of the last
-/// residual; what the gas received since the start is nothing, and defects of conservation are the net rates.
-/// Nothing is promised but for the sign of the steady state (is_nonnegative()).
+/// Iterations of a steady_solver in place of steps; t counts them. Fluxes are those of the last residual. The
+/// amounts received since the start are 0, and defects of conservation are the net rates. The only promise is
+/// the sign of the steady state (is_nonnegative()).
 ///
-/// Where an iteration fails because f has no equilibrium, or because it diverges, it begins again from the
-/// first state with a stronger pseudo-time term. Where that fails too, or where the residual stays, each
-/// continuation gives a start, once. Where an iteration fails after that, the run marches in time from its
-/// first state, and then iterates again. Iterations of a continuation count as others do; a part of the march
-/// counts as one.
+/// If an iteration fails because f has no equilibrium, or because it diverges, it begins again from the first
+/// state with a stronger pseudo-time term. If that fails too, or if the residual stalls, each continuation
+/// gives a start, once. If an iteration fails after that, the run marches in time from its first state, and
+/// then iterates again. Iterations of a continuation count as others do; a part of the march counts as one.
 class steady_iterations final : public progression {
  public:
   /// `run` must outlive the object.
@@ -28,7 +27,7 @@ class steady_iterations final : public progression {
 
   void start() override;
   void advance() override;
-  /// Throws numerical_error where steady.iterations were not enough.
+  /// Throws numerical_error if steady.iterations were not enough.
   void check() override;
   bool watches_velocities() const override { return true; }
   bool finished() const override { return found_; }
@@ -57,13 +56,13 @@ class steady_iterations final : public progression {
 
   running_case& run_;
   std::optional<steady_solver> solver_;
-  std::unique_ptr<continuation> easier_;  ///< between two attempts
-  std::optional<interim_march> march_;    ///< between two attempts
-  field first_;                           ///< the state of the first iteration
-  std::size_t tried_ = 0;                 ///< continuations
-  int marches_ = 0;                       ///< begun
-  int damping_ = 0;                       ///< of the last iteration
-  bool found_ = false;                    ///< the steady state
+  std::unique_ptr<continuation> easier_;  ///< easier problems, between two attempts
+  std::optional<interim_march> march_;    ///< steps in time, between two attempts
+  field first_;                           ///< state before the first iteration
+  std::size_t tried_ = 0;                 ///< number of continuations tried
+  int marches_ = 0;                       ///< number of marches begun
+  int damping_ = 0;                       ///< damping of the last iteration
+  bool found_ = false;                    ///< whether the steady state is found
 };
 
 }  // namespace apsis

@@ -7,8 +7,7 @@
 
 namespace apsis {
 
-/// Differences of a density of every cell between the last three steps: what an unstable step makes
-/// alternate.
+/// Differences of a density of every cell between the last three steps. They alternate in unstable steps.
 class step_differences {
  public:
   /// Sizes of the first and the second difference; 0 until enough steps are known.
@@ -17,7 +16,7 @@ class step_differences {
         turn = 0.0;       ///< |ρ^n − 2ρ^{n−1} + ρ^{n−2}|
   };
 
-  /// No step of so many cells is known.
+  /// Makes the differences for so many cells; no step is known yet.
   explicit step_differences(int cells) : last_(static_cast<std::size_t>(cells), unknown), before_(last_) {}
 
   /// Records the density of a cell after a step, once for each step. Different cells may be recorded

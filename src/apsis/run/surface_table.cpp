@@ -9,7 +9,7 @@
 namespace apsis {
 namespace {
 
-/// The components of a vector among the columns, 0 where one is missing.
+/// Reads the components of a vector from the columns; 0 for a missing one.
 class vector_reader {
  public:
   vector_reader(const std::vector<std::string>& columns, const std::string& name) {

@@ -10,20 +10,20 @@
 
 namespace apsis {
 
-/// The fluxes of the last step out of the gas at the cell faces of a surface: a face of the domain that is
-/// not periodic, or a solid box.
+/// The fluxes of the last step from the gas to the cell faces of a surface. A surface is a face of the domain
+/// that is not periodic, a solid box or a body.
 struct surface_table {
-  std::string name;                        ///< of the face or of the box
-  std::vector<std::string> faces;          ///< [row], of the domain or of the box
-  numeric_table numbers;                   ///< [row], see compute_surfaces()
-  std::vector<dimension> dimensions = {};  ///< of the columns, in units of a gas
-  /// [row], in the order of wall_segment::corners; none on a line.
+  std::string name;                ///< name of the surface
+  std::vector<std::string> faces;  ///< [row], face of the domain or of the box; "wall" for a wall segment
+  numeric_table numbers;           ///< [row], see compute_surfaces()
+  std::vector<dimension> dimensions = {};  ///< physical dimensions of the columns
+  /// [row], corners in the order of wall_segment::corners; empty on a line.
   std::vector<std::vector<position>> corners = {};
 };
 
-/// Returns the pieces of the surface as cells, with every column as numbers of these, and with the vectors
-///   normal    into the gas
-///   momentum, u, and tau, the part of momentum along the surface, as far as the columns are there.
+/// Returns the pieces of the surface as cells, with every column as their numbers. Adds the vector normal,
+/// into the gas. If the surface has their columns, also adds the vectors momentum, u, and tau, the part of
+/// momentum along the surface.
 polydata to_polydata(const surface_table& surface);
 
 /// Returns the table as text, with the face in the first column; see to_csv() of numbers.

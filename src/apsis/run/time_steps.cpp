@@ -34,7 +34,7 @@ time_steps::time_steps(running_case& run)
       stability_(run.setup),
       losses_(run.setup, *run.problem) {
   if (run.setup.has_tolerance()) {
-    const auto& of_one_step = *integrator_->one_step();  // others were refused by the setup
+    const auto& of_one_step = *integrator_->one_step();  // the setup refuses others
     control_.emplace(*run.config.time.tolerance, estimate_of(run.setup.integrator().starter()).order,
                      find_step_law(run.config.time.controller));
     estimate_.emplace(of_one_step.weight_of_estimate(), of_one_step.resolves_collisions());
@@ -51,7 +51,7 @@ void time_steps::start() {
                              conserves_to_rounding(run_.setup, run_.state, run_.rounding));
   start_steps(relaxation);
   start_watch();
-  run_.problem->take_cut();  // of steps that were only tried
+  run_.problem->take_cut();  // discards that of steps that were only tried
 }
 
 void time_steps::warn_before_steps(double relaxation) {
@@ -63,7 +63,8 @@ void time_steps::warn_before_steps(double relaxation) {
   warn_of_rays(run_.setup, relaxation);
 }
 
-/// ‖u − v‖₂/‖u‖₂, after the errors that processes met while they computed u and v.
+/// Returns a function that computes ‖u − v‖₂/‖u‖₂. It first throws errors that processes met while
+/// they computed u and v.
 auto time_steps::distance() {
   return [this](const auto& u, const auto& v) {
     run_.problem->throw_late_errors();
@@ -94,7 +95,8 @@ void time_steps::warn_of_tolerance(double longest, double relaxation) {
   warn_of_plateau(setup, *expected_, relaxation);
 }
 
-/// Estimates what the method loses in the usual steps. A forecast above the tolerance has been reported.
+/// Starts the estimate of the loss in the usual steps. A forecast above the tolerance has
+/// already been reported.
 void time_steps::start_watch() {
   const double dt = expected_ ? expected_->dt : limit();
   if (expected_ && expected_->error > *run_.config.time.tolerance) return;
@@ -102,7 +104,8 @@ void time_steps::start_watch() {
   losses_.start(run_.march.t(), run_.state, std::min(dt, run_.config.time.end - run_.march.t()), layer);
 }
 
-/// Steps that are known to be shorter than the longest need less of the limiter.
+/// Limits the problem for the steps of the case. Steps known to be shorter than the longest need
+/// less of the limiter.
 void time_steps::limit_for_steps() {
   if (control_) return;
   limiter_share_ =
@@ -140,7 +143,7 @@ long time_steps::steps_left() {
 }
 
 bool time_steps::next_step_depends_on_end() {
-  // Far from the end the answer is no without evaluating Δt_FE: no rule makes steps 32 times longer.
+  // Far from the end, returns false without an evaluation of Δt_FE: no rule makes steps 32 times longer.
   constexpr double longest = 32.0 * time_marcher<double>::shared_steps;
   const time_marcher<double>& march = run_.march;
   const bool far =
@@ -170,8 +173,8 @@ double time_steps::step() {
   return dt;
 }
 
-/// A budget counts from the beginning of a step. Those of kept values, which are sums of earlier u, are
-/// shifted by what u received in the last step.
+/// Begins the budget of a step. Budgets of kept values, which are sums of earlier u, are shifted by the
+/// amounts that u received in the last step.
 void time_steps::begin_budget() {
   integrator_->visit_kept(
       [this](budgeted_state& kept, double weight) { kept.budget.add(-weight, run_.now.budget.amounts()); });
@@ -200,7 +203,7 @@ void time_steps::record(double dt) {
 }
 
 void time_steps::check() {
-  // An instability is the cause of the promises that it breaks.
+  // Checked first, because an instability is the cause of the promises that it breaks.
   try {
     stability_.add(run_.last);
   } catch (const numerical_error& failure) {

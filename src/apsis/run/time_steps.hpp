@@ -13,8 +13,8 @@
 
 namespace apsis {
 
-/// Steps in time by the method of the case, of the length that its step rule gives. Promises are decided
-/// before the first step and checked after every one.
+/// Steps in time by the method of the case; the step rule gives their length. Promises are decided before the
+/// first step and checked after every step.
 class time_steps final : public progression {
  public:
   /// Makes the stepper, and limits the problem for steps of the case. `run` must outlive the object.
@@ -53,12 +53,12 @@ class time_steps final : public progression {
   budgeted_problem budgeted_;  ///< the problem with the budget of its surfaces
   std::unique_ptr<any_stepper<budgeted_problem>> integrator_;
   stability_watch stability_;
-  field before_;  ///< before a step; empty without time.steady
+  field before_;  ///< state before a step; empty without time.steady
   std::optional<step_controller<double>> control_;
-  std::optional<error_estimate<budgeted_problem>> estimate_;  ///< with a tolerance
+  std::optional<error_estimate<budgeted_problem>> estimate_;  ///< only with a tolerance
   std::optional<tolerance_forecast<double>> expected_;
   loss_watch losses_;
-  double limiter_share_ = 1.0;  ///< of r Δt_FE
+  double limiter_share_ = 1.0;  ///< simulation::limiter_share()
 };
 
 }  // namespace apsis

@@ -20,7 +20,7 @@ namespace {
 constexpr double unlimited = std::numeric_limits<double>::infinity();
 constexpr double least_share_of_density = 1e-3, fewest_collisions = 0.1;
 
-/// Of the gas in the whole mesh.
+/// Returns the volume of the gas in the whole mesh.
 double volume_of_gas(const run_setup& setup) {
   double cells = 0.0;
   for (const cell_range& range : setup.whole_mesh().fluid())
@@ -28,7 +28,7 @@ double volume_of_gas(const run_setup& setup) {
   return cells * setup.cell_volume();
 }
 
-/// The negative part of the mass of a row.
+/// Returns the negative part of the mass of a row.
 double negative_mass(const gas& molecules, const double* row) {
   const auto weights = molecules.velocities().weights();
   double sum = 0.0;
@@ -83,8 +83,8 @@ void velocity_watch::look(const double* omega, int cell, velocity_extremes& own)
   if (velocity_support::is_safe(here) || collides(cell, omega)) own.add({here, cell, cell});
 }
 
-/// The state of a cell of one process, `none` on the others; nothing where an unstable step has made it
-/// negative.
+/// Returns the state of a cell of one process; the others pass `none`. Returns nothing if an unstable step
+/// has made the state negative.
 std::optional<velocity_watch::candidate> velocity_watch::shared(int cell, const field& u) const {
   const bool mine = cell != velocity_extremes::none;
   const gas& molecules = support_->molecules();
@@ -103,7 +103,7 @@ std::optional<velocity_watch::candidate> velocity_watch::shared(int cell, const 
   return found;
 }
 
-/// The states of cells that fit worse than those before; their numbers enter the totals.
+/// Returns the states of cells that fit worse than all before, and enters their numbers into the totals.
 std::vector<velocity_watch::candidate> velocity_watch::new_extremes(const velocity_extremes& mine,
                                                                     const velocity_margins& margins,
                                                                     const field& u,
@@ -192,17 +192,18 @@ void velocity_watch::add_lost(const field& u, const step_record& at, run_summary
       of_energy ? "energy" : "momentum", share, at.t, larger_velocities(needed)));
 }
 
-/// Returns the remedy of velocities that end too early: the largest that is needed, which is more than there
-/// is unless f is no Maxwellian.
+/// Returns the remedy for velocities that end too early: the largest velocity that is needed. The grid may
+/// already contain it if f is no Maxwellian; then the remedy is a larger grid.
 std::string velocity_watch::larger_velocities(double needed) const {
   const double largest = support_->molecules().grid().max();
-  constexpr double above_rounding = 1.01;  // of the three digits
+  constexpr double above_rounding = 1.01;  // allows for three printed digits
   return needed > above_rounding * largest ? fmt::format("velocity.max = {:.3g} or more", needed)
                                            : fmt::format("a velocity.max above {:.3g}", largest);
 }
 
-/// The largest velocity that the gas needs now, and where its streams come to rest: relative to walls, or
-/// without walls relative to the mean velocity, where a force may also accelerate it until the end.
+/// Returns the largest velocity that the gas needs now, and when its streams come to rest. They rest
+/// relative to walls, or without walls relative to the mean velocity. Without walls, a force may also
+/// accelerate the gas until the end.
 double velocity_watch::velocity_that_would_do(const field& state, const step_record& at) const {
   field room;
   const field& u = on_host(state, room);

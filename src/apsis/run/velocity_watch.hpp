@@ -12,9 +12,9 @@
 
 namespace apsis {
 
-/// The cells of this process whose Maxwellians fit the velocities worst.
+/// The cells of this process whose Maxwellians the velocities represent worst.
 struct velocity_extremes {
-  static constexpr int none =  ///< number of no cell
+  static constexpr int none =  ///< stands for no cell
       std::numeric_limits<int>::max();
 
   /// The smallest margins.
@@ -23,39 +23,40 @@ struct velocity_extremes {
   int room_cell = none;        ///< where the room is smallest
   int resolution_cell = none;  ///< where the resolution is lowest
 
-  /// Adds those of other cells. Of equal cells the first counts, in whatever order they are added.
+  /// Adds the extremes of other cells. Of equal cells the first counts, in any order of calls.
   void add(const velocity_extremes& other);
 };
 
 /// Watches whether the velocities of a gas represent the Maxwellian of every cell in a run
-/// (docs/velocities.md). Cells with less than a thousandth of the mean density are not watched, nor those
-/// whose molecules collide less than a tenth of a time until time.end: there the Maxwellian has no effect.
-/// States may live on a device; rows that are needed are copied.
+/// (docs/velocities.md). Does not watch cells with less than a thousandth of the mean density, nor cells
+/// whose molecules collide fewer than 0.1 times until time.end. In these cells the Maxwellian has no effect.
+/// States may live on a device; the watch copies the rows that it needs.
 class velocity_watch {
  public:
   /// `setup` must outlive the object.
   explicit velocity_watch(const run_setup& setup);
 
-  /// Whether the model is a gas.
+  /// Returns whether the model is a gas.
   bool active() const { return support_.has_value(); }
   /// Sets the mass of the gas in the domain.
   void set_mass(double mass);
   /// Adds a cell with moments ω to `own`.
   void look(const double* omega, int cell, velocity_extremes& own) const;
 
-  /// Enters the worst cells of all processes after a step into the totals. Warns when they miss more than
-  /// velocity_limits::good for the first time. Throws numerical_error when more than velocity_limits::bad
-  /// lies beyond the ends. `margins`: the smallest of all processes. Collective.
+  /// Enters the worst cells of all processes after a step into the totals. Warns the first time that the
+  /// velocities miss more than velocity_limits::good. Throws numerical_error if more than
+  /// velocity_limits::bad lies beyond the ends. `margins` are the smallest of all processes. Collective.
   void update(const velocity_extremes& mine, const velocity_margins& margins, const field& u,
               const step_record& at, run_summary& totals);
-  /// The same for the initial state without warnings, which the setup gives.
+  /// Does the same for the initial state, without the warnings that the setup gives.
   void start(const velocity_extremes& mine, const velocity_margins& margins, const field& u,
              run_summary& totals);
-  /// Adds a share of the mass that a force moved into the last velocities in a step. Warns when it exceeds
-  /// one percent. Collective.
+  /// Adds a share of the mass that a force moved into the last velocities in a step. Warns when the sum
+  /// exceeds one percent. Collective.
   void add_held(double share, const field& u, const step_record& at, run_summary& totals) const;
-  /// Enters step_record::lost_share into the totals, which are those of the last iteration to a steady state.
-  /// Warns once when one of them exceeds one percent, of the energy only above first order. Collective.
+  /// Enters step_record::lost_share into the totals: the largest of all steps, or that of the last iteration
+  /// to a steady state. Warns once when a share exceeds one percent; for the energy, only with fluxes above
+  /// first order. Collective.
   void add_lost(const field& u, const step_record& at, run_summary& totals);
 
  private:
@@ -75,19 +76,20 @@ class velocity_watch {
 
   const run_setup& setup_;
   std::optional<velocity_support> support_;
-  std::vector<double> epsilon_;  ///< of the cells of this process
-  double volume_ = 1.0;          ///< of the gas
+  std::vector<double> epsilon_;  ///< ε in the cells of this process
+  double volume_ = 1.0;          ///< volume of the gas
   double least_density_ = 0.0;
   bool warned_of_ends_ = false, warned_of_spacing_ = false, warned_of_loss_ = false;
 };
 
 /// The cell of all processes whose Maxwellian the velocities miss most.
 struct worst_velocities {
-  long cell;                  ///< its number in the whole mesh
-  std::vector<double> omega;  ///< its moments
+  long cell;                  ///< number in the whole mesh
+  std::vector<double> omega;  ///< moments of the cell
 };
-/// Returns it from what they miss in the worst cell of this process, the number of that cell in the whole
-/// mesh, negative without one, and its moments; nothing where no process has a cell. Collective.
+/// Returns the worst cell of all processes; nothing if no process has a cell. Each process passes its own
+/// worst cell: the amount that the velocities miss, the number of the cell in the whole mesh (negative
+/// without one), and its moments. Collective.
 std::optional<worst_velocities> worst_of_all(communicator& processes, double missed, long number,
                                              const std::vector<double>& omega);
 

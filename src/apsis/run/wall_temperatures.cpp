@@ -49,7 +49,7 @@ std::vector<double> wall_temperatures::of(double t, std::span<const double> obse
   std::vector<exact_sum> sums(2 * walls_);  // of A T_w, and of A
   std::vector<double> arriving(count);
   for (const piece& one : pieces_) {
-    const std::size_t first = (face_fluxes::observed_moments * one.end + 1) * count;  // behind the density
+    const std::size_t first = (face_fluxes::observed_moments * one.end + 1) * count;  // after the densities
     if (first + count > observed.size()) break;
     for (std::size_t k = 0; k < count; ++k)
       arriving[k] = observed[first + k] / setup_.whole_mesh().radius(one.x);

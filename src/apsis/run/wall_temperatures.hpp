@@ -11,7 +11,7 @@
 
 namespace apsis {
 
-/// The mean temperatures of found_walls().
+/// Computes the mean temperatures of found_walls().
 class wall_temperatures {
  public:
   /// `setup` must outlive the object.
@@ -19,15 +19,15 @@ class wall_temperatures {
 
   /// Returns the number of walls.
   std::size_t size() const { return walls_; }
-  /// Returns Σ A T_w/Σ A over the pieces of each wall, with their areas A and the temperatures that
-  /// compute_surfaces() has at time t. `observed`: face_fluxes::observed() at the ends of this process.
-  /// Pieces at which nothing arrives do not count; NaN without other pieces, or where nothing is observed.
-  /// Sums are exact before they are rounded. Collective.
+  /// Returns Σ A T_w/Σ A over the pieces of each wall. A is the area of a piece, T_w the temperature that
+  /// compute_surfaces() has at time t. `observed` is face_fluxes::observed() at the ends of this process.
+  /// Pieces at which nothing arrives do not count. The result is NaN without other pieces, or if nothing is
+  /// observed. Sums are exact and rounded once. Collective.
   std::vector<double> of(double t, std::span<const double> observed) const;
 
  private:
   struct piece {
-    std::size_t wall, end;  ///< its wall, and its number among the ends of this process
+    std::size_t wall, end;  ///< indices of its wall, and of its end on this process
     const boundary* side;
     std::array<double, 3> normal;  ///< into the gas
     position x;

@@ -12,14 +12,14 @@
 namespace apsis {
 namespace {
 
-/// Stand for the surface of an end in a cut cell.
+/// Stand for the surface in the key of an end in a cut cell.
 constexpr int cut_face = -1, wall = -2;
 
-/// An end of a segment: its surface, and the cell in front of it in the whole mesh. An end in a cut cell:
-/// what it is, and its number.
+/// Identifies an end of a segment by its surface, and by the number in the whole mesh of the cell in front of
+/// it. Identifies an end in a cut cell by its kind and its number.
 using end_key = std::pair<int, int>;
 
-/// The ends of a domain in the order of the budget.
+/// Returns the ends of a domain in the order of the budget.
 std::vector<end_key> ends_of(const domain& space, const grid& whole) {
   std::vector<end_key> ends;
   for (const budget_surface& one : space.budget_surfaces()) {
@@ -32,7 +32,7 @@ std::vector<end_key> ends_of(const domain& space, const grid& whole) {
   return ends;
 }
 
-/// The places in the whole mesh of the ends of this process.
+/// Returns the indices that the ends of this process have in the whole mesh.
 std::vector<std::size_t> places_of(const run_setup& setup) {
   const grid& whole = setup.whole_mesh();
   std::map<end_key, std::size_t> places;
@@ -42,8 +42,8 @@ std::vector<std::size_t> places_of(const run_setup& setup) {
   return mine;
 }
 
-/// Force, rotation of axisymmetric flow and source have one set of totals each, after those of the ends, and
-/// a force its losses at the ends of the velocities.
+/// Returns the number of totals that follow the amounts of the ends. Force, rotation of axisymmetric flow and
+/// source have one set of totals each. A force also has its losses at the ends of the velocities.
 std::size_t size_of_totals(const run_setup& setup) {
   return (setup.open_faces().size() - setup.builder().space().budget_surfaces().size()) *
              setup.equation->invariants().size() +
@@ -62,7 +62,7 @@ std::size_t size_of_whole_budget(const run_setup& setup) {
 std::vector<double> whole_ends(const run_setup& setup, const std::vector<double>& own, std::size_t count) {
   if (setup.processes().is_single()) return own;
   const std::vector<std::size_t> mine = places_of(setup);
-  std::vector<double> packed;  // place and values
+  std::vector<double> packed;  // for each end its index, then its values
   for (std::size_t k = 0; k < mine.size(); ++k) {
     packed.push_back(static_cast<double>(mine[k]));
     packed.insert(packed.end(), own.begin() + static_cast<std::ptrdiff_t>(k * count),
@@ -79,7 +79,7 @@ std::vector<double> whole_ends(const run_setup& setup, const std::vector<double>
 
 std::vector<double> whole_budget(const run_setup& setup, const std::vector<double>& own) {
   if (setup.processes().is_single()) return own;
-  // A process without ends has nothing, also where others have something.
+  // A process without ends has no amounts, even if others have some.
   if (global_count(setup.processes(), own.empty() ? 0 : 1) == 0) return {};
   std::vector<double> whole = whole_ends(setup, own, setup.equation->invariants().size());
   // Totals are those of the root.

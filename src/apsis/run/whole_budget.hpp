@@ -7,12 +7,12 @@
 
 namespace apsis {
 
-/// Returns the amounts of a boundary_budget of the whole mesh, in the order in which one process has them,
-/// from those of all processes; on all of them. Collective. Nothing where nothing was received.
+/// Returns the amounts of a boundary_budget of the whole mesh on all processes, from the amounts of each.
+/// They are in the order that a single process has. Empty if nothing was received. Collective.
 std::vector<double> whole_budget(const run_setup& setup, const std::vector<double>& own);
 
-/// Returns `count` numbers at each end of the whole mesh, in the order of the budget, from those of all
-/// processes; on all of them. Collective.
+/// Returns `count` numbers at each end of the whole mesh on all processes, from the numbers of each. They are
+/// in the order of the budget. Collective.
 std::vector<double> whole_ends(const run_setup& setup, const std::vector<double>& own, std::size_t count);
 
 /// Returns the amounts of this process among those of the whole mesh.

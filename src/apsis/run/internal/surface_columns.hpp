@@ -17,11 +17,11 @@
 
 namespace apsis {
 
-/// Returns the places of the momenta among the invariants of a model, one for each of its velocity
-/// dimensions; nothing where it lacks one.
+/// Returns the indices of the momenta among the invariants of a model, one for each velocity dimension.
+/// Returns an empty list if the model lacks one of them.
 std::vector<std::size_t> places_of_momenta(const model& equation);
 
-/// Returns the place of a name; nothing if it is not there.
+/// Returns the index of a name; nothing if it is missing.
 std::optional<std::size_t> place_of_name(const std::vector<std::string>& names, const std::string& name);
 
 /// The columns of a surface that are derived from the fluxes of the invariants: pressure, shear stress, heat
@@ -30,10 +30,11 @@ class load_columns {
  public:
   load_columns(const model& equation, const std::optional<reference_values>& reference);
 
-  /// Adds the names, and the dimensions given those of the fluxes of the invariants.
+  /// Adds the names and dimensions of the columns. `fluxes` are the dimensions of the
+  /// fluxes of the invariants.
   void add_names(surface_table& table, const std::vector<dimension>& fluxes) const;
-  /// Appends the values at a piece of wall with the normal n into the gas. In the plane the shear stress is
-  /// the component counter-clockwise around the body.
+  /// Appends the values at a piece of wall with the normal n into the gas, from the fluxes `given` of the
+  /// invariants. In the plane the shear stress is the component counter-clockwise around the body.
   void add_values(std::vector<double>& row, const std::vector<double>& given, const std::array<double, 3>& n,
                   const std::array<double, 3>& wall_velocity) const;
   /// Appends the values at a face of a cell. In the plane the shear stress is the component along the axis.
@@ -44,18 +45,19 @@ class load_columns {
   void add(std::vector<double>& row, double pressure, std::optional<double> shear,
            std::optional<double> heat) const;
 
-  std::vector<std::size_t> momenta_;   ///< of each velocity dimension; empty if the model has none
-  std::optional<std::size_t> energy_;  ///< nothing without momenta
+  std::vector<std::size_t> momenta_;   ///< indices of the momenta; empty if the model lacks one
+  std::optional<std::size_t> energy_;  ///< index of the energy; nothing without momenta
   const std::optional<reference_values>& reference_;
 };
 
-/// The columns of the state of a gas; none for other models.
+/// The columns of the state of a gas; other models have no such columns.
 class gas_columns {
  public:
   explicit gas_columns(const model& equation) : gas_(equation.as_gas()) {}
 
   void add_names(surface_table& table) const;
-  /// Appends the values for the densities of the invariants, which are the moments of a gas.
+  /// Appends the values that follow from `moments`, the densities of the invariants; NaN if they are
+  /// unknown or not admissible.
   void add_values(std::vector<double>& row, std::span<const double> moments) const;
 
  private:
@@ -64,13 +66,14 @@ class gas_columns {
   const gas_model* gas_;
 };
 
-/// The columns of the one-way fluxes to and from a surface: of mass and energy, where the model has them.
+/// The columns of the one-way fluxes of mass and energy to and from a surface, if the model
+/// has these invariants.
 class one_way_columns {
  public:
   explicit one_way_columns(const model& equation);
 
   void add_names(surface_table& table, const std::vector<dimension>& fluxes) const;
-  /// Appends the values; NaN where nothing is known.
+  /// Appends the values; NaN for unknown fluxes.
   void add_values(std::vector<double>& row, std::span<const double> arriving,
                   std::span<const double> leaving) const;
 
@@ -95,7 +98,8 @@ class wall_temperature_column {
   void add_value(std::vector<double>& row, const boundary* side, const wall_point& where,
                  std::span<const double> arriving) const;
 
-  /// Returns this value; nothing in place of NaN, and for a boundary without a temperature.
+  /// Returns the value that add_value() appends. Returns nothing where that is NaN, and for a boundary
+  /// without a temperature.
   std::optional<double> value(const boundary* side, const wall_point& where,
                               std::span<const double> arriving) const;
 
@@ -110,9 +114,10 @@ class wall_temperature_column {
 /// Sorts the rows of a surface by their first column.
 void sort_by_first_column(surface_table& table);
 
-/// Puts the rows of a body in the plane, sorted by angles, in their order along its wall, with the body on
-/// the left, and replaces the angles by the length along the wall to the middle of each piece. An open wall
-/// begins at its opening, a closed one with its first row. Between two walls lies the distance of their ends.
+/// Orders the rows of a body in the plane along its wall, with the body on the left. The rows must be
+/// sorted by angles. Replaces the angles by the length along the wall to the middle of each piece. An open
+/// wall begins at its opening, a closed one with its first row. The length between two walls is the
+/// distance of their ends.
 void measure_around(surface_table& table, const grid& mesh);
 
 }  // namespace apsis

@@ -9,7 +9,7 @@
 namespace apsis {
 namespace {
 
-/// Puts row order[k] into place k.
+/// Moves row order[k] to place k.
 void reorder(surface_table& table, const std::vector<std::size_t>& order) {
   surface_table sorted{table.name, {}, {table.numbers.columns, {}}, table.dimensions, {}};
   for (const std::size_t k : order) {
@@ -20,8 +20,8 @@ void reorder(surface_table& table, const std::vector<std::size_t>& order) {
   table = std::move(sorted);
 }
 
-/// Returns the order of sorted rows along the wall: lines that begin at an opening first, then closed ones,
-/// both from their first row on.
+/// Returns the order of sorted rows along the wall. Lines that begin at an opening come first, then closed
+/// lines. Each closed line begins with its first row.
 std::vector<std::size_t> order_along(const std::vector<std::vector<position>>& pieces) {
   std::map<position, std::size_t> begins, ends;
   for (std::size_t k = 0; k < pieces.size(); ++k) {

@@ -5,7 +5,7 @@
 
 namespace apsis {
 
-/// Returns body(), with a place added to its input errors that have none.
+/// Returns body(). Adds a place to those of its input errors that have none.
 template <class Body>
 auto at_place(const source_place& place, const Body& body) {
   try {

@@ -52,7 +52,7 @@ class reader_of_bodies {
  private:
   int dimensions() const { return static_cast<int>(config_.space.cells.size()); }
 
-  /// Returns the number of a body, from 1.
+  /// Returns the number of a body in the path of a key, counted from 1.
   static std::size_t number_in(const std::string& path, const raw_value& raw) {
     if (const auto split = split_key(path, head_of_bodies)) return split->number;
     throw input_error(
@@ -129,7 +129,7 @@ class reader_of_bodies {
     return table;
   }
 
-  /// Shapes in a list of tables, or a single table.
+  /// Reads shapes from a list of tables, or from a single table.
   void read_parts(const std::string& path, const shape_key& key, int dimensions,
                   std::vector<shape_table>& parts) {
     if (const raw_value* raw = text_.find(path))
@@ -172,7 +172,7 @@ class reader_of_bodies {
     }
   }
 
-  /// Numbers, or formulas of constants.
+  /// Returns the numbers of a value, which may be formulas of constants.
   std::vector<double> numbers_of(const raw_value& raw, const std::string& path) const {
     return constant_numbers(raw, path, config_.constants);
   }

@@ -19,7 +19,7 @@ const std::string& kind_of(const case_config& config, const face_table& table) {
   return table.kind ? *table.kind : config.space.boundary;
 }
 
-/// Names of the variables of a kind of boundary.
+/// Returns the names of the variables of a kind of boundary.
 std::vector<std::string> variables_of(const std::string& kind, const model& equation) {
   std::vector<std::string> names;
   const boundary_entry& entry = find_boundary(kind);
@@ -28,8 +28,8 @@ std::vector<std::string> variables_of(const std::string& kind, const model& equa
   return names;
 }
 
-/// A formula in t, the position and the velocity, as far as the variable depends on them; a number where it
-/// is constant.
+/// Returns a formula in t and the position, for functions of the velocity also in the velocity. Returns a
+/// number if the formula is constant.
 face_quantity compile(const std::string& text, const source_place& place, const case_config& config,
                       const model& equation, const std::optional<data_variable>& variable) {
   const int velocity = variable && variable->of_velocity ? equation.velocities().dimensions() : 0;
@@ -62,7 +62,7 @@ source_place place_of_emitter(const case_config& config, const std::string& path
 
 namespace {
 
-/// The name of a surface in messages, by the path of its table.
+/// Returns the name of a surface in messages, by the path of its table.
 std::string surface_name(const case_config& config, const std::string& path) {
   for (std::size_t k = 0; k < config.solids.size(); ++k)
     if (path == fmt::format("space.solid.{}", k + 1))

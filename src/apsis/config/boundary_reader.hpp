@@ -10,8 +10,8 @@
 namespace apsis {
 
 /// Reads the variables "boundary.left.…" and "boundary.right.…" of the kinds in `config` into its tables.
-/// Throws input_error at the place of a key: no such side, a variable that the kind does not have, no
-/// formula, or a model that cannot have the kind.
+/// Throws input_error at the place of a key if there is no such side, or if the kind has no such variable.
+/// Also throws it if a value is no formula, or if the model cannot have the kind.
 void read_boundary_values(const case_text& text, const model& equation, case_config& config);
 
 /// Returns the names of the variables of a kind of boundary. Throws input_error at a place if there is no
@@ -19,8 +19,8 @@ void read_boundary_values(const case_text& text, const model& equation, case_con
 std::vector<std::string> boundary_variables(const std::string& kind, const model& equation,
                                             const source_place& place);
 
-/// Returns the place that describes a face, a solid box or the source, by the path of its table: the table,
-/// its kind, another of its keys, or space.boundary.
+/// Returns the place that describes a face, a solid box or the source, by the path of its table. It is the
+/// first known place among the table, its kind, another of its keys, and space.boundary.
 source_place place_of_emitter(const case_config& config, const std::string& path);
 
 /// Returns the boundary of a kind with formulas for its variables, which are the keys "path.NAME". Throws

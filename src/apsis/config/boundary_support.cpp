@@ -18,7 +18,7 @@
 namespace apsis {
 namespace {
 
-/// The Maxwellian that velocities miss most, of those seen so far.
+/// Stores the Maxwellian that the velocities miss most, of those seen so far.
 class worst_maxwellian {
  public:
   explicit worst_maxwellian(const velocity_support& support) : support_(support) {}
@@ -36,7 +36,8 @@ class worst_maxwellian {
   }
   void see_moments(const double* omega, double t) { see(support_.molecules().state(omega), t); }
 
-  /// Returns the warning, or throws, for what the table `path` describes.
+  /// Returns the warning about the gas of the table `path`, if there is one. Throws input_error if the
+  /// velocities miss too much.
   std::optional<std::string> judge(const case_config& config, const std::string& path) const {
     if (!(fit_.missed > velocity_limits::good)) return std::nullopt;
     if (refused_ && fit_.missed > velocity_limits::bad) refuse_state(config, path);
@@ -52,7 +53,8 @@ class worst_maxwellian {
     double t;
   };
 
-  /// A temperature that passes 0 is too low for velocities before. It is the problem, not the velocities.
+  /// Throws for a temperature that reaches 0. Shortly before, it is too low for any velocities, so the
+  /// temperature is the problem.
   [[noreturn]] void refuse_state(const case_config& config, const std::string& path) const {
     const auto& [state, t] = *refused_;
     throw input_error(
@@ -66,10 +68,10 @@ class worst_maxwellian {
   velocity_fit fit_;
   fluid_state state_;
   double t_ = 0.0;
-  std::optional<state_in_time> refused_;  ///< the first without a Maxwellian
+  std::optional<state_in_time> refused_;  ///< first state without a Maxwellian
 };
 
-/// Times at which formulas are sampled.
+/// Returns the times at which formulas are sampled.
 std::vector<double> times_of(const case_config& config, bool steady, int intervals) {
   std::vector<double> times = {0.0};
   for (int n = 1; n <= intervals && !steady; ++n) times.push_back(config.time.end * n / intervals);
@@ -106,7 +108,7 @@ class emitter_check {
           support_.molecules().moments(row.data(), 0, 1, omega.data());
           worst.see_moments(omega.data(), t);
         } catch (const numerical_error&) {
-          continue;  // reported by the step that meets it
+          continue;  // the step that encounters it reports it
         }
     note(worst, "source");
   }

@@ -21,7 +21,7 @@
 namespace apsis {
 namespace {
 
-/// Whether some model has a list of this path, whose name may be that of an option of another model.
+/// Returns whether some model has a list with this path. Its name may be that of an option of another model.
 bool is_list(const std::string& path) {
   for (const model_entry* entry : model_entries())
     for (const model_list& list : entry->lists)
@@ -29,14 +29,14 @@ bool is_list(const std::string& path) {
   return false;
 }
 
-/// Whether the key is one of a table [[output.probe]], [[output.slice]] or [output.reference].
+/// Returns whether the key is in a table [[output.probe]], [[output.slice]] or [output.reference].
 bool is_output_table(const std::string& path) {
   return path.rfind("output.probe.", 0) == 0 || path.rfind("output.slice.", 0) == 0 ||
          path.rfind("output.reference.", 0) == 0;
 }
 
-/// Returns the syntax of a key on the command line. Quotes are optional for unknown keys, so that the key is
-/// reported.
+/// Returns the syntax of a key on the command line. Unknown keys need no quotes, so that the
+/// message is about the key.
 override_form form_of(const std::string& path, const std::string& value) {
   if (looks_like_quantity(value)) return {true, type_advice(key_type::quantity)};
   for (const case_key& key : case_schema())
@@ -80,7 +80,7 @@ const std::vector<std::vector<std::vector<std::string>>>& exclusive_keys() {
   return all;
 }
 
-/// Initial data from a file, or from the caller, replace all others.
+/// Erases all initial data: those from a file, or from the caller, replace them.
 void erase_initial_data(case_text& text) {
   const auto in_table = [](const auto& entry) {
     return entry.first == "initial" || entry.first.rfind("initial.", 0) == 0;
@@ -90,7 +90,7 @@ void erase_initial_data(case_text& text) {
   text.values.erase("model.initial");
 }
 
-/// A key on the command line replaces those in the file that exclude it.
+/// Erases the keys of the file that a key on the command line replaces, because they exclude each other.
 void erase_alternatives(case_text& text, const std::string& path) {
   const bool file = path == "initial.file" && !text.values.contains(path);
   if (file || path == "initial.from") erase_initial_data(text);

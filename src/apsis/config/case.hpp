@@ -63,11 +63,11 @@ struct case_config {
     std::optional<std::string> collisions;  ///< where cells collide; default: the first choice
     std::string reconstruction = "weno5-z";
     limiter_choice limiter = limiter_choice::none;
-    std::string boundary = "periodic";       ///< kind of every face without one of its own
+    std::string boundary = "periodic";       ///< kind of every face without its own kind
     std::optional<std::vector<int>> blocks;  ///< blocks of cells in every direction, one for each process
     geometry_choice geometry = geometry_choice::cartesian;
   } space;
-  /// Whether the last coordinate is the distance r from an axis of symmetry.
+  /// Returns whether the last coordinate is the distance r from an axis of symmetry.
   bool is_axisymmetric() const { return space.geometry == geometry_choice::axisymmetric; }
   std::array<face_table, 6> faces;  ///< tables [boundary.NAME], by face::index(), of models with space
   std::vector<solid_table> solids;  ///< tables [[space.solid]]
@@ -76,17 +76,17 @@ struct case_config {
   struct {
     std::optional<std::vector<std::string>> acceleration;  ///< formulas in t and the position
   } force;
-  /// Table [source], of models with space: variables of the model per unit of time, formulas in t and the
-  /// position.
+  /// Table [source], of models with space: variables of the model per unit of time. They are formulas in
+  /// t and the position.
   state_formulas source_term;
   /// Table [velocity], of models with a velocity grid.
   struct {
-    double max = 0.0;         ///< 0 where the set chooses it
-    point_counts points = 0;  ///< 0 where the set chooses it
+    double max = 0.0;         ///< 0 if the set chooses it
+    point_counts points = 0;  ///< 0 if the set chooses it
     equilibrium_choice equilibrium = equilibrium_choice::automatic;
     std::vector<std::string> set = {};      ///< empty: "uniform"
     int rings = 16, angles = 32;            ///< about the axis of axisymmetric flow
-    std::optional<double> max_across = {};  ///< of rings; default: max
+    std::optional<double> max_across = {};  ///< largest velocity of the rings; default: max
   } velocity;
   /// Table [time].
   struct {
@@ -95,69 +95,72 @@ struct case_config {
     double end = 0.0;
     std::optional<double> dt, cfl, safety;  ///< exactly one is set
     startup_choice startup = startup_choice::none;
-    int startup_growth = default_growth;     ///< ratio of the times of a graded start
-    std::optional<double> tolerance;         ///< of a step; dt, cfl or safety then limits its length
-    std::string controller{usual_step_law};  ///< with a tolerance: the step_law
-    std::optional<double> steady;            ///< change of the state per time at which the run ends
+    int startup_growth = default_growth;  ///< ratio of the times of a graded start
+    std::optional<double> tolerance;      ///< of the error of a step; dt, cfl or safety also limit the step
+    std::string controller{usual_step_law};  ///< step_law of a run with a tolerance
+    std::optional<double> steady;            ///< rate of change of the state at which the run ends
   } time;
-  /// Table [steady]: the run finds the steady state in place of marching. Iterations then count as time: the
-  /// table [time] of the case is not used, and time.end is `iterations`, time.dt 1.
+  /// Table [steady]: the run finds the steady state in place of marching in time. Iterations then count as
+  /// time: time.end is `iterations`, and time.dt is 1. The table [time] of the case is not used.
   struct {
-    std::optional<double> tolerance;  ///< of residual and change of moments; without it the run marches
-    int iterations = 500;             ///< at most
-    int images = 3;                   ///< that the mixture remembers
-    bool ignores_every = false;       ///< output.every of the case is a time: not a whole number
+    std::optional<double> tolerance;  ///< of residual and change of moments; unset: a run in time
+    int iterations = 500;             ///< largest number of iterations
+    int images = 3;                   ///< number of images in the mixture
+    bool ignores_every = false;       ///< output.every of the case is a time, that is, not a whole number
   } steady_state;
   /// Table [output].
   struct {
     double every = 0.0;                                ///< time between snapshots; 0: only the end
-    std::vector<std::string> fields;                   ///< of the snapshot; empty: all of the model
+    std::vector<std::string> fields;                   ///< fields of snapshots; empty: the default fields
     units_choice units = units_choice::dimensionless;  ///< of fields, history and report
     distribution_choice distribution = distribution_choice::end;
     std::vector<std::vector<double>> distribution_at;  ///< points whose cells are written; empty: all cells
-    int stride = 1;  ///< cells from one to the next, in each direction, in snapshots of the distribution
+    int stride = 1;  ///< snapshots of the distribution have every stride-th cell in each direction
     precision_choice precision = precision_choice::double_precision;  ///< of snapshots of the distribution
-    int checkpoint_every = 0;                                         ///< steps; 0: not by steps
-    double checkpoint_minutes = 10.0;                                 ///< 0: not by time
-    int history_rows = 100000;                                        ///< most rows of the history
-    std::vector<line_probe> probes;                                   ///< tables [[output.probe]]
-    std::vector<plane_slice> slices;                                  ///< tables [[output.slice]]
-    std::vector<std::string> surfaces;          ///< names of faces and solid boxes, or all_surfaces
+    int checkpoint_every = 0;                   ///< steps between checkpoints; 0: not by steps
+    double checkpoint_minutes = 10.0;           ///< minutes between checkpoints; 0: not by time
+    int history_rows = 100000;                  ///< largest number of rows of the history
+    std::vector<line_probe> probes;             ///< tables [[output.probe]]
+    std::vector<plane_slice> slices;            ///< tables [[output.slice]]
+    std::vector<std::string> surfaces;          ///< names of faces, solid boxes and bodies, or all_surfaces
     std::optional<reference_values> reference;  ///< table [output.reference]
   } output;
   std::shared_ptr<case_parts> parts = std::make_shared<case_parts>();  ///< objects made from the keys
 };
 
-/// Returns ε as a function of the position in `dimensions` space dimensions. Throws input_error as expression
-/// does, at the place of the key that gives ε.
+/// Returns ε as a function of the position in `dimensions` space dimensions. Throws the input errors of
+/// expression at the place of the key that gives ε.
 expression make_epsilon(const case_config& config, int dimensions);
 
-/// Parses the text of a case file and applies overrides "dotted.key=value". Strict: unknown or missing keys,
-/// wrong types and values out of range are input_errors with file, line, column and a suggestion.
+/// Parses the text of a case file and applies overrides "dotted.key=value". Throws input_error with file,
+/// line, column and a suggestion for unknown or missing keys, wrong types, and values out of range.
 case_config parse_case(std::string_view text, const std::string& file,
                        const std::vector<std::string>& overrides = {});
 
-/// The text of a case: of a file by path, or of a built-in case by name. Throws input_error or io_error.
+/// Returns the text of a case: of a file by path, or of a built-in case by name. Throws
+/// input_error or io_error.
 std::string read_case(const std::string& name_or_path);
 
-/// A case file by path, or a built-in case by name ("paper/bgk-mixed").
+/// Loads a case file by path, or a built-in case by name ("paper/bgk-mixed"), with overrides as in
+/// parse_case(). Throws input_error or io_error.
 case_config load_case(const std::string& name_or_path, const std::vector<std::string>& overrides = {});
 
-/// The velocities of the case, as its model takes them.
+/// Returns the velocities of the case, as its model takes them.
 velocity_config velocities_of(const case_config& config);
 
-/// The model of the case with its parameters, made once for a case and its copies. Throws input_error if
-/// there is no such model.
+/// Returns the model of the case with its parameters, made once for a case and its copies. Throws input_error
+/// if there is no such model.
 std::shared_ptr<const model> make_model(const case_config& config);
 
-/// Returns the place of a key, or of the innermost known table around it; nowhere without one.
+/// Returns the place of a key, or of the innermost table around it that has a known place. Without one,
+/// the place is empty.
 source_place place_of(const case_config& config, const std::string& path);
 
-/// The mesh of the table [space] with its solid boxes. Throws input_error as grid does, and where a box does
-/// not fit.
+/// Returns the mesh of the table [space] with its solid boxes and bodies. Throws the input errors of grid,
+/// and input_error if a box does not fit.
 grid make_mesh(const case_config& config);
 
-/// Names of the built-in cases, sorted.
+/// Returns the names of the built-in cases, sorted.
 std::vector<std::string> case_names();
 
 }  // namespace apsis

@@ -82,7 +82,6 @@ void case_checks::check_mesh() const {
            "give fewer cells or velocities");
 }
 
-/// One number of cells and one interval for each dimension of the model.
 void case_checks::check_dimensions() const {
   const auto wanted = static_cast<std::size_t>(checked_model(config_)->space_dimensions());
   const auto check = [&](const std::string& path, std::size_t given, const char* what) {
@@ -136,7 +135,7 @@ void case_checks::check_discretization() const {
          suggest(*config_.space.collisions, places));
 }
 
-/// The needs of axisymmetric flow, and keys that have a meaning with it alone.
+/// Checks the requirements of axisymmetric flow, and refuses its keys in other cases.
 void case_checks::check_axis() const {
   if (!config_.is_axisymmetric()) {
     for (const char* path : {"velocity.rings", "velocity.angles", "velocity.max_across"})
@@ -168,7 +167,8 @@ void case_checks::check_axis() const {
   check_radial_sides();
 }
 
-/// The axis lies at r = 0 alone, and cylinders r = const are neither periodic nor planes of symmetry.
+/// Checks that the axis lies at r = 0 only. Cylinders r = const must be neither periodic nor
+/// planes of symmetry.
 void case_checks::check_radial_sides() const {
   const std::size_t radial = config_.space.cells.size() - 1;
   const auto check = [&](std::size_t face, bool wrong, const char* reason, const char* remedy) {
@@ -212,7 +212,7 @@ void case_checks::check_solids() const {
                     discretization_key));
 }
 
-/// A wall of a body has any normal, and moves along itself.
+/// Checks that the wall of a body allows any normal, and moves along itself.
 void case_checks::check_body(std::size_t k, const boundary& wall) const {
   const std::string path = fmt::format("space.body.{}", k + 1);
   const source_place place = place_of_emitter(config_, path);
@@ -238,7 +238,8 @@ void case_checks::check_faces() const {
   }
 }
 
-// At centres and edges of cells along the diagonal, up to a thousand points; the run checks every cell.
+// Evaluates epsilon at centres and edges of cells along the diagonal, at about a thousand points or fewer.
+// The run checks every cell.
 void case_checks::check_epsilon() const {
   const bool on_mesh = has_space(model_);
   const auto dimensions = on_mesh ? config_.space.domain.size() : 0;

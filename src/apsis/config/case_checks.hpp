@@ -10,18 +10,18 @@
 
 namespace apsis {
 
-/// Checks of a case that involve several keys. Each throws input_error at the place of the key that is to be
-/// changed. The arguments of the constructor must outlive the object.
+/// Checks of a case that involve several keys. Each throws input_error at the place of the key that must
+/// change. The arguments of the constructor must outlive the object.
 class case_checks {
  public:
-  /// `config`: the values of the keys of `text`, which was read from `file`.
+  /// `config` has the values of the keys of `text`, which was read from `file`.
   case_checks(const case_text& text, const std::string& file, const model_entry& model,
               const case_config& config)
       : text_(text), file_(file), model_(model), config_(config) {}
 
-  /// Checks that there are one number of cells and one interval for each dimension of the model.
+  /// Checks that there is one number of cells and one interval for each dimension of the model.
   void check_dimensions() const;
-  /// Checks everything else.
+  /// Checks all other combinations of keys.
   void check_together() const;
 
  private:

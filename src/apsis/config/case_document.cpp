@@ -41,7 +41,7 @@ struct to_toml_visitor {
     for (const auto& item : x) items.push_back(quoted(item));
     return fmt::format("[{}]", fmt::join(items, ", "));
   }
-  // A list of one item stands for the item.
+  // A list of one item is written as this item.
   std::string operator()(const std::vector<long>& x) const {
     return x.size() == 1 ? (*this)(x.front()) : fmt::format("[{}]", fmt::join(x, ", "));
   }
@@ -230,7 +230,8 @@ std::string schema_text() {
 
 namespace {
 
-/// A formula in quotes. A table in time has several lines, broken after commas, which TOML joins again.
+/// Returns a formula in quotes. A table in time has several lines, broken after commas.
+/// TOML joins them again.
 std::string quoted_formula(const std::string& formula) {
   constexpr std::size_t longest = 200, of_a_line = 90;
   if (formula.size() <= longest || formula.find_first_of("\"\\") != std::string::npos) return quoted(formula);

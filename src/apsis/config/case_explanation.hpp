@@ -7,7 +7,7 @@
 
 namespace apsis {
 
-/// Where the value of a key comes from.
+/// Origin of the value of a key.
 enum class value_origin {
   given,          ///< the case or an override sets it
   default_value,  ///< it is the default of the key
@@ -25,8 +25,8 @@ struct explained_value {
   std::string reason;   ///< why a value was chosen; "" if nothing explains it
 };
 
-/// Returns every key that the model of the case uses, in the order of the schema, then the parameters of the
-/// model, then the keys of the tables of formulas.
+/// Returns every key that the model of the case uses: the keys of the schema in their order, the parameters
+/// of the model, and the keys of tables of formulas.
 std::vector<explained_value> explain(const case_config& config);
 
 /// Returns explain() as lines "key = value    origin (reason)", in columns.

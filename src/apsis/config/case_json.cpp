@@ -9,7 +9,7 @@ namespace {
 
 struct to_json_visitor {
   nlohmann::ordered_json operator()(std::monostate) const { return nullptr; }
-  // A list of one item stands for the item.
+  // A list of one item is written as this item.
   nlohmann::ordered_json operator()(const std::vector<long>& x) const {
     return x.size() == 1 ? nlohmann::ordered_json(x.front()) : nlohmann::ordered_json(x);
   }

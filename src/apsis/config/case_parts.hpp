@@ -16,11 +16,12 @@
 
 namespace apsis {
 
-/// A value that is made once for a key, and again only for another one. Thread-safe.
+/// A value that is made once for a key, and made again only for another key. Thread-safe.
 template <class Key, class Value>
 class made_once {
  public:
-  /// Returns the value for the key, or that of make(), which may throw.
+  /// Returns the stored value if it belongs to `key`. Otherwise stores and returns the value of
+  /// make(), which may throw.
   template <class Make>
   Value get(Key key, const Make& make) {
     const std::lock_guard lock(mutex_);
@@ -38,15 +39,15 @@ class made_once {
   Value value_{};
 };
 
-/// The objects of a case that reading, checking and running it share. Copies of a case share them too, and a
-/// case whose keys were changed gets new ones.
+/// Objects that are made once for reading, checking and running a case. Copies of a case share them. A case
+/// with changed keys gets new ones.
 struct case_parts {
-  /// The entry of a model, and the values that it is made from.
+  /// The entry of a model, and the values from which it is made.
   using model_key = std::pair<const model_entry*, model_config>;
   made_once<model_key, std::shared_ptr<const model>> equation;  ///< make_model()
 
-  /// The model, the kind of sides without one, the tables of sides or boxes, and the constants of their
-  /// formulas.
+  /// The model, the kind of sides without their own kind, the tables of sides (or of boxes and bodies), and
+  /// the constants of their formulas.
   template <class Tables>
   using surface_key = std::tuple<std::shared_ptr<const model>, std::string, Tables, formula_constants>;
   made_once<surface_key<std::array<face_table, 6>>, std::vector<domain::faces>> sides;  ///< make_boundaries()
@@ -54,7 +55,7 @@ struct case_parts {
             std::vector<std::shared_ptr<const boundary>>>
       walls;  ///< make_solid_walls()
 
-  /// The mesh, the boxes, the bodies, which directions are periodic, and the constants of formulas.
+  /// The mesh, the boxes, the bodies, the periodic directions, and the constants of formulas.
   using body_key = std::tuple<std::vector<int>, std::vector<std::array<double, 2>>, std::vector<solid_table>,
                               std::vector<body_table>, std::array<bool, 3>, formula_constants>;
   made_once<body_key, std::shared_ptr<const cut_cells>> cut;  ///< cut_cells_of()

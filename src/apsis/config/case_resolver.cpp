@@ -29,7 +29,7 @@
 namespace apsis {
 namespace {
 
-/// Resolves flat keys: one pass over the schema, then what depends on several keys.
+/// Resolves flat keys: in one pass over the schema, then by rules for several keys.
 class resolver {
  public:
   resolver(case_text text, std::string file) : text_(std::move(text)), file_(std::move(file)) {}
@@ -70,7 +70,7 @@ class resolver {
  private:
   const raw_value* find(const std::string& path) const { return text_.find(path); }
 
-  /// Whether the case has a table, or an override a key of it.
+  /// Returns whether the case has a table, or an override sets one of its keys.
   bool is_given(const std::string& table) const {
     return text_.tables.contains(table) ||
            std::any_of(text_.values.begin(), text_.values.end(),
@@ -89,7 +89,7 @@ class resolver {
                                  : raw.place;
   }
 
-  /// A formula begins after its quotation mark; other text has no columns.
+  /// Returns the place of a formula, which begins after its quotation mark; other values have no mark.
   static source_place place_of_formula(const raw_value& raw) {
     source_place place = raw.value_place;
     if (place.column > 0 && std::holds_alternative<std::string>(raw.value)) ++place.column;
@@ -98,7 +98,7 @@ class resolver {
 
   std::shared_ptr<const model> checked_model() const { return apsis::checked_model(config_); }
 
-  /// The table [initial], or a name of data of the model, by default its first.
+  /// Reads the table [initial], or the name of data of the model, by default its first.
   void take_initial_data() {
     const auto equation = checked_model();
     config_.prescribed = read_initial_table(text_, *equation, model_->name, config_.constants);
@@ -213,7 +213,7 @@ class resolver {
                        key.type == key_type::integer || key.type == key_type::integers ? "100" : "1.0");
   }
 
-  /// The table [gas], and with it everything that has a unit.
+  /// Reads the table [gas], and converts every value that has a unit.
   void take_gas() {
     for (const case_key& key : case_schema())
       if (is_in(key.path, "gas")) take(key);
@@ -222,7 +222,7 @@ class resolver {
     if (config_.scales) set_gas_of_model(text_, *model_, config_);
   }
 
-  /// Chooses keys that the case leaves out by the number of dimensions.
+  /// Sets keys that the case omits, according to the number of dimensions.
   void complete_space() {
     const std::size_t dimensions = config_.space.cells.size();
     if (find("space.domain") == nullptr)
@@ -230,12 +230,12 @@ class resolver {
     if (find(discretization_key) == nullptr)
       config_.space.discretization = default_discretization(static_cast<int>(dimensions)).name;
     if (config_.is_axisymmetric()) complete_axis();
-    // Where f jumps along rays, nonlinear weights may never settle.
+    // Nonlinear weights may never settle where f jumps along rays.
     if (config_.steady_state.tolerance && find("space.reconstruction") == nullptr)
       config_.space.reconstruction = "upwind5";
   }
 
-  /// Point values of r f, and the axis where the domain reaches it.
+  /// Chooses point values of r f, and the boundary "axis" if the domain reaches r = 0.
   void complete_axis() {
     const std::size_t radial = config_.space.cells.size() - 1;
     if (find(discretization_key) == nullptr) config_.space.discretization = "finite-difference";
@@ -244,7 +244,7 @@ class resolver {
     if (!kind && config_.space.domain[radial][0] == 0.0) kind = "axis";
   }
 
-  /// The table [parameters].
+  /// Reads the table [parameters].
   void take_constants() {
     for (const auto& [path, raw] : text_.values) {
       if (!is_in(path, "parameters")) continue;
@@ -290,14 +290,14 @@ class resolver {
     }
   }
 
-  /// Whether the case leaves the parameter to the model.
+  /// Returns whether the case leaves the parameter to the model.
   bool is_automatic(const model_parameter& p) const {
     const raw_value* raw = find("model." + p.name);
     const auto* word = raw == nullptr ? nullptr : std::get_if<std::string>(&raw->value);
     return p.automatic && (raw == nullptr || (word != nullptr && *word == automatic_word));
   }
 
-  /// Parameters that the case leaves to the model, from its initial data.
+  /// Chooses parameters that the case leaves to the model, from its initial data.
   void choose_parameters() {
     for (const model_parameter& p : model_->parameters) {
       if (!is_automatic(p)) continue;
@@ -314,13 +314,13 @@ class resolver {
     }
   }
 
-  /// Iterations to a steady state count as time.
+  /// Makes iterations to a steady state count as time.
   void count_iterations() {
     if (!config_.steady_state.tolerance) return;
     config_.time = {};
     config_.time.end = config_.steady_state.iterations;
     config_.time.dt = 1.0;
-    // That of a case in time is a time.
+    // In a case for a run in time, output.every is a time.
     double& every = config_.output.every;
     config_.steady_state.ignores_every = every != std::floor(every);
     if (config_.steady_state.ignores_every) every = 0.0;

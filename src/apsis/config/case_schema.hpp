@@ -17,11 +17,11 @@ namespace apsis {
 /// An interval of space, [lower, upper].
 using interval = std::array<double, 2>;
 
-/// Value of a key, and nothing where an optional key is not set.
+/// Value of a key; std::monostate if an optional key is not set.
 using case_value = std::variant<std::monostate, long, double, std::string, std::vector<std::string>,
                                 std::vector<long>, std::vector<interval>, std::vector<std::vector<double>>>;
 
-/// Which values a key takes.
+/// The values that a key takes.
 enum class key_type {
   integer,    ///< long
   number,     ///< double; an integer of TOML too
@@ -35,20 +35,20 @@ enum class key_type {
   points      ///< std::vector<std::vector<double>>: lists of coordinates
 };
 
-/// Which models a key belongs to; a key that the model does not use is an error, not ignored.
+/// The models to which a key belongs. A key that the model does not use is an error, not ignored.
 enum class key_scope {
   always,   ///< all
   space,    ///< those with space
   velocity  ///< those with a velocity grid
 };
 
-/// One key of a case file. The tables of keys (config/keys/) drives reading, writing and documentation.
+/// One key of a case file. The tables of keys (config/keys/) drive reading, writing and documentation.
 struct case_key {
   std::string path{};                   ///< "space.cells"
   key_type type = key_type::text;       ///< which alternative of case_value it has
   key_scope scope = key_scope::always;  ///< models that use it
-  bool required = false;                ///< else the default is that of case_config
-  /// Whether the keys before make a required key optional.
+  bool required = false;                ///< if false, the default is that of case_config
+  /// Returns whether keys that were read before make a required key optional.
   std::function<bool(const case_config&)> optional = {};
   std::string unit{};            ///< "dimensionless", "steps", …; "" for text
   apsis::dimension dimension{};  ///< with a table [gas], values with units of this dimension are valid
@@ -58,39 +58,41 @@ struct case_key {
   std::function<std::vector<std::string>(const case_config&)> choices = {};  ///< valid names; empty: any text
   std::string doc{};  ///< meaning, as `apsis show case` prints it
   std::function<void(case_config&, const case_value&)> store = {};  ///< assigns a checked value
-  std::function<case_value(const case_config&)> load = {};  ///< monostate where an optional key is not set
-  /// Whether a name outside `choices` is valid: "" if it is, why not if it is meant to be, nothing otherwise.
+  std::function<case_value(const case_config&)> load = {};  ///< monostate if an optional key is not set
+  /// Judges a name outside `choices`. Returns "" if it is valid, the reason if it is nearly
+  /// valid, otherwise nothing.
   std::function<std::optional<std::string>(const std::string& name)> also = {};
 
   static constexpr double infinite = std::numeric_limits<double>::infinity();  ///< no limit
 };
 
-/// Every key except the parameters of the models, in the order in which they are read and written.
+/// Returns every key except the parameters of the models, in the order in which they are read and written.
 const std::vector<case_key>& case_schema();
 
-/// Keys that set the step: time.dt, time.cfl, time.safety. A case has one of them.
+/// Returns the keys that set the step: time.dt, time.cfl, time.safety. A case has one of them.
 const std::vector<std::string>& step_keys();
 
-/// Whether a key is one of step_keys().
+/// Returns whether a key is one of step_keys().
 bool is_step_key(const std::string& key);
 
-/// Whether a case of this model may have the key.
+/// Returns whether a case of this model may have the key.
 bool applies(const case_key& key, const model_entry& model);
 
-/// "an integer", "a number", …, as messages and documentation say it.
+/// Returns "an integer", "a number", … for messages and documentation.
 std::string type_text(key_type type);
 
-/// "at least 1 and at most 100", "above 0"; "" without limits.
+/// Returns "at least 1 and at most 100", "above 0"; "" without limits.
 std::string range_text(const case_key& key);
 
-/// The value as TOML.
+/// Returns the value as TOML.
 std::string to_toml(const case_value& value);
 
-/// Documentation of every key: type, unit, default, allowed values, meaning, with the parameters of the
-/// models.
+/// Returns the documentation of every key: type, unit, default, allowed values and meaning. It includes the
+/// parameters of the models.
 std::string schema_text();
 
-/// The case as a file that parse_case reads back to the same case; only the keys that its model uses.
+/// Returns the case as the text of a file, with the keys that its model uses. parse_case reads it
+/// back to the same case.
 std::string to_toml(const case_config& config);
 
 }  // namespace apsis

@@ -34,8 +34,7 @@ void check_size(std::string_view text, const std::string& file) {
   }
 }
 
-/// Converts a value of the key at `place`; items of a list have places of their own in `file`, where it is
-/// known.
+/// Converts a value of the key at `place`. If `file` is given, items of a list have their own places in it.
 raw_value convert(const toml::node& node, const source_place& place, const std::string& file = "") {
   raw_value raw;
   raw.place = place;
@@ -67,10 +66,10 @@ void add_value(case_text& out, const std::string& path, const toml::key& key, co
   out.values.emplace(path, convert(node, place_of(key.source(), file), file));
 }
 
-/// Levels of tables below one that may have them, [[initial.region.part]], or shapes of shapes.
+/// Largest depth of nested tables, such as [[initial.region.part]] or shapes of shapes.
 constexpr int most_levels = 12;
 
-/// Adds a value, or the values of a table or of a list of tables, whose items are numbered from 1:
+/// Adds a value, or the values of a table or of a list of tables. Items of a list are numbered from 1:
 /// "initial.region.1.T".
 void add_nested(case_text& out, const std::string& path, const toml::key& key, const toml::node& node,
                 const std::string& file, int levels) {

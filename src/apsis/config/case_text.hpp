@@ -18,7 +18,7 @@ struct raw_value {
   std::variant<std::monostate, long, double, std::string, list> value;  ///< value in TOML
   std::string what;          ///< description for messages: "the integer 5", "a boolean"
   source_place place;        ///< place of the key or override; of the key for list elements
-  source_place value_place;  ///< place of the value; of the list element
+  source_place value_place;  ///< place of the value, or of the list element
 };
 
 /// Keys of a case by dotted path, and places of its tables. Items of a list of tables are numbered from 1.
@@ -35,7 +35,7 @@ struct case_text {
 constexpr std::size_t longest_case_file = 1'000'000;  ///< bytes
 constexpr std::size_t longest_case_line = 4096;       ///< bytes; bounds the depth of dotted keys as well
 
-/// Reads TOML into flat keys. Throws input_error with line and column: too large, not TOML.
+/// Reads TOML into flat keys. Throws input_error with line and column if the text is too large or not TOML.
 case_text read_case_text(std::string_view text, const std::string& file);
 
 /// Syntax of an override: whether its key takes text, and the suggestion if its value is not TOML.
@@ -44,8 +44,8 @@ struct override_form {
   std::string suggestion = "write a number, or \"a text\"";  ///< "write for example [0.0, 2.0]"
 };
 
-/// Sets one key from "dotted.key=value"; the value is TOML, text may stand without quotes, and a number may
-/// be a fraction like 1/128, or lack digits on one side of its point: .5, 1. Throws input_error.
+/// Sets one key from "dotted.key=value". The value is TOML, but text may stand without quotes. A number may
+/// be a fraction like 1/128, or lack digits on one side of its point, as .5 does. Throws input_error.
 void apply_override(case_text& target, const std::string& path, const std::string& value,
                     const override_form& form, const source_place& place);
 

@@ -228,7 +228,7 @@ std::string formula_text(const raw_value& raw, const std::string& path) {
   refuse(raw, path, "a number or a formula is needed", "write for example \"1 + 0.2*sin(pi*x)\"");
 }
 
-/// Lists of numbers and formulas of constants, as texts "1, 0".
+/// Returns lists of numbers and formulas of constants as texts, such as "1, 0".
 std::vector<std::string> to_tuples(const std::string& path, const raw_value& raw,
                                    const formula_constants& constants) {
   const auto* items = std::get_if<raw_value::list>(&raw.value);

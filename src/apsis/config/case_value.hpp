@@ -8,16 +8,16 @@
 
 namespace apsis {
 
-/// Returns the value in the type of its key, checked against its range and its choices; `so_far` holds the
-/// keys read before (the choices of initial data depend on the model). Throws input_error at the
-/// place of the key.
+/// Returns the value in the type of its key, checked against its range and its choices. `so_far`
+/// has the keys read before, since choices of initial data depend on the model. Throws input_error
+/// at the place of the key.
 case_value to_value(const case_key& key, const raw_value& raw, const case_config& so_far);
 
 /// Returns the value of a string option: a predefined name or a formula, which may use `constants`. Throws
 /// input_error at the place of the key, or within the formula.
 std::string to_text(const model_option& text, const raw_value& raw, const formula_constants& constants);
 
-/// The value of an automatic parameter that leaves it to the model.
+/// Value of an automatic parameter that leaves the choice to the model.
 inline constexpr const char* automatic_word = "auto";
 
 /// Returns the value of a list of texts: names, or formulas in `variables`, which may use `constants`. Throws

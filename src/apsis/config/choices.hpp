@@ -63,7 +63,7 @@ template <>
 inline constexpr std::array choice_names<equilibrium_choice> = {"auto", "formula", "discrete"};
 /// @endcond
 
-/// The name of an enumerator in a case file: "positivity".
+/// Returns the name of an enumerator in a case file, such as "positivity".
 template <class Choice>
 constexpr const char* choice_name(Choice choice) {
   return choice_names<Choice>[static_cast<std::size_t>(choice)];

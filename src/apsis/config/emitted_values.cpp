@@ -11,7 +11,8 @@
 namespace apsis {
 namespace {
 
-/// Points of a box at the ends, the middle and the quarters of its sides; `flat`: a direction without extent.
+/// Returns the points of a box at the ends, middles and quarters of its sides. `flat` is a
+/// direction without extent.
 std::vector<position> points_of_box(const std::vector<std::array<double, 2>>& sides, int flat) {
   constexpr int parts = 4;
   std::vector<position> points = {position{}};
@@ -35,7 +36,7 @@ std::vector<position> points_of_face(const case_config& config, const face& wher
   return points_of_box(sides, where.direction);
 }
 
-/// Points on the walls of a body, or of the solid faces next to it.
+/// Returns the middles of about a hundred wall segments of a body, or of all if there are fewer.
 std::vector<position> points_of_body(const case_config& config, std::size_t body) {
   constexpr std::size_t most = 100;
   std::vector<position> points;
@@ -48,7 +49,7 @@ std::vector<position> points_of_body(const case_config& config, std::size_t body
   return some;
 }
 
-/// The moments of functions of the velocity at all velocities.
+/// Returns the moments of functions of the velocity at all velocities.
 std::array<double, 5> moments_of(const emitted_values& values, const gas& molecules, double t,
                                  const position& x) {
   const velocity_set& velocities = molecules.velocities();

@@ -17,32 +17,32 @@ namespace apsis {
 struct emitter {
   std::string path;              ///< its table: "boundary.left"
   std::string kind;              ///< kind of the boundary condition
-  const state_formulas* given;   ///< its values, in the configuration
+  const state_formulas* given;   ///< values of its variables, owned by the configuration
   std::vector<position> points;  ///< points at which formulas are sampled
 };
 
 /// Returns the sides of the domain, the solid boxes and the bodies. The configuration must outlive them.
 std::vector<emitter> emitters_of(const case_config& config);
 
-/// The variables of the boundary condition of an emitter, by formulas or their defaults.
+/// The variables of the boundary condition of an emitter, given by formulas or defaults.
 class emitted_values {
  public:
-  /// Throws input_error where the model cannot have the boundary condition.
+  /// Throws input_error if the model cannot have the boundary condition.
   emitted_values(const case_config& config, const model& equation, const emitter& of);
 
-  /// Whether the condition has a variable of this name.
+  /// Returns whether the condition has a variable of this name.
   bool has(const std::string& name) const { return all_.contains(name); }
-  /// Whether f is given as a function of the velocity.
+  /// Returns whether f is given as a function of the velocity.
   bool by_functions() const { return has("f") || has("g"); }
-  /// Whether the condition emits a gas of a given temperature or distribution.
+  /// Returns whether the condition emits a gas of a given temperature or distribution.
   bool any() const { return by_functions() || has("T"); }
-  /// Whether no value depends on t.
+  /// Returns whether no value depends on t.
   bool steady() const;
-  /// Returns component k of a variable; the default where it is not given.
+  /// Returns component k of a variable; the default if it is not given.
   double at(const std::string& name, std::size_t k, double t, const position& x,
             const position& v = {}) const;
-  /// Returns the state that is emitted, with ρ = 1 where the density is not given; by the moments of
-  /// functions of the velocity at the velocities of the gas. It may be inadmissible.
+  /// Returns the emitted state, with ρ = 1 if the density is not given. For functions of the velocity, it
+  /// follows from their moments at the velocities of the gas. The state may be inadmissible.
   fluid_state state(const gas& molecules, double t, const position& x) const;
 
  private:

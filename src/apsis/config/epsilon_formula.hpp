@@ -7,13 +7,13 @@
 
 namespace apsis {
 
-/// The relaxation time ε of a case, dimensionless, ≥ 0: a number or a formula in x, y, z, or a formula for a
-/// Knudsen number or a rarefaction parameter with its conversion.
+/// The relaxation time ε ≥ 0 of a case, dimensionless. It is given by a number or formula in x, y, z for ε,
+/// for a Knudsen number, or for a rarefaction parameter. The last two have a conversion.
 struct epsilon_formula {
   std::string text = "1";             ///< number or formula, as given
   std::string key = "model.epsilon";  ///< path of the key that gives the text
   std::string mean_free_path = {};    ///< definition of λ, for "model.knudsen.value"
-  value_conversion conversion = {};   ///< of the value of the text to ε
+  value_conversion conversion = {};   ///< conversion of the value of the text to ε
 
   /// Sets ε itself.
   epsilon_formula& operator=(std::string epsilon) {

@@ -32,7 +32,8 @@ std::array<double, 3> value_of(const formulas& all, double t, const position& x)
   return a;
 }
 
-/// Times at which the bound is sampled: many, as long as that takes a fraction of a second.
+/// Returns the number of times at which the bound is sampled: many, as long as that takes a
+/// fraction of a second.
 int samples_in_time(int cells) {
   constexpr int most = 2000, least = 20, evaluations = 2'000'000;
   return std::clamp(evaluations / cells, least, most);
@@ -62,7 +63,7 @@ std::optional<acceleration> make_acceleration(const case_config& config, const m
       const auto a = of.value(t, mesh.centre(cell));
       for (std::size_t k = 0; k < a.size(); ++k) of.largest[k] = std::max(of.largest[k], std::abs(a[k]));
     }
-  constexpr double margin = 1.01;  // between the samples
+  constexpr double margin = 1.01;  // for values between the samples
   if (!constant)
     for (double& bound : of.largest) bound *= margin;
   return of;

@@ -8,10 +8,10 @@
 
 namespace apsis {
 
-/// Returns the acceleration of the table [force], bounded by its largest values at the cell centres: exactly
-/// where it does not depend on t, otherwise from samples of [0, time.end] with a margin of one percent.
-/// Throws input_error at the place of a formula: more of them than velocity dimensions, or a value that is
-/// not finite.
+/// Returns the acceleration of the table [force] with bounds of its components; nothing without the table.
+/// The bounds are exact for constants. Otherwise they are the largest values at the cell centres, in samples
+/// of [0, time.end], with a margin of one percent. Throws input_error at the place of a formula if there are
+/// more formulas than velocity dimensions, or if a value is not finite.
 std::optional<acceleration> make_acceleration(const case_config& config, const model& equation);
 
 }  // namespace apsis

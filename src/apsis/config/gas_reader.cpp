@@ -29,13 +29,13 @@ bool is_text(const raw_value& raw, const char* expected) {
   return text != nullptr && *text == expected;
 }
 
-/// The place of a table; the first line where its keys are overrides.
+/// Returns the place of a table; the first line if its keys are overrides.
 source_place place_of_table(const case_text& text, const case_config& config, const std::string& table) {
   const auto found = text.tables.find(table);
   return found == text.tables.end() ? source_place{config.source, 1, 1} : found->second;
 }
 
-/// The gas of a table [gas], from its name and its own values.
+/// Returns the gas of a table [gas], from its name and its own values.
 gas_species make_gas(const case_text& text, const case_config& config, double temperature) {
   const auto& given = config.gas;
   gas_species gas = given.name ? *try_find_gas(*given.name) : gas_species{};
@@ -229,7 +229,7 @@ class epsilon_reader {
     set(raw, {.key = "model.rarefaction", .conversion = {std::numbers::sqrt2, true}});
   }
 
-  /// ε ← the converted number, or the formula, whose conversion is returned.
+  /// Sets ε to the converted number, or to the formula; derive() returns its conversion.
   void set(const raw_value& raw, epsilon_formula of) {
     check_rate(raw, of.key);
     of.text = std::get<std::string>(to_value(key(of.key), raw, config_));
@@ -259,7 +259,8 @@ class epsilon_reader {
            "add collision_rate = \"viscosity\" to [model], or give epsilon");
   }
 
-  /// That of the model; its default in place of a value out of range, which is refused with the others.
+  /// Returns the viscosity exponent of the model. For a value out of range, which is refused later, it
+  /// returns the default.
   double viscosity_exponent() const {
     const auto& all = model_.parameters;
     const auto known = std::find_if(all.begin(), all.end(),
@@ -305,7 +306,7 @@ class epsilon_reader {
   case_text& text_;
   const model_entry& model_;
   const case_config& config_;
-  std::optional<epsilon_formula> formula_;  ///< of a key other than model.epsilon
+  std::optional<epsilon_formula> formula_;  ///< formula of a key other than model.epsilon
 };
 
 }  // namespace

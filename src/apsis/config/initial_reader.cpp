@@ -68,7 +68,7 @@ class reader_of_initial_state {
     return std::find(variables_.begin(), variables_.end(), name) != variables_.end();
   }
 
-  /// The keys of data that are not in the case; false for other keys.
+  /// Reads a key of data that are not in the case. Returns false for other keys.
   bool take_source(const std::string& path, const std::string& name, const raw_value& raw) {
     const auto* text = std::get_if<std::string>(&raw.value);
     if (name == "file") {
@@ -90,7 +90,7 @@ class reader_of_initial_state {
     return true;
   }
 
-  /// Data come from one place.
+  /// Checks that the data come from one place.
   void check_source() const {
     const raw_value* time = find("initial.time");
     if (time != nullptr && table_.time && table_.file.empty())

@@ -8,7 +8,8 @@
 namespace apsis {
 namespace {
 
-/// Whether the method has an SSP coefficient; a file that is no method is refused by the run, with its place.
+/// Returns whether the method has an SSP coefficient. The run refuses a file that is no
+/// method, with its place.
 bool has_ssp_coefficient(const std::string& method) {
   try {
     return find_integrator(method).ssp_coefficient > 0.0;

@@ -10,9 +10,9 @@ namespace apsis {
 /// Largest number of a table in a list of tables.
 constexpr int most_listed_tables = 1000;
 
-/// A key of a table in a list, "radius" of the second table for "space.body.2.radius".
+/// A key of a table in a list: "radius" of the second table for "space.body.2.radius".
 struct key_of_table {
-  std::size_t number = 0;  ///< of the table, from 1
+  std::size_t number = 0;  ///< number of the table, from 1
   std::string key;         ///< the rest of the path
 };
 

@@ -17,7 +17,8 @@
 namespace apsis {
 namespace {
 
-/// A coarse mesh of the domain, without solids and bodies, whose faces are on edges of the mesh of the case.
+/// Returns a coarse mesh of the domain. Solids and bodies are omitted: their faces lie on edges of
+/// the mesh of the case.
 grid sample_mesh(const case_config& config) {
   constexpr int per_direction[] = {64, 8, 4};
   case_config sampled = config;
@@ -28,8 +29,8 @@ grid sample_mesh(const case_config& config) {
   return make_mesh(sampled);
 }
 
-/// Returns the longest step by the case: time.dt, or the CFL rule; time.safety as a multiple of the CFL step
-/// of number 1, which it resembles.
+/// Returns the longest step of the case, by time.dt or by the CFL rule. time.safety counts as a CFL number,
+/// which it resembles.
 double step_of(const case_config& config, const model& equation) {
   if (config.time.dt) return *config.time.dt;
   const grid mesh = make_mesh(config);
@@ -38,7 +39,8 @@ double step_of(const case_config& config, const model& equation) {
   return (config.time.cfl ? *config.time.cfl : config.time.safety.value_or(1.0)) / equation.cfl_rate(spacing);
 }
 
-/// u ← the initial data of the case at a point of space; empty if they are not in the case.
+/// Returns a function for u ← the initial data of the case at a point of space. It is empty if they
+/// are not in the case.
 std::function<void(const position&, std::span<double>)> data_of(const case_config& config,
                                                                 const model& equation) {
   if (config.prescribed.given_elsewhere()) return {};
@@ -52,8 +54,8 @@ std::function<void(const position&, std::span<double>)> data_of(const case_confi
   return {};
 }
 
-/// Stores the extremes of CΔt/ε over the domain in the request; leaves them empty if the model does not know
-/// its relaxation time, or the data are not admissible, which the run reports.
+/// Stores the extremes of CΔt/ε over the domain in the request. Leaves them empty if the relaxation time of
+/// the model is unknown, or if the data are not admissible, which the run reports.
 void compute_ratios(const case_config& config, const model& equation, method_request& wanted) {
   if (!equation.has_relaxation_time()) return;
   const int dimensions = equation.space_dimensions();
@@ -85,7 +87,7 @@ void compute_ratios(const case_config& config, const model& equation, method_req
   wanted.highest_ratio = highest;
 }
 
-/// Whether a reconstruction, which an unknown name is not, keeps signs without a limiter.
+/// Returns whether a reconstruction keeps signs without a limiter; false for an unknown name.
 bool first_order(const std::string& name) {
   const reconstruction_entry* scheme = try_find_reconstruction(name);
   return scheme != nullptr && scheme->make()->order() == 1;

@@ -17,8 +17,8 @@
 namespace apsis {
 namespace {
 
-constexpr long longest_probe = 1'000'000;  ///< of a probe
-constexpr std::size_t longest_name = 64;   ///< of a file
+constexpr long longest_probe = 1'000'000;  ///< largest number of points
+constexpr std::size_t longest_name = 64;   ///< of a file, in characters
 
 /// The keys of one table of a list.
 struct output_item {
@@ -130,7 +130,7 @@ class reader_of_output {
     return fmt::format("[{}]", fmt::join(middle, ", "));
   }
 
-  /// The name of a file, by default "probe-1"; no name occurs twice.
+  /// Returns the name of a file, by default such as "probe-1". No name may occur twice.
   template <class Item>
   std::string name_of(const output_item& item, const std::string& list,
                       const std::vector<Item>& earlier) const {
@@ -166,7 +166,7 @@ class reader_of_output {
     return static_cast<long>(x);
   }
 
-  /// A point of the domain: a list of its coordinates, in one dimension also a number.
+  /// Returns a point of the domain from a list of its coordinates; in one dimension also from a number.
   std::vector<double> point(const raw_value& raw, const std::string& path) const {
     std::vector<double> x;
     if (const auto* list = std::get_if<raw_value::list>(&raw.value)) {
@@ -216,7 +216,7 @@ class reader_of_output {
                                     path, with));
   }
 
-  /// Names of the faces that are not periodic, of the solid boxes and of the bodies.
+  /// Returns the names of the faces that are not periodic, of the solid boxes and of the bodies.
   std::vector<std::string> open_surfaces() const {
     std::vector<std::string> names;
     const auto sides = make_boundaries(config_, make_model(config_));
@@ -229,7 +229,7 @@ class reader_of_output {
 
   void check_surfaces() const {
     const auto given = text_.values.find("output.surfaces");
-    // A resolved case states that there are none.
+    // A resolved case has an empty list if no surfaces are written.
     if (given == text_.values.end() || config_.output.surfaces.empty()) return;
     std::vector<std::string> names = open_surfaces();
     if (names.empty())

@@ -15,7 +15,7 @@
 namespace apsis {
 namespace {
 
-/// Points of a line at which regions are looked for, per cell and at most in total.
+/// Numbers of points of a line at which regions are sought: per cell, and at most in total.
 constexpr int points_of_a_cell = 64, most_points = 1'000'000;
 
 std::string position_text(const position& x, int dimensions) {
@@ -34,7 +34,8 @@ struct prescribed_data::formula {
   bool of_velocity = false;  ///< depends also on the velocity
 };
 
-/// A state, or a part of one: formulas of the variables of a form; a region need not have all of them.
+/// A state, or the part of one that a region replaces: formulas of the variables of a form. A region need
+/// not have all of them.
 struct prescribed_data::state {
   struct part {
     expression weight;
@@ -111,7 +112,8 @@ class prescribed_data::compiler {
  private:
   static std::size_t size(const data_variable& variable) { return static_cast<std::size_t>(variable.size); }
 
-  /// Fills in defaults. Throws input_error if a required variable is missing; `why` it is required here.
+  /// Fills in defaults. Throws input_error if a required variable is missing; `why` is the
+  /// reason in the message.
   void complete(state& made, const std::string& path, const std::string& why) const {
     std::size_t at = 0;
     for (const auto& variable : made.form.variables)
@@ -125,7 +127,7 @@ class prescribed_data::compiler {
       }
   }
 
-  /// Formulas refer to the position only where there is space.
+  /// Compiles a formula, which may depend on the position only if there is space.
   expression compile(const std::string& path, const std::string& text) const {
     expression made(text, place_of_(path), kind_);
     if (!on_mesh_ && !made.is_constant())
@@ -134,7 +136,7 @@ class prescribed_data::compiler {
     return made;
   }
 
-  /// The form of the variables of all layers together, since a region changes some of those below.
+  /// Returns the form of the variables of all layers together, since a region changes some of those below.
   data_form layers_form() const {
     std::set<std::string> names;
     for (const auto& [name, formulas] : table_.state) names.insert(name);
@@ -143,7 +145,7 @@ class prescribed_data::compiler {
     return form_with(names, "initial");
   }
 
-  /// The first form with all of these variables, and without other required ones if there is such a form.
+  /// Returns the first form with all of these variables, if possible one without other required variables.
   data_form form_with(const std::set<std::string>& names, const std::string& path) const {
     const data_form* fallback = nullptr;
     for (const auto& form : forms_) {
@@ -244,7 +246,7 @@ prescribed_data::prescribed_data(prescribed_data&&) noexcept = default;
 void prescribed_data::operator()(const position& x, std::span<double> u) const {
   const auto covers = [&x](const region& one) { return one.contains(x); };
   if (below_ && std::none_of(regions_.begin(), regions_.end(), covers)) return below_(x, u);
-  const state* top = base_.get();  // of parts, or of the form of all layers
+  const state* top = base_.get();  // has parts, or the form of all layers
   std::vector<const formula*> values(base_->values.size());
   source_place place = base_->place;
   const auto lay = [&](const state& layer) {
@@ -328,7 +330,8 @@ std::vector<double> prescribed_data::jumps(const grid& mesh) const {
   return found;
 }
 
-/// Returns where the condition changes on a line, to the last bit: the first number on the right side.
+/// Returns the points of a line at which the condition changes: the first numbers on the right
+/// side, to the last bit.
 std::vector<double> prescribed_data::region::ends(const grid& mesh) const {
   const long steps = mesh.size() * std::clamp<long>(most_points / mesh.size(), 2, points_of_a_cell);
   const double lower = mesh.centre(0, 0) - 0.5 * mesh.spacing(0),
@@ -339,7 +342,8 @@ std::vector<double> prescribed_data::region::ends(const grid& mesh) const {
   bool was_inside = inside(before);
   for (long k = 0; k <= steps; ++k) {
     interruptible::poll();
-    // Midpoints of equal intervals, since regions often end where cells do, and the end of the domain.
+    // Samples midpoints of equal intervals, since regions often end where cells do, and then
+    // the end of the domain.
     const double at =
         k == steps ? upper
                    : lower + (upper - lower) * ((static_cast<double>(k) + 0.5) / static_cast<double>(steps));

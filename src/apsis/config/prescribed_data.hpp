@@ -16,16 +16,16 @@ namespace apsis {
 /// The initial data of the table [initial]: a row at every point of space. Thread-safe.
 class prescribed_data {
  public:
-  /// Returns the place of a key of the case, "initial.region.1.T".
+  /// Returns the place of a key of the case, such as "initial.region.1.T".
   using places = std::function<source_place(const std::string& path)>;
 
   /// u ← the row at x.
   using row_function = std::function<void(const position& x, std::span<double> u)>;
 
-  /// Compiles the formulas of a case with a table [initial]; `equation`, its model, must outlive this object.
-  /// `below`: the state below all regions where the case does not give it (initial_table::given_elsewhere).
-  /// Throws input_error: a formula that cannot be read, or variables that are unknown, missing, or of the
-  /// wrong size.
+  /// Compiles the formulas of a case with a table [initial]. `equation`, its model, must outlive this
+  /// object. `below` is the state below all regions if the case does not give it
+  /// (initial_table::given_elsewhere). Throws input_error if a formula cannot be read, or if variables are
+  /// unknown, missing, or of the wrong size.
   prescribed_data(const case_config& config, const model& equation, const places& place_of,
                   row_function below = {});
   ~prescribed_data();
@@ -35,9 +35,9 @@ class prescribed_data {
   /// state that has no row (ρ ≤ 0, T ≤ 0).
   void operator()(const position& x, std::span<double> u) const;
 
-  /// Returns the ends of regions on a line in increasing order, to the last bit; empty in several dimensions.
-  /// Regions thinner than about a sixtieth of a cell may be missed. Throws input_error if a region contains
-  /// no point of the mesh.
+  /// Returns the ends of regions on a line in increasing order, exact to the last bit; empty in several
+  /// dimensions. Regions thinner than about a sixtieth of a cell may be missed. Throws input_error if a
+  /// region contains no point of the mesh.
   std::vector<double> jumps(const grid& mesh) const;
 
  private:
@@ -45,7 +45,7 @@ class prescribed_data {
   struct formula;
   struct state;
   struct region;
-  /// Appends the value at x, or the values at all velocities.
+  /// Appends the value of a formula at x, or its values at x and all velocities.
   void append(const formula& of, const position& x, std::vector<double>& numbers) const;
   std::unique_ptr<state> base_;
   row_function below_;  ///< in place of `base_`, if it is set

@@ -29,7 +29,7 @@ namespace apsis {
 namespace {
 
 const std::string profile_key = ".profile.file";
-/// Five variables of so many cells fit into a file of longest_case_file bytes, from which runs continue.
+/// Five variables of so many cells fit into longest_case_file bytes. Longer cases could not be continued.
 constexpr std::size_t most_cells = 8000;
 
 /// A side of an earlier result.
@@ -64,7 +64,7 @@ class earlier_side {
   }
 
  private:
-  /// Dimensionless numbers are those of the scales of the result.
+  /// Checks that dimensionless numbers of the result have the scales of the case.
   void check_scales() const {
     const auto manifest =
         nlohmann::ordered_json::parse(file_.read_text_attribute("manifest"), nullptr, false);
@@ -87,11 +87,11 @@ class earlier_side {
     return values;
   }
 
-  /// The number on a line, or a table through the cells at the side.
+  /// Returns a number on a line, otherwise a table of the values in the cells at the side.
   std::string formula(const std::string& name, const dimension& wanted) const {
     const std::vector<double> values = numbers("fields/" + name, wanted);
     const auto count = std::accumulate(shape_.begin(), shape_.end(), std::size_t{1}, std::multiplies<>());
-    std::vector<std::size_t> along;  // directions
+    std::vector<std::size_t> along;  // directions along the side
     std::vector<std::vector<double>> centres;
     for (std::size_t k = 0; k < shape_.size(); ++k) {
       if (k == at(where_.direction)) continue;
@@ -123,7 +123,7 @@ class earlier_side {
     throw input_error(fmt::format("'{}' has no values at this side (solid cells); give another side", name));
   }
 
-  /// A table without the cells in solids.
+  /// Returns a table without the cells in solids.
   static std::string along_side(const std::string& name, const std::string& argument,
                                 const std::vector<double>& centres, const std::vector<double>& values) {
     std::vector<std::pair<double, double>> points;
@@ -133,7 +133,7 @@ class earlier_side {
     return formula_of_table(argument, points);
   }
 
-  /// A table in which cells in solids have the value of the nearest cell with gas.
+  /// Returns a table in which cells in solids have the value of the nearest cell with gas.
   static std::string over_side(const std::string& name, const std::array<std::string, 2>& arguments,
                                const std::vector<std::vector<double>>& centres,
                                const std::vector<double>& values) {

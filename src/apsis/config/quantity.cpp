@@ -1,5 +1,5 @@
-// Why not UDUNITS: it reads "pa" as pico-years. Its values of u and Torr are older. It needs files at run
-// time (docs/measured.md, "Machinery that a library could replace").
+// UDUNITS is not used because it reads "pa" as pico-years, and its values of u and Torr are older. It also
+// needs files at run time (docs/measured.md, "Machinery that a library could replace").
 #include <apsis/config/quantity.hpp>
 
 #include <apsis/config/case_text.hpp>
@@ -59,7 +59,7 @@ bool is_celsius(std::string_view unit) {
   return unit == "degC" || unit == "\u00b0C";
 }
 
-/// Whether a byte belongs to a symbol; those beyond ASCII are letters of units.
+/// Returns whether a byte belongs to a symbol. Bytes beyond ASCII are letters of units.
 bool in_symbol(char c) {
   return std::isalpha(static_cast<unsigned char>(c)) != 0 || static_cast<unsigned char>(c) >= 128;
 }
@@ -76,7 +76,7 @@ class unit_parser {
   }
 
  private:
-  static constexpr int deepest = 8;  // parentheses
+  static constexpr int deepest = 8;  // levels of parentheses
 
   quantity product(int depth) {
     quantity all = power(depth);
@@ -148,7 +148,7 @@ class unit_parser {
                                         shown(name), suggest(std::string(name), known)));
   }
 
-  /// No unit has exponents near these; larger ones would overflow in nested powers.
+  /// Refuses exponents that no unit has. Larger ones would overflow in nested powers.
   dimension bounded(const dimension& d) const {
     for (const int exponent : {d.mass, d.length, d.time, d.temperature})
       if (std::abs(exponent) > 99) refuse();

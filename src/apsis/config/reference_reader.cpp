@@ -37,7 +37,7 @@ class reader_of_reference {
 
   static std::string path_of(const std::string& name) { return fmt::format("{}.{}", reference_table, name); }
 
-  /// Place of the table, or of its first key on the command line.
+  /// Returns the place of the table, or of its first key on the command line.
   std::optional<source_place> place_of_table() const {
     const std::string head = path_of("");
     if (const auto table = text_.tables.find(reference_table); table != text_.tables.end())
@@ -62,7 +62,7 @@ class reader_of_reference {
       unused("the case has neither bodies nor output.surfaces");
   }
 
-  /// Those that a case with this number of dimensions has.
+  /// Returns the keys that a case with this number of dimensions has.
   std::vector<reference_key> keys() const {
     std::vector<reference_key> all = reference_keys();
     std::erase_if(all, [&](const auto& key) {

@@ -9,8 +9,8 @@ namespace apsis {
 inline constexpr const char* reference_table = "output.reference";
 
 /// Reads the table [output.reference] of a case with this model, if there is one. Throws input_error at the
-/// place of a key that is unknown, missing, of a wrong type or out of range, and of the table where the model
-/// is no gas, the space is a line, or there are neither bodies nor output.surfaces.
+/// place of a key that is unknown, missing, of a wrong type or out of range. Throws it at the place of the
+/// table for a model that is no gas, for a line, and without solids and output.surfaces.
 void read_reference_values(const case_text& text, const model& equation, case_config& config);
 
 }  // namespace apsis

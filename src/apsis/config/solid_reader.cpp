@@ -23,7 +23,7 @@ std::string path_of(std::size_t box) {
   return fmt::format("{}{}", head, box + 1);
 }
 
-/// A corner of a box: one number, or constant formula, for each direction.
+/// Returns a corner of a box: one number, or constant formula, for each direction.
 std::vector<double> corner(const raw_value& raw, const std::string& path, const case_config& config) {
   const std::size_t given = formula_texts(raw, path).size(), wanted = config.space.cells.size();
   if (given != wanted)
@@ -32,7 +32,7 @@ std::vector<double> corner(const raw_value& raw, const std::string& path, const 
   return constant_numbers(raw, path, config.constants);
 }
 
-/// The cell edge at a coordinate along a direction. Throws input_error if there is none.
+/// Returns the index of the cell edge at a coordinate along a direction. Throws input_error if there is none.
 int edge_at(const case_config& config, const grid& mesh, const std::string& path, int direction, double x) {
   const double from_start = (x - mesh.edge(direction, 0)) / mesh.spacing(direction);
   const int n = mesh.cells(direction);
@@ -56,7 +56,7 @@ class reader_of_solids {
 
   void read() {
     config_.solids.clear();
-    // Kinds first: they decide which other keys there are.
+    // Kinds first: they determine the other valid keys.
     for (const bool kinds : {true, false})
       for (const auto& [path, raw] : text_.values)
         if (path.rfind(head, 0) == 0) take(path, raw, kinds);

@@ -31,7 +31,8 @@ data_form form_of(const model& equation, const source_place& place) {
   return std::move(forms.front());
 }
 
-/// Names of functions of the velocity that a gas takes in place of the variables: f, or g and h.
+/// Returns the names of the functions of the velocity that a gas takes in place of the
+/// variables: f, or g and h.
 std::vector<std::string> functions_of(const model& equation) {
   const auto* gas = equation.as_gas();
   if (gas == nullptr) return {};
@@ -61,7 +62,7 @@ space_time_formula compile(const case_config& config, const model& equation, con
           state};
 }
 
-/// A row by functions of the velocity, one for each set of components.
+/// Returns a source by functions of the velocity, one for each set of components.
 source_rate rate_by_functions(const case_config& config, const model& equation) {
   const velocity_set& velocities = equation.velocities();
   std::vector<space_time_formula> formulas;
@@ -98,7 +99,7 @@ source_rate rate_by_functions(const case_config& config, const model& equation) 
   return {value, steady};
 }
 
-/// Formulas of the variables of a law, which may depend on these variables.
+/// The source of a law: formulas for its variables, which may depend on these variables.
 class rate_by_state {
  public:
   rate_by_state(const case_config& config, const model& equation)
@@ -126,7 +127,8 @@ class rate_by_state {
     form_.source->row(state, rates, row);
   }
 
-  /// The Frobenius norm of D⁻¹ ∂S/∂u D with the sizes D of the variables: it bounds the eigenvalues.
+  /// Returns the Frobenius norm of D⁻¹ ∂S/∂u D with the sizes D of the variables. It bounds the
+  /// eigenvalues of ∂S/∂u.
   double growth(double t, const position& x, std::span<const double> u) const {
     constexpr double part = 1e-6;
     const std::size_t n = formulas_.size();
@@ -172,7 +174,7 @@ class rate_by_state {
   std::vector<std::optional<space_time_formula>> formulas_;  ///< empty where the rate is 0
 };
 
-/// The formulas of all components of the variables; none for those at their defaults.
+/// Formulas of all components of the variables, and defaults for components without a formula.
 struct compiled {
   data_form form;
   std::vector<std::optional<space_time_formula>> formulas;
@@ -202,7 +204,7 @@ compiled compile_variables(const case_config& config, const model& equation) {
   return all;
 }
 
-/// A row by the variables of the model. A Maxwellian is `rho` times that of density 1.
+/// Returns a source by the variables of the model. A Maxwellian is `rho` times that of density 1.
 source_rate rate_by_variables(const case_config& config, const model& equation) {
   const compiled all = compile_variables(config, equation);
   const auto& names = all.form.variables;

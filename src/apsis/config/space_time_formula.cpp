@@ -6,7 +6,8 @@
 namespace apsis {
 namespace {
 
-/// t, the coordinates, the components of the velocity.
+/// Returns the variables of a formula: t, the coordinates, the components of the velocity, and
+/// those of the state.
 formula_kind kind_of(const formula_constants& constants, int space, int velocity,
                      const std::vector<std::string>& state) {
   static constexpr std::array<const char*, 3> names = {"v_x", "v_y", "v_z"};

@@ -13,18 +13,18 @@
 
 namespace apsis {
 
-/// A formula of a case in the time t, the position and, if it has one, the velocity v_x, v_y, v_z.
+/// A formula of a case in the time t, the position and, optionally, the velocity v_x, v_y, v_z.
 /// Dimensionless. Thread-safe.
 class space_time_formula {
  public:
-  /// `space` and `velocity` are the numbers of dimensions, `state` further variables in place of the
-  /// velocity. Throws input_error at `place`: syntax, or an unknown name.
+  /// `space` and `velocity` are the numbers of dimensions. `state` names further variables in place of the
+  /// velocity. Throws input_error at `place` for wrong syntax or an unknown name.
   space_time_formula(const std::string& text, const source_place& place, const formula_constants& constants,
                      int space, int velocity = 0, const std::vector<std::string>& state = {});
 
   /// Returns the value. Throws input_error if it is not finite.
   double at(double t, const position& x, const position& v = {}) const;
-  /// Returns the value at a state, NaN where the formula has none.
+  /// Returns the value at a state; NaN if the formula has none.
   double at_state(double t, const position& x, std::span<const double> state) const;
   bool is_constant() const { return formula_->is_constant(); }  ///< contains no variable
   bool is_steady() const { return steady_; }                    ///< does not contain t

@@ -12,7 +12,7 @@
 namespace apsis {
 namespace {
 
-/// Whether a formula contains the name t, which no constant can have.
+/// Returns whether a formula contains the name t, which no constant can have.
 bool contains_time(const std::string& formula) {
   const auto of_a_name = [](char c) {
     return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '.';

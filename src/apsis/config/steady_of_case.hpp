@@ -5,8 +5,8 @@
 
 namespace apsis {
 
-/// Throws input_error, at the key that is the cause, if a case cannot have a table [steady]: its model does
-/// not relax to an equilibrium, or a boundary, a solid box, a force or a source depends on t.
+/// Throws input_error if a case cannot have a table [steady], at the key that is the cause. The model must
+/// relax to an equilibrium; boundaries, solids, force and source must not depend on t.
 void check_steady(const case_config& config, const model& equation);
 
 }  // namespace apsis

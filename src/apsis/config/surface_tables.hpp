@@ -15,18 +15,18 @@ inline constexpr const char* all_surfaces = "all";
 
 /// A table [boundary.left], [boundary.right], …: the boundary condition of a face.
 struct face_table {
-  std::optional<std::string> kind;  ///< space.boundary where it is not set
-  state_formulas values;            ///< of the variables of the kind, formulas in t and the position
+  std::optional<std::string> kind;  ///< if not set, space.boundary applies
+  state_formulas values;            ///< variables of the kind: formulas in t and the position
   bool operator==(const face_table&) const = default;  ///< equal texts
 };
 
 /// A table [[space.solid]]: a solid box and its wall.
 struct solid_table {
-  std::string name;              ///< in the history of what its walls receive
+  std::string name;              ///< in the history of the amounts that its walls receive
   std::vector<double> from;      ///< lower corner, on edges of cells
   std::vector<double> to;        ///< upper corner, on edges of cells
   std::string kind = "diffuse";  ///< boundary condition at its faces
-  state_formulas values;         ///< of the variables of the kind, formulas in t and the position
+  state_formulas values;         ///< variables of the kind: formulas in t and the position
   bool operator==(const solid_table&) const = default;  ///< equal texts
 };
 
@@ -43,10 +43,10 @@ struct shape_table {
 
 /// A table [[space.body]]: a body of any shape and its wall.
 struct body_table {
-  std::string name;              ///< in the history of what its wall receives
-  shape_table shape;             ///< where it is
+  std::string name;              ///< in the history of the amounts that its wall receives
+  shape_table shape;             ///< shape and position
   std::string kind = "diffuse";  ///< boundary condition at its wall
-  state_formulas values;         ///< of the variables of the kind, formulas in t and the position
+  state_formulas values;         ///< variables of the kind: formulas in t and the position
   bool operator==(const body_table&) const = default;  ///< equal texts
 };
 

@@ -18,13 +18,13 @@
 namespace apsis {
 namespace {
 
-/// Returns "boundary.left.T" of "boundary.left.T.file"; "" of other keys.
+/// Returns "boundary.left.T" for "boundary.left.T.file"; "" for other keys.
 std::string owner_of(const std::string& path, const std::string& key) {
   for (const char* table : {"boundary.", "space.solid.", "space.body."}) {
     if (path.rfind(table, 0) != 0 || !path.ends_with("." + key)) continue;
     const std::string owner = path.substr(0, path.size() - key.size() - 1);
     const std::string below = owner.substr(std::string(table).size());
-    // A face or a number, and a variable.
+    // `below` is a face or a number, and a variable.
     if (std::count(below.begin(), below.end(), '.') == 1) return owner;
   }
   return "";
@@ -162,7 +162,7 @@ class reader_of_table {
   const std::optional<gas_scales>& scales_;
   dimension dimension_ = dimensions::none;
   column_file table_;
-  std::map<std::string, std::string> heads_;  ///< of columns, by names without units
+  std::map<std::string, std::string> heads_;  ///< heads of columns, by names without units
   std::vector<double> times_;
 };
 

@@ -19,7 +19,8 @@ bool begins_with(const std::string& path, const char* head) {
   return path.rfind(head, 0) == 0;
 }
 
-/// The dimension of areas of the case: none on a line, a length in the plane; about an axis those of rings.
+/// Returns the dimension of areas of the case: none on a line, a length in the plane. About an axis, areas
+/// are those of rings.
 dimension dimension_of_area(const case_text& text) {
   const raw_value *cells = text.find("space.cells"), *geometry = text.find("space.geometry");
   const auto* list = cells == nullptr ? nullptr : std::get_if<raw_value::list>(&cells->value);
@@ -31,7 +32,7 @@ dimension dimension_of_area(const case_text& text) {
   return area;
 }
 
-/// Dimensions of the variables of [initial] and of boundaries by name.
+/// Returns the dimensions of the variables of [initial] and of boundaries by name.
 std::map<std::string, dimension> measures_of_variables(const model& equation, const dimension& area) {
   std::map<std::string, dimension> dims;
   const auto add = [&](const std::vector<data_variable>& variables) {
@@ -62,7 +63,7 @@ class unit_remover {
     if (const auto dims = dimension_of(path)) convert(path, raw, &*dims);
   }
 
-  /// Returns the dimension of a numeric key; nothing of a key that takes text.
+  /// Returns the dimension of a numeric key; nothing for a key that takes text.
   std::optional<dimension> dimension_of(const std::string& path) const {
     for (const case_key& key : case_schema())
       if (key.path == path) {
@@ -92,7 +93,7 @@ class unit_remover {
   }
 
  private:
-  /// Returns the dimension of the numbers of a key of a shape; nothing of other keys.
+  /// Returns the dimension of the numbers of a key of a shape; nothing for other keys.
   static std::optional<dimension> dimension_of_shape_key(const std::string& name) {
     for (const shape_entry* shape : shape_entries())
       for (const auto& keys : {shape->keys, common_shape_keys(3)})
@@ -102,7 +103,7 @@ class unit_remover {
     return std::nullopt;
   }
 
-  /// `dims`: of the key; null if any is valid.
+  /// Converts a value. `dims` is the dimension of the key; null if any is valid.
   void convert(const std::string& path, raw_value& raw, const dimension* dims) const {
     if (auto* list = std::get_if<raw_value::list>(&raw.value)) {
       for (raw_value& item : *list) convert(path, item, dims);

@@ -10,11 +10,11 @@
 
 namespace apsis {
 
-/// How a member of case_config is stored in a case_value.
+/// Conversion between a member of case_config and a case_value.
 template <class Member>
 struct conversion;
 
-/// Of a member whose type is one of case_value.
+/// Conversion of a member whose type is an alternative of case_value.
 template <class Same>
 struct plain_conversion {
   static case_value to(const Same& member) { return member; }
@@ -72,7 +72,7 @@ struct conversion<point_counts> {
 template <>
 struct conversion<epsilon_formula> {
   static constexpr key_type type = key_type::formula;
-  // Nothing where another key gives it.
+  // Returns no value if another key gives epsilon.
   static case_value to(const epsilon_formula& member) {
     return member.key == epsilon_formula().key ? case_value(member.text) : case_value();
   }
@@ -112,7 +112,8 @@ struct without_optional<std::optional<Member>> {
   using type = Member;
 };
 
-/// The key whose value is the member that at(case_config) refers to; its type is that of the member.
+/// Returns the key at `path` whose value is the member at(case_config). The key has the type of the member,
+/// unless `facts` has the type of formulas or quantities.
 template <class At>
 case_key key(std::string path, At at, case_key facts) {
   using member = std::remove_cvref_t<decltype(at(std::declval<case_config&>()))>;

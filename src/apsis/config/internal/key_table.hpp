@@ -27,10 +27,10 @@ auto names_in(Entries (*entries)()) {
   };
 }
 
-/// Returns the key, whose value counts as not given where it is 0 or empty.
+/// Returns the key. Its value counts as not given if it is 0 or empty.
 case_key if_given(case_key of);
 
-/// Returns the key, which only cases with a property have.
+/// Returns the key for those cases that have a property.
 case_key only_if(bool (*property)(const case_config&), case_key of);
 
 }  // namespace apsis

@@ -6,7 +6,7 @@
 namespace apsis {
 namespace {
 
-/// The kinds of the faces; the other keys of their tables are variables of the kinds.
+/// Returns the keys for the kinds of the faces. Other keys of their tables are variables of the kinds.
 std::vector<case_key> boundary_keys() {
   std::vector<case_key> all;
   for (std::size_t k = 0; k < face_names.size(); ++k)

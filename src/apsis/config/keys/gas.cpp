@@ -6,7 +6,7 @@
 namespace apsis {
 namespace {
 
-/// A quantity of the table [gas].
+/// Returns the key of a quantity of the table [gas].
 template <class At>
 case_key gas_quantity(std::string path, At at, dimension dims, const std::string& doc) {
   return key(std::move(path), at,

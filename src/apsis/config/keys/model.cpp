@@ -11,7 +11,8 @@ std::vector<std::string> initial_choices(const case_config& c) {
   return entry != nullptr ? initial_names(*entry) : std::vector<std::string>{};
 }
 
-/// A key from which the resolver derives model.epsilon. A resolved case has it where epsilon depends on x.
+/// Returns a key from which the resolver derives model.epsilon. A resolved case has it if
+/// epsilon depends on x.
 case_key derived_key(std::string path, case_key facts) {
   facts.scope = key_scope::velocity;
   facts.store = [](case_config&, const case_value&) {};

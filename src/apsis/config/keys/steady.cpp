@@ -5,7 +5,7 @@
 namespace apsis {
 namespace {
 
-/// The key, which only a case with a table [steady] has.
+/// Returns the key for cases with a table [steady].
 case_key if_steady(case_key of) {
   return only_if([](const case_config& c) { return c.steady_state.tolerance.has_value(); }, std::move(of));
 }

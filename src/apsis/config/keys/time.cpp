@@ -9,14 +9,15 @@
 namespace apsis {
 namespace {
 
-/// "auto" and the names of all methods.
+/// Returns "auto" and the names of all methods.
 std::vector<std::string> method_choices(const case_config&) {
   std::vector<std::string> names = integrator_names();
   names.emplace_back(automatic_method);
   return names;
 }
 
-/// A member of a family, or a method file; an invalid file throws with its own place.
+/// Judges a member of a family, or a method file, for case_key::also. An invalid file throws
+/// with its own place.
 std::optional<std::string> check_method_outside_catalogue(const std::string& name) {
   if (is_method_file(name)) {
     static_cast<void>(find_integrator(name));

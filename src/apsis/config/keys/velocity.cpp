@@ -7,7 +7,7 @@
 namespace apsis {
 namespace {
 
-/// The key, which only an axisymmetric case has.
+/// Returns the key for axisymmetric cases.
 case_key if_axisymmetric(case_key of) {
   return only_if([](const case_config& c) { return c.is_axisymmetric(); }, std::move(of));
 }
@@ -17,7 +17,7 @@ bool needs_max(const std::string& name) {
   return entry != nullptr && entry->needs_max;
 }
 
-/// Whether velocity.set is given and no name in it has a property.
+/// Returns whether velocity.set is given and no name in it has a property.
 bool no_set_is(const case_config& c, bool (*property)(const std::string&)) {
   return !c.velocity.set.empty() && std::none_of(c.velocity.set.begin(), c.velocity.set.end(), property);
 }

@@ -53,7 +53,7 @@ std::vector<std::vector<double>> read_rows(const hdf5_file& file, const std::str
   return rows;
 }
 
-/// The state has the shape of the mesh, so that every process writes a box of it.
+/// Writes a state in the shape of the mesh, so that every process can write a box of it.
 void write_state(hdf5_file& file, const checkpoint& c, const std::string& name,
                  const std::vector<double>& state) {
   auto extents = c.fields.axes.empty() ? hdf5_file::shape{c.cells} : mesh_shape(c.fields.axes);

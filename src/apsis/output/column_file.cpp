@@ -17,7 +17,7 @@
 namespace apsis {
 namespace {
 
-constexpr std::size_t longest = 1'000'000'000;  ///< bytes
+constexpr std::size_t longest = 1'000'000'000;  ///< largest size of a file in bytes
 
 std::string_view trimmed(std::string_view text) {
   const auto first = text.find_first_not_of(" \t\r");

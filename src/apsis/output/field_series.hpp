@@ -19,10 +19,10 @@ struct field_series {
   std::vector<mesh_axis> axes;              ///< x, y, z; empty for a model without space (one cell)
   std::vector<std::string> names,           ///< field names: "rho"
       labels,                               ///< for plots: "density (dimensionless)"
-      units = {};                           ///< of the fields; empty if they are dimensionless
+      units = {};                           ///< units of the fields; empty if they are dimensionless
   std::string unit_of_x = "dimensionless",  ///< unit of coordinates
       unit_of_t = "dimensionless";          ///< unit of times
-  std::vector<dimension> dimensions = {};   ///< dimensions of the fields in units of a gas
+  std::vector<dimension> dimensions = {};   ///< physical dimensions of the fields
   std::vector<snapshot> snapshots;          ///< in order of time
 };
 

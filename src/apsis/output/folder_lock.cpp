@@ -26,7 +26,7 @@ std::string holder(const std::filesystem::path& lock) {
   return std::getline(in, line) ? line : "another process";
 }
 
-/// Whether `path` still names the open file; its last holder may have removed it meanwhile.
+/// Returns whether `path` still names the open file. Its last holder may have removed it meanwhile.
 bool names(const std::filesystem::path& path, int file) {
   struct stat there = {}, here = {};
   return stat(path.c_str(), &there) == 0 && fstat(file, &here) == 0 && there.st_ino == here.st_ino &&
@@ -54,7 +54,7 @@ void folder_lock::take() {
   while (true) {
     file_ = open(path_.c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC, 0666);
     if (file_ < 0) refuse(why_not_written(path_.string(), errno));
-    // A name of another file of the user, planted by others, must not be written to.
+    // Others may have planted the name as a link to another file of the user, which must not be overwritten.
     struct stat found = {};
     if (fstat(file_, &found) != 0 || !S_ISREG(found.st_mode) || found.st_nlink > 1)
       refuse("another file may have this name too, or it is not a file");

@@ -9,8 +9,9 @@ namespace apsis {
 /// releases the lock however its holder ends, so a lock file left behind by a killed run is harmless.
 class folder_lock {
  public:
-  /// Locks an existing folder. Throws io_error if another process holds the lock, which the message names, or
-  /// if the lock file cannot be created, or is a link. A file system without locks only causes a warning.
+  /// Locks an existing folder. Throws io_error if another process holds the lock, and names this
+  /// process. Also throws it if the lock file cannot be created, or is a link. A file system without
+  /// locks only causes a warning.
   explicit folder_lock(std::filesystem::path folder);
   /// Removes the file and releases the lock.
   ~folder_lock();

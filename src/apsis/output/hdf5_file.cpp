@@ -49,7 +49,7 @@ void silence() {
   static_cast<void>(once);
 }
 
-/// Of all files of this process.
+/// Returns the lock for all HDF5 files of this process.
 std::recursive_mutex& access_to_hdf5() {
   static std::recursive_mutex of_all;
   return of_all;
@@ -69,8 +69,8 @@ bool write_text_attribute(hid_t object, const std::string& name, const std::stri
   return attribute.good() && H5Awrite(attribute, type, value.c_str()) >= 0;
 }
 
-// Properties of a new object: no time stamps. Numbers have their place in the file from the beginning, so
-// that other processes can write them.
+// Returns the properties of a new object without time stamps. Numbers have their place in the file from the
+// beginning, so that other processes can write them.
 handle creation_properties(hid_t what) {
   const hid_t list = H5Pcreate(what);
   H5Pset_obj_track_times(list, false);
@@ -101,7 +101,7 @@ bool write_selected(hid_t data, hid_t space, const dataset_part& part, const dou
   return select(space, part) && H5Dwrite(data, H5T_NATIVE_DOUBLE, memory, space, H5P_DEFAULT, values) >= 0;
 }
 
-/// Returns the text of an attribute, of fixed length or, as other programs write it, of any length.
+/// Returns the text of an attribute, of fixed length or, from other programs, of variable length.
 std::optional<std::string> text_of_attribute(hid_t attribute) {
   const handle type(H5Aget_type(attribute), H5Tclose);
   const handle space(H5Aget_space(attribute), H5Sclose);
@@ -333,7 +333,7 @@ std::string hdf5_file::units(const std::string& name) const {
   return *text;
 }
 
-/// Throws unless the numbers of a dataset can be read, and this many of them fit into memory.
+/// Throws unless the numbers of a dataset can be read, and `count` of them fit into memory.
 void hdf5_file::check_numbers(const std::string& name, std::int64_t data, std::uint64_t count) const {
   if (const std::string problem = problem_of_storage(data); !problem.empty())
     fail(fmt::format("'{}' {}", name, problem));

@@ -22,22 +22,22 @@ struct dataset_part {
   std::vector<std::uint64_t> count;  ///< number of indices; 0 if the process holds nothing
 };
 
-/// An HDF5 file with the operations that results need. The destructor closes identifiers, objects carry no
-/// time stamps (equal results give equal bytes), and HDF5 does not print errors itself. Every member throws
-/// io_error with the name of the file. While one exists, those of other threads wait: not every build of HDF5
-/// is safe for threads.
+/// An HDF5 file with the operations that results need. The destructor closes identifiers. Objects carry no
+/// time stamps, so that equal results give equal bytes. HDF5 does not print errors itself. Every member
+/// throws io_error with the name of the file. While one thread has a file open, other threads wait, because
+/// not every build of HDF5 is thread-safe.
 class hdf5_file {
  public:
   using shape = std::vector<std::uint64_t>;  ///< extents of a dataset, the last index running fastest
 
-  /// Creates a file. The user block of `free_bytes` at its beginning is left to the caller; 0, or a power of
-  /// two of at least 512.
+  /// Creates a file. Its user block of `free_bytes` at the beginning is left to the caller. `free_bytes` is
+  /// 0, or a power of two of at least 512.
   static hdf5_file create(const std::string& path, std::uint64_t free_bytes = 0);
   /// Creates a file in which write_part() only reserves space.
   static hdf5_file create_frame(const std::string& path, std::uint64_t free_bytes);
-  /// Opens such a file after it was closed: write_part() writes its numbers, other members write nothing.
-  /// Several processes may do so simultaneously; `process` describes this one in messages ("process 1 on
-  /// node7").
+  /// Opens a file of create_frame() after it was closed. write_part() then writes its numbers; other members
+  /// write nothing. Several processes may do so simultaneously. `process` describes this one in messages
+  /// ("process 1 on node7").
   static hdf5_file open_parts(const std::string& path, const std::string& process);
   /// Opens an existing file for reading.
   static hdf5_file open(const std::string& path);
@@ -51,7 +51,8 @@ class hdf5_file {
   void write(const std::string& name, const std::vector<double>& values, const shape& extents,
              const std::string& long_name = "", precision stored = precision::float64,
              const std::string& units = "dimensionless");
-  /// The same, from the parts of all processes, [first extent of the part][…]; a part may have no numbers.
+  /// Writes a dataset from the parts of all processes. `values` has the extents part.count; a part
+  /// may have no numbers.
   void write_part(const std::string& name, const std::vector<double>& values, const shape& extents,
                   const dataset_part& part, const std::string& long_name = "",
                   precision stored = precision::float64, const std::string& units = "dimensionless");
@@ -61,14 +62,14 @@ class hdf5_file {
   void write_attribute(const std::string& name, double value);
   /// Writes text as an attribute of the file.
   void write_attribute(const std::string& name, const std::string& value);
-  /// Whether members other than write_part() write.
+  /// Returns whether members other than write_part() write.
   bool writes_frame() const { return content_ != content::parts; }
   /// Flushes the file to disk and closes it, so that a full disk is reported here and not in a destructor.
   void close();
 
-  /// Whether a dataset or group of this name exists.
+  /// Returns whether a dataset or group of this name exists.
   bool has(const std::string& name) const;
-  /// Whether the file has an attribute of this name.
+  /// Returns whether the file has an attribute of this name.
   bool has_attribute(const std::string& name) const;
   /// Returns the extents of a dataset; empty for a scalar.
   shape extents(const std::string& name) const;
@@ -89,7 +90,7 @@ class hdf5_file {
   /// are not followed.
   std::vector<std::string> datasets() const;
   /// Returns the sorted names of the datasets of real numbers in a group, or without a name in the file
-  /// itself, also of linked ones. Texts, other objects and dangling links are left out.
+  /// itself. Linked datasets are included. Texts, other objects and dangling links are omitted.
   std::vector<std::string> number_sets(const std::string& group = "") const;
   /// Returns text from the attributes of the file.
   std::string read_text_attribute(const std::string& name) const;
@@ -112,17 +113,17 @@ class hdf5_file {
   std::string path_;
   std::int64_t id_ = -1;
   std::unique_ptr<int> error_ = std::make_unique<int>(0);  ///< errno of the first write that failed
-  content content_;                                        ///< what is written
-  std::string process_;                                    ///< that writes parts
+  content content_;                                        ///< content that this object writes
+  std::string process_;                                    ///< description of the process that writes parts
 };
 
 /// Returns the version of the HDF5 library, "1.10.8". Waits while another thread uses the library.
 std::string hdf5_version();
 
-/// Writes a file by all processes: the root the frame, then each one its parts. `contents` calls the members
-/// that write, and runs on every process; twice on the root. Neither HDF5 nor `contents` communicates, so
-/// that no process waits for one that cannot write. Throws on all what one of them throws. Collective; a
-/// single process may be nullptr.
+/// Writes a file by all processes: the root writes the frame, then each process its parts. `contents` calls
+/// the members that write. It runs on every process, and twice on the root. Neither HDF5 nor `contents`
+/// communicates, so that no process waits for one that cannot write. If one process throws, all throw.
+/// Collective; a single process may be nullptr.
 void write_hdf5(const std::string& path, std::uint64_t free_bytes,
                 const std::shared_ptr<communicator>& processes,
                 const std::function<void(hdf5_file&)>& contents);

@@ -40,7 +40,7 @@ class dataspace {
   hid_t id_;
 };
 
-/// Name of a filter that the library does not have; "" if it has all.
+/// Returns the name of a filter that the library lacks; "" if it has all.
 std::string missing_filter(const properties& of) {
   const int count = H5Pget_nfilters(of);
   for (int k = 0; k < count; ++k) {
@@ -54,7 +54,8 @@ std::string missing_filter(const properties& of) {
   return {};
 }
 
-/// Whether every number of a dataset was written. The size in the file says nothing about compressed chunks.
+/// Returns whether every number of a dataset was written. Counts chunks, because the size of compressed
+/// ones does not show it.
 bool is_complete(hid_t data, const properties& of) {
   const dataspace space(data);
   const int rank = H5Sget_simple_extent_ndims(space);

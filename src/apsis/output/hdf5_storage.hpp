@@ -5,13 +5,14 @@
 
 namespace apsis {
 
-/// Whether an open dataset of HDF5 has integers or floating-point numbers.
+/// Returns whether an open dataset of HDF5 has integers or floating-point numbers.
 bool holds_real_numbers(std::int64_t data);
 
-/// Returns why the numbers of an open dataset of HDF5 cannot be read, as the rest of a message that begins
-/// with its name; "" if they can. A part that was never written reads as zeros, without an error, unless the
-/// file gives a value for it: a result that was not written completely must not be mistaken for a zero state.
-/// Compressed numbers count as they are: their size in the file says nothing about it.
+/// Returns the reason why the numbers of an open dataset of HDF5 cannot be read; "" if they can. The reason
+/// continues a message that begins with the name of the dataset. HDF5 reads a part that was never written
+/// as zeros, without an error. Such datasets are refused unless the file gives a value for unwritten
+/// numbers: an incomplete result must not be mistaken for a zero state. The size of compressed numbers in
+/// the file does not matter.
 std::string problem_of_storage(std::int64_t data);
 
 }  // namespace apsis

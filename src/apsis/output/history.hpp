@@ -10,14 +10,15 @@
 
 namespace apsis {
 
-/// A bounded record of the steps of a run, one row per step. Up to `most_rows` rows are kept; whenever there
-/// are more, the stride doubles. The rows kept are those of steps 0, stride, 2 stride, …, of the last step,
-/// and for every column the first rows of its smallest and largest value, so that the extremes of the history
-/// are those of all steps. The rows depend on the steps alone, not on interruptions and restarts.
+/// A bounded record of the steps of a run, one row per step. It keeps up to `most_rows` rows; whenever
+/// there are more, the stride doubles. The kept rows are those of steps 0, stride, 2 stride, …, and of the
+/// last step. For every column, the first rows with its smallest and largest value are kept too. The
+/// extremes of the history are therefore those of all steps. The rows depend only on the steps, not on
+/// interruptions and restarts.
 class history {
  public:
-  /// An empty history. The first column is the step number; `most_rows` must exceed two rows per column plus
-  /// two.
+  /// Makes an empty history. The first column is the step number; `most_rows` must exceed two rows
+  /// per column plus two.
   history(std::vector<std::string> columns, std::size_t most_rows);
   /// Continues with the rows and the stride of a checkpoint.
   history(numeric_table rows, long stride, std::size_t most_rows);

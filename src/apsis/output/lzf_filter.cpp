@@ -29,7 +29,7 @@ std::size_t expand_lzf(std::span<const unsigned char> in, std::span<unsigned cha
     if (left() == 0) return 0;
     const std::size_t distance = ((control & 31U) << 8U) + in[at++] + 1;
     if (distance > written || length > out.size() - written) return 0;
-    // A copy may overlap itself: byte by byte.
+    // A copy may overlap itself, so it proceeds byte by byte.
     for (std::size_t k = 0; k < length; ++k, ++written) out[written] = out[written - distance];
   }
   return written;
@@ -39,7 +39,7 @@ namespace {
 
 constexpr H5Z_filter_t number_of_lzf = 32000;
 
-/// The third value of the filter is the size of a chunk in bytes, which is what a block expands to.
+/// Expands a chunk for HDF5. The third value of the filter is the size of the expanded chunk in bytes.
 std::size_t filter(unsigned flags, std::size_t count, const unsigned* values, std::size_t bytes,
                    std::size_t* size, void** buffer) {
   if ((flags & H5Z_FLAG_REVERSE) == 0 || count < 3) return 0;  // this program reads such files only

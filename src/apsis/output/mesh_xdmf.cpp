@@ -33,7 +33,7 @@ std::vector<std::string> heads(const std::vector<std::string>& names, const std:
   return found;
 }
 
-/// Returns an attribute joined from components: `item` refers to a field, `zero` to as many zeros.
+/// Returns an attribute joined from components. `item` refers to a field, `zero` to as many zeros.
 std::string joined_values(const std::string& name, const std::string& type, const std::string& dimensions,
                           const std::vector<std::string>& endings, const std::vector<std::string>& fields,
                           const std::function<std::string(const std::string&)>& item,

@@ -27,7 +27,7 @@ const char* style_name(curve_style style) {
   return "line";
 }
 
-/// JSON has no number for NaN and infinity.
+/// Returns the numbers, with null in place of NaN and infinity, which JSON lacks.
 json numbers(const std::vector<double>& values) {
   json out = json::array();
   for (const double value : values) out.push_back(std::isfinite(value) ? json(value) : json(nullptr));

@@ -30,7 +30,7 @@ std::string base64_of(std::span<const std::byte> bytes) {
   return text;
 }
 
-/// An array of numbers of 8 bytes, with their size in bytes before them.
+/// Returns an array of 8-byte numbers, preceded by its size in bytes.
 template <class Number>
 std::string data_array(const std::string& name, int components, const std::vector<Number>& values) {
   const std::uint64_t size = values.size() * sizeof(Number);

@@ -12,12 +12,12 @@ struct polydata {
   /// Numbers of every cell.
   struct array {
     std::string name;            ///< shown by ParaView
-    int components = 1;          ///< of each cell: 3 of a vector
+    int components = 1;          ///< numbers of each cell: 3 for a vector
     std::vector<double> values;  ///< [cell][component]
   };
   std::vector<std::vector<position>>
       cells;                ///< corners of each: two of a segment, three or more of a polygon
-  std::vector<array> data;  ///< of the cells
+  std::vector<array> data;  ///< numbers of the cells
 };
 
 /// Returns the content of a file NAME.vtp, which ParaView and VTK open. Equal corners are one point, so that

@@ -33,14 +33,14 @@ neighbours neighbours_of(const mesh_axis& axis, double q) {
   return {lower, lower + 1, s - inside};
 }
 
-/// A NaN counts only where it is the nearer value: beside a solid the value of the gas holds.
+/// Interpolates linearly. If a value is NaN, the nearer one applies: beside a solid, that of the gas.
 double blend(double lower, double upper, double weight) {
   if (weight < 0.5 && std::isnan(upper)) return lower;
   if (weight >= 0.5 && std::isnan(lower)) return upper;
   return (1.0 - weight) * lower + weight * upper;
 }
 
-/// Interpolates along the axes k, k + 1, …; `first` numbers the cells of the axes before them.
+/// Interpolates along the axes k, k + 1, …. `first` is the index of the cell along the axes before k.
 double interpolate(const std::vector<mesh_axis>& axes, const std::vector<neighbours>& around,
                    const std::vector<double>& values, std::size_t k, std::size_t first) {
   if (k == axes.size()) return values[first];

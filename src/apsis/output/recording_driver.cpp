@@ -1,5 +1,5 @@
-// Why not H5FD_CORE: it keeps every file in memory, and a full disk ends the process by SIGSEGV. Why not
-// posix_fallocate: it needs the size of a file beforehand (docs/measured.md).
+// H5FD_CORE would keep every file in memory, and a full disk would end the process by SIGSEGV.
+// posix_fallocate would need the size of a file beforehand (docs/measured.md).
 #include <apsis/output/recording_driver.hpp>
 
 #include <apsis/core/new_file.hpp>
@@ -25,7 +25,7 @@ namespace {
 /// Driver data of a property list.
 struct access_info {
   int* error;
-  bool only_numbers;  ///< of an existing file
+  bool only_numbers;  ///< writes only the numbers of an existing file
 };
 
 /// An open file; HDF5 accesses its first member.
@@ -87,8 +87,8 @@ int compare(const H5FD_t* a, const H5FD_t* b) {
   return 0;
 }
 
-/// Same as HDF5's default driver, so that files have the same layout. A sieve would also write numbers
-/// between those of this process, which belong to others.
+/// Sets the features of HDF5's default driver, so that files have the same layout. A sieve would also write
+/// numbers between those of this process, which belong to other processes.
 herr_t query(const H5FD_t* file, unsigned long* flags) {
   *flags = H5FD_FEAT_AGGREGATE_METADATA | H5FD_FEAT_ACCUMULATE_METADATA | H5FD_FEAT_AGGREGATE_SMALLDATA |
            H5FD_FEAT_DEFAULT_VFD_COMPATIBLE;

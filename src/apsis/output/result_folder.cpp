@@ -33,7 +33,7 @@ constexpr const char* advice = "choose another folder with --out or free some sp
   cannot(verb, path, why_not_written(path.string(), why.value()));
 }
 
-/// Whether the path is a folder and not a link to one: files are not written through links.
+/// Returns whether the path is a folder and not a link to one, because files are not written through links.
 bool is_own_folder(const fs::path& path) {
   std::error_code ignored;
   return fs::symlink_status(path, ignored).type() == fs::file_type::directory;
@@ -123,7 +123,7 @@ void result_folder::begin_series(const std::string& series) {
   if (std::find(series_.begin(), series_.end(), series) != series_.end()) return;
   std::error_code problem;
   fs::remove_all(temporary(series), problem);
-  // Not with its parents: a result folder that was deleted is an error.
+  // Creates no parents: a result folder that was deleted is an error.
   fs::create_directory(temporary(series), problem);
   if (problem || !is_own_folder(temporary(series))) cannot("create the folder", temporary(series), problem);
   series_.push_back(series);
@@ -150,7 +150,7 @@ std::vector<fs::path> result_folder::files_of_series(const std::string& series) 
 
 void result_folder::resume_series(const std::string& series, const fs::path& from,
                                   const std::function<bool(const std::string& path)>& keep) {
-  // A killed run left them under the temporary name.
+  // A killed run left its files under the temporary name.
   const fs::path left = from / temporary(series).filename();
   std::error_code problem;
   const fs::path source = is_own_folder(left) ? left : from / series;
@@ -190,7 +190,7 @@ void result_folder::commit_series() {
 
 void result_folder::commit() {
   std::error_code problem;
-  // Left by a run that was killed while writing.
+  // Removes files of a run that was killed while writing.
   for (const char* name : result_names)
     if (std::find(prepared_.begin(), prepared_.end(), name) == prepared_.end())
       fs::remove(temporary(name), problem);

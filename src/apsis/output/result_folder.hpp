@@ -11,8 +11,8 @@
 namespace apsis {
 
 /// The result folder of a run, locked against other runs (folder_lock). Files are prepared under temporary
-/// names and renamed together in commit(); until then the results of an earlier run are untouched, and
-/// prepared files are removed if commit() is not reached. Every member throws io_error.
+/// names and renamed together in commit(). Until then the results of an earlier run are untouched. Prepared
+/// files are removed if commit() is not reached. Every member throws io_error.
 class result_folder {
  public:
   /// Creates the folder and its parents, and verifies that a file can be written into it.
@@ -35,8 +35,8 @@ class result_folder {
   /// Writes one file with the given content and renames it immediately.
   void publish_text(const std::string& name, const std::string& text);
 
-  /// Adds a file to a series, a subfolder. Its files are complete as soon as they appear, and a killed run
-  /// leaves them for its restart; the series gets its name in commit().
+  /// Adds a file to a series, which is a subfolder. Its files are complete as soon as they appear. A killed
+  /// run leaves them for its restart. The series gets its name in commit().
   void add_to_series(const std::string& series, const std::string& name,
                      const std::function<void(const std::string&)>& write);
   /// Begins a series with the files in `from`, the folder of an earlier run, for which `keep` is true.

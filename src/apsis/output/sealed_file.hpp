@@ -7,8 +7,8 @@
 namespace apsis {
 
 /// Length of a seal in bytes. A seal is a header with the kind of the file, its length and a checksum (XXH3,
-/// 128 bit) of everything else, so that truncation and the change of any bit are detected. It lies in the
-/// user block of HDF5, which opens sealed files like any other.
+/// 128 bit) of everything else. It reveals truncation and the change of any bit. It lies in the user block of
+/// HDF5, which opens sealed files like any other.
 inline constexpr unsigned long seal_length = 512;
 
 /// Writes the seal into the first seal_length bytes, which must exist, and flushes the file to disk. `kind`

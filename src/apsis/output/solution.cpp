@@ -27,7 +27,7 @@ void write_velocities(hdf5_file& file, const velocity_set& velocities) {
     file.write(axis.name, axis.nodes, {axis.nodes.size()}, "velocity component");
 }
 
-/// Adds `last` numbers in every cell to a part of the mesh.
+/// Returns the part of a dataset that has `last` numbers in every cell of a part of the mesh.
 dataset_part with(dataset_part part, std::uint64_t last) {
   part.first.push_back(0);
   part.count.push_back(last);
@@ -75,7 +75,7 @@ void write_points(hdf5_file& file, const distribution_at_points& points, std::ui
   write_coordinates(file, "points/", points.centres, unit);
 }
 
-/// The points of a structured grid, since readers take the first axis of a rectilinear one for the fastest.
+/// Writes the points of a structured grid. Readers take the first axis of a rectilinear grid for the fastest.
 void write_geometry(hdf5_file& file, const field_series& fields) {
   if (fields.axes.size() < 2) return;
   std::vector<double> points;

@@ -60,7 +60,7 @@ std::string grids_of_fields(const solution& s) {
   return grids;
 }
 
-/// The axes of a function of position and velocity, slowest first.
+/// Returns the axes of a function of position and velocity, slowest first.
 std::vector<grid_axis> axes_of(const distribution_file& file, const std::vector<velocity_axis>& velocities) {
   std::vector<grid_axis> axes;
   for (std::size_t k = 0; k < file.shape.size(); ++k)

@@ -34,14 +34,15 @@ std::size_t stride_of(const std::vector<velocity_axis>& axes, std::size_t k) {
   return stride;
 }
 
-/// Whether the n coordinates repeat the nodes in the order of a tensor product.
+/// Returns whether the n coordinates repeat the nodes in the order of a tensor product.
 bool repeats(const std::vector<double>& nodes, std::size_t stride, const double* coordinates, std::size_t n) {
   for (std::size_t j = 0; j < n; ++j)
     if (coordinates[j] != nodes[j / stride % nodes.size()]) return false;
   return true;
 }
 
-/// Returns the weights of the nodes from sums over all velocities with the same v_k.
+/// Sets the weights of the nodes to sums over all velocities with the same v_k. Their sum is
+/// the width of the axis.
 void set_weights(std::span<const double> of_points, double total, std::vector<velocity_axis>& axes) {
   for (std::size_t k = 0; k < axes.size(); ++k) {
     auto& axis = axes[k];
@@ -52,7 +53,8 @@ void set_weights(std::span<const double> of_points, double total, std::vector<ve
   }
 }
 
-/// Whether the weights of the velocities are products of those of the nodes up to rounding and a factor.
+/// Returns whether the weights of the velocities are products of those of the nodes, up to
+/// rounding and a factor.
 bool weights_are_products(std::span<const double> of_points, double total,
                           const std::vector<velocity_axis>& axes) {
   constexpr double rounding = 1e-12;

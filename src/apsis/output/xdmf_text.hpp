@@ -7,10 +7,11 @@
 /// Elements of an XDMF description as text.
 namespace apsis::xdmf {
 
-/// Returns text without the characters that are markup in XML.
+/// Returns text in which the characters that are markup in XML are escaped, and control
+/// characters are spaces.
 std::string escaped(const std::string& text);
 
-/// Returns "3 4 5".
+/// Returns numbers separated by spaces, such as "3 4 5".
 std::string joined(const std::vector<std::uint64_t>& numbers);
 
 /// Returns a reference to a dataset in a file beside the description.
@@ -23,7 +24,7 @@ std::string part_item(const std::string& dimensions, std::uint64_t k, std::uint6
 /// Returns a scalar at the nodes of a grid.
 std::string node_values(const std::string& name, const std::string& item);
 
-/// Returns grids in order of time as one.
+/// Returns a collection of grids in order of time.
 std::string series_in_time(const std::string& name, const std::string& grids);
 
 /// Returns a complete description with these grids.

@@ -18,26 +18,28 @@ struct case_problem {
   std::unique_ptr<semidiscrete_problem> equations;  ///< T and Q, which refer to `setup`
 };
 
-/// A small case of a model with space: periodic, `cells` cells on [0, 2], 16 velocities in [−8, 8] if the
-/// model has a velocity grid, its default data, and overrides "key=value".
+/// Returns a small periodic case of a model with space: `cells` cells on [0, 2], the default data of the
+/// model, and `overrides` "key=value". If the model has a velocity grid, it has 16 velocities in [−8, 8].
 case_config small_case(const std::string& model, const std::string& method, double epsilon, int cells,
                        const std::vector<std::string>& overrides);
 
-/// Initial states, all nonnegative: the initial data, their local equilibrium, and `random` states in which
-/// each cell, at random, has every unknown disturbed by a factor from 0.01 to 1, or all of them multiplied by
-/// `vacuum`, or is in equilibrium; with `zeros`, a tenth of the disturbed unknowns is exactly 0.
+/// Returns nonnegative initial states: the initial data, their local equilibrium, and `random` disturbed
+/// states. In each cell of a disturbed state, one of three changes is made at random. Every unknown is
+/// multiplied by a factor from 0.01 to 1, or all are multiplied by `vacuum`, or the cell is set to
+/// equilibrium. With `zeros`, a tenth of the unknowns is exactly 0, except in equilibrium.
 std::vector<field> adversarial_states(case_problem& problem, int random, double vacuum, bool zeros);
 
-/// Names of the models with space whose collisions decrease an entropy.
+/// Returns the names of the models with space whose collisions decrease an entropy.
 std::vector<std::string> all_entropy_models();
 
-/// Σ_cells |cell| S(row); NaN if an unknown is negative.
+/// Returns Σ_cells |cell| S(row); NaN if an unknown is negative.
 double entropy_of(const run_setup& setup, const field& u);
 
-/// Nonnegativity of all unknowns, in floating point.
+/// Returns the nonnegativity of all unknowns, in floating point.
 kept_property<field> positivity();
 
-/// Decay of the entropy. The rounding is that of a sum of some hundred terms of order one.
+/// Returns the decay of the entropy. Its tolerance covers the rounding of a sum of some hundred
+/// terms of order one.
 kept_property<field> entropy_decay(const run_setup& setup);
 
 }  // namespace apsis

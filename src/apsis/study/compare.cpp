@@ -41,7 +41,7 @@ double norm_of(const std::vector<double>& a, const std::vector<double>& b, doubl
   return norm == error_norm::l2 ? std::sqrt(sum * volume) : sum * volume;
 }
 
-/// One macroscopic field of a state [cells][components].
+/// Returns one macroscopic field of a state [cells][components].
 std::vector<double> field_of(const case_config& config, const std::vector<double>& state,
                              const std::string& name) {
   const run_setup setup(config);

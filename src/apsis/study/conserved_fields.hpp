@@ -7,17 +7,18 @@
 
 namespace apsis {
 
-/// ρ, ρu and 𝓔 = ρ(u² + T)/2 of every cell, whose cell averages are averages of finer ones. Dimensionless.
+/// ρ, ρu and 𝓔 = ρ(u² + T)/2 of every cell. Their cell averages are averages of those of finer
+/// cells. Dimensionless.
 using conserved_fields = std::array<std::vector<double>, 3>;
 
-/// From the fields rho, u and T of kinetic models with one velocity dimension. Throws input_error if one of
-/// them is missing.
+/// Returns the conserved fields from rho, u and T of kinetic models with one velocity dimension. Throws
+/// input_error if one of these is missing.
 conserved_fields conserved(const field_table& macroscopic);
 
-/// Averages over pairs of cells, for comparison with a mesh of half as many cells.
+/// Returns averages over pairs of cells, for comparison with a mesh of half as many cells.
 conserved_fields averaged_in_pairs(const conserved_fields& fine);
 
-/// Maximum over fields and cells; NaN if a value is NaN.
+/// Returns the largest difference over fields and cells; NaN if a value is NaN.
 double largest_difference(const conserved_fields& a, const conserved_fields& b);
 
 }  // namespace apsis

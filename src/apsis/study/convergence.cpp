@@ -18,8 +18,8 @@ namespace apsis {
 struct convergence::impl {
   convergence_study study;
   convergence_plan plan;
-  std::vector<std::optional<outcome>> results = {};  ///< by run
-  std::vector<std::string> failures = {};            ///< by run; "" if none
+  std::vector<std::optional<outcome>> results = {};  ///< results by run
+  std::vector<std::string> failures = {};            ///< failures by run; "" without one
 
   convergence_row row_of(const convergence_plan::row& planned) const {
     constexpr double none = std::numeric_limits<double>::quiet_NaN();

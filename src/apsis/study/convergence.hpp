@@ -16,16 +16,16 @@ struct convergence_study {
   std::string case_text =
       {};  ///< text of a case that is not a file (to_toml(config)); empty: the case named case_name
   std::vector<std::string> overrides = {};  ///< "key=value", for every run
-  std::vector<varied_key> vary = {};        ///< the last one varies fastest
+  std::vector<varied_key> vary = {};        ///< the last key varies fastest
   convergence_reference reference = {};     ///< what errors are measured against
-  error_norm norm = error_norm::l2;         ///< norm of the difference to it
+  error_norm norm = error_norm::l2;         ///< norm of the difference to the reference
   std::string quantity = {};                ///< a macroscopic field; empty: the full state
 };
 
 /// One run and its error.
 struct convergence_row {
   std::vector<std::string> values;  ///< values of the varied keys as given, in the order of the study
-  case_config config;               ///< as resolved
+  case_config config;               ///< resolved case
   double h = 0.0;                   ///< denominator of the rate: Δx, Δt, Δv, or the value of the key
   double error = 0.0;  ///< norm of the difference from the reference; NaN without one, see `problem`
   double rate = 0.0;   ///< log(error before/error) / log(h before/h); NaN in the first row and without errors
@@ -34,7 +34,7 @@ struct convergence_row {
       min_value = 0.0;  ///< smallest unknown of all steps; NaN if the run failed
   double wall_s = 0.0,  ///< wall time of the steps in seconds; every run is on one thread
       cpu_s = 0.0;      ///< CPU time of the steps in seconds
-  std::string problem;  ///< why there is no error: the failure and where it occurred
+  std::string problem;  ///< reason for a missing error: the failure and its place
 };
 
 /// The runs with equal values of all keys except the refined one, from coarse to fine.
@@ -54,37 +54,39 @@ struct convergence_table {
   std::string measured;           ///< "error", or "difference" if the next finer run is the reference
   std::vector<convergence_block> blocks;  ///< blocks with rows
   long runs = 0;                          ///< number of different runs, including references
-  bool complete = true;                   ///< every run was computed, or failed
+  bool complete = true;                   ///< whether every run was computed or failed
 
-  long failures() const;  ///< rows without an error
+  long failures() const;  ///< number of rows without an error
 };
 
-/// A study in three steps: plan (the constructor), run, and read the table, also that of a stopped study. The
-/// refined key is the last varied one of space.cells, time.dt, time.cfl, time.safety and velocity.points; if
-/// none of them is varied, it is the last one whose values are positive numbers (the slope then refers to
-/// that number, for example model.epsilon). Identical runs, including references, are computed once.
+/// A study in three steps: the constructor plans it, run() computes it, and table() returns the results, also
+/// those of a stopped study. Identical runs, including references, are computed once.
+///
+/// The refined key is the last varied one of space.cells, time.dt, time.cfl, time.safety and velocity.points.
+/// If none of them is varied, it is the last key with positive numbers as values, such as model.epsilon. The
+/// rate then refers to this number.
 class convergence {
  public:
   static constexpr long most_runs = 10'000;  ///< largest number of combinations of values in a study
 
   /// Resolves every run and every reference and validates them before the first step. Throws input_error or
-  /// io_error: unknown or repeated keys, a repeated value, too many runs, a reference that does not exist or
-  /// cannot be compared.
+  /// io_error for unknown or repeated keys, a repeated value, or too many runs. Also throws for a reference
+  /// that does not exist or cannot be compared.
   explicit convergence(convergence_study study);
   ~convergence();
   convergence(convergence&&) noexcept;             ///< leaves the source empty
   convergence& operator=(convergence&&) noexcept;  ///< leaves the source empty
 
-  /// Computes missing runs on all threads (see set_threads), the longest first; results do not depend on the
-  /// number of threads. A run that fails numerically is noted in its row, and the study continues. Throws
-  /// study_interrupted on a stop request, after the current steps: finished runs are retained, active ones
-  /// are dropped.
+  /// Computes missing runs on all threads (see set_threads), the longest first. Results do not depend
+  /// on the number of threads. A run that fails numerically is noted in its row, and the study
+  /// continues. On a stop request, throws study_interrupted after the current steps; finished runs are
+  /// kept, active ones are dropped.
   void run(const study_control& control = {});
 
-  /// Runs that were computed or failed, including references.
+  /// Returns the number of runs that were computed or failed, including references.
   long finished_runs() const;
 
-  /// The rows of all runs that are finished.
+  /// Returns the rows of all runs that are finished.
   convergence_table table() const;
 
  private:

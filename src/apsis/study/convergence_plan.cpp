@@ -77,7 +77,7 @@ class planner {
 
   case_config resolve(const texts& settings) const { return parse_case(text_, study_.case_name, settings); }
 
-  /// Returns the index of the run with these settings, adding it if it is not planned yet.
+  /// Returns the index of the run with these settings. Plans the run if it is new.
   std::size_t run_of(const texts& settings) {
     case_config config = resolve(settings);
     const auto [place, is_new] = known_.emplace(numerical_identity(config), plan_.runs.size());
@@ -103,7 +103,7 @@ class planner {
            static_cast<double>(setup.stages());
   }
 
-  /// Every combination, the last key varying fastest.
+  /// Resolves every combination of values; the last key varies fastest.
   void resolve_grid() {
     std::vector<std::size_t> index(study_.vary.size(), 0);
     for (bool more = true; more;) {
@@ -257,7 +257,8 @@ class planner {
     return layered(settings_of_.at(base), changes);
   }
 
-  /// The refined key one refinement beyond the finest run, by the last ratio (2 if there is only one run).
+  /// Returns the refined key one refinement beyond the finest run, by the last ratio (a factor 2 if
+  /// there is only one run).
   std::string beyond(const convergence_plan::block& block) const {
     const auto value = [&](std::size_t from_end) {
       return number_of(plan_.runs[block.rows[block.rows.size() - from_end].run], refined_key());
@@ -272,10 +273,10 @@ class planner {
   std::string text_;
   convergence_plan plan_;
   std::map<std::string, std::size_t> known_;  ///< numerical identity of a run → its index
-  std::map<std::size_t, texts> settings_of_;  ///< of the runs of the grid
+  std::map<std::size_t, texts> settings_of_;  ///< settings of the runs of the grid
   std::vector<point> grid_;
   kind reference_type_ = kind::automatic;
-  bool resolves_ = false;  ///< the refined key is a mesh or a step
+  bool resolves_ = false;  ///< whether the refined key is a mesh or a step
 };
 
 }  // namespace

@@ -11,14 +11,14 @@ namespace apsis {
 struct convergence_plan {
   /// A run and its reference.
   struct row {
-    std::vector<std::string> values;  ///< of the varied keys
+    std::vector<std::string> values;  ///< values of the varied keys
     std::size_t run;                  ///< index into `runs`
     long reference;                   ///< index of the reference; −1 is the exact solution
     double h;                         ///< h of the rate; for time keys set when the step is known
   };
-  /// Runs that differ only in the refined key; all runs without one.
+  /// Runs that differ only in the refined key; without a refined key, all runs.
   struct block {
-    std::vector<std::string> values;  ///< of the other keys
+    std::vector<std::string> values;  ///< values of the other keys
     std::string title;                ///< "time.method = md-imex-3-2, model.epsilon = 1"
     std::vector<row> rows;            ///< from coarse to fine
   };
@@ -29,13 +29,13 @@ struct convergence_plan {
       measured;                   ///< "error", or "difference" if the next finer run is the reference
   std::vector<std::string> keys;  ///< varied keys in the order of the study
   int refined = -1;               ///< index into `keys`; −1 without a refined key
-  bool refined_in_time = false;   ///< h is the actual step
+  bool refined_in_time = false;   ///< whether h is the actual step
   std::vector<case_config> runs;  ///< all different
   std::vector<double> work;       ///< estimated cost, which orders the runs
   std::vector<block> blocks;      ///< in the order of the grid
 };
 
-/// Throws input_error and io_error, see class convergence.
+/// Returns the plan of a study. Throws input_error and io_error, see class convergence.
 convergence_plan make_plan(const convergence_study& study);
 
 }  // namespace apsis

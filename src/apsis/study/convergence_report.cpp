@@ -22,7 +22,7 @@ json number(double x) {
   return std::isfinite(x) ? json(x) : json(nullptr);
 }
 
-/// The value of a key in the run, as a number if possible.
+/// Returns the value of a key in the run, as a number if possible.
 json value_of(const convergence_row& row, const std::string& key) {
   const json all = to_json(row.config);
   json value = all;
@@ -50,7 +50,7 @@ json to_json(const convergence_table& table, const convergence_row& row) {
   return out;
 }
 
-/// A cell of a CSV file; numbers with 17 digits, text in quotes where it needs them.
+/// Returns a cell of a CSV file: numbers with 17 digits, text in quotes where it needs them.
 std::string cell(const json& value) {
   if (value.is_null()) return "";
   if (value.is_number_float()) return fmt::format("{:.17g}", value.get<double>());
@@ -65,13 +65,13 @@ std::string or_dash(const std::string& form, double x) {
   return std::isfinite(x) ? fmt::format(fmt::runtime(form), x) : "-";
 }
 
-/// The values that distinguish the rows of a block.
+/// Returns the values that distinguish the rows of a block.
 std::string row_name(const convergence_table& table, const convergence_row& row) {
   return table.refined >= 0 ? row.values[static_cast<std::size_t>(table.refined)]
                             : fmt::format("{}", fmt::join(row.values, ", "));
 }
 
-/// Value of a key in the label of a curve.
+/// Returns the value of a key in the label of a curve.
 std::string label_part(const std::string& key, const std::string& value) {
   if (key == "model.epsilon") return "ε = " + value;
   if (key == "time.method" || key == "model.initial" || key == discretization_key) return value;
@@ -84,8 +84,8 @@ std::vector<std::string> outer_keys(const convergence_table& table) {
   return keys;
 }
 
-/// Index of the key with one panel per value, −1 for a single panel: of several keys the one with the fewest
-/// values, to avoid crowded panels.
+/// Returns the index of the key with one panel per value; −1 for a single panel. Of several keys it is the
+/// one with the fewest values, to avoid crowded panels.
 int panel_key(const convergence_table& table) {
   constexpr std::size_t most_panels = 6;
   const std::size_t count = outer_keys(table).size();
@@ -103,7 +103,8 @@ int panel_key(const convergence_table& table) {
   return long_lists > 1 ? chosen : -1;
 }
 
-/// Curves of the blocks that have `value` for the key of the panels (of all blocks if there is no such key).
+/// Returns the curves of the blocks that have `value` for the key of the panels (of all blocks
+/// without such a key).
 panel panel_of(const convergence_table& table, int key, const std::string& value) {
   const auto keys = outer_keys(table);
   panel axes{"", table.h_name + " (dimensionless)", table.measured + " (dimensionless)", true, true, {}, {},

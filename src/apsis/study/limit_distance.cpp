@@ -15,7 +15,7 @@
 namespace apsis {
 namespace {
 
-/// max |a − b| / max |b|; max |a − b| if b is 0.
+/// Returns max |a − b| / max |b|; max |a − b| if b is 0.
 double relative_difference(std::span<const double> a, std::span<const double> b) {
   double difference = 0.0, size = 0.0;
   for (std::size_t k = 0; k < a.size(); ++k) {
@@ -30,7 +30,7 @@ struct snapshots {
   std::vector<double> first, end;
 };
 
-/// The case with this ε, from `state`.
+/// Returns a run of the case with this ε that starts from `state`.
 simulation begin(case_config config, double epsilon, const std::vector<double>& state) {
   config.model.epsilon = fmt::format("{:.17g}", epsilon);
   simulation run(std::move(config));

@@ -16,8 +16,8 @@ enum class limit_start {
   equilibrium  ///< their local equilibrium
 };
 
-/// Distances of one run from the limit scheme, after the first step and at the end. Largest difference,
-/// relative to the largest reference value.
+/// Distances of one run from the limit scheme, after the first step and at the end. A distance is the largest
+/// difference, relative to the largest reference value.
 struct limit_row {
   double epsilon = 0.0;        ///< ε of the run
   double moments_first = 0.0,  ///< ω against the moments of the limit scheme, after the first step
@@ -36,23 +36,22 @@ struct limit_table {
   double off_equilibrium = 0.0;  ///< distance of the initial data from their local equilibrium
   std::vector<limit_row> rows;   ///< in the order of the given epsilons
 
-  /// Distance at the smallest ε.
+  /// Returns the distance at the smallest ε; NaN without rows.
   double floor(double limit_row::* column) const;
-  /// Least-squares slope of log distance against log ε, over the rows with ε < Δt/10 whose distance is above
-  /// `round_off`; empty for fewer than three such rows.
+  /// Returns the least-squares slope of log distance against log ε. It uses the rows with ε < Δt/10 whose
+  /// distance is above `round_off`; empty for fewer than three such rows.
   std::optional<double> slope(double limit_row::* column, double round_off = 1e-12) const;
-  /// One line per ε, followed by the slopes.
+  /// Returns one line per ε, followed by the slopes.
   report_table report() const;
 };
 
-/// Runs the case with each ε (a number, which replaces the ε of the case) through the production code, and
-/// the limit scheme with the same steps. The limit scheme starts from the same data, projected to their local
-/// equilibrium if the first stage of the method does not do that. Throws the errors of a simulation and
-/// of limit_scheme.
+/// Runs the case through the production code with each ε in place of its own, and the limit scheme with the
+/// same steps. The limit scheme starts from the same data. They are projected to their local equilibrium
+/// unless the first stage of the method does this. Throws the errors of a simulation and of limit_scheme.
 limit_table limit_distance(const case_config& config, const std::vector<double>& epsilons,
                            limit_start start = limit_start::given, const study_control& control = {});
 
-/// `count` numbers in geometric progression from `first` to `last`.
+/// Returns `count` numbers in geometric progression from `first` to `last`.
 std::vector<double> geometric(double first, double last, int count);
 
 }  // namespace apsis

@@ -52,7 +52,8 @@ struct limit_scheme::impl {
 
   bool relaxed(std::size_t j) const { return butcher.A(j, j) != 0.0 || butcher.A_dot(j, j) != 0.0; }
 
-  /// Factor κ_ij with which the change of stage j by relaxation enters the explicit part of stage i > j.
+  /// Returns the factor κ_ij with which the change of stage j by relaxation enters the explicit
+  /// part of stage i > j.
   double kept(std::size_t i, std::size_t j) const {
     if (butcher.A_dot(j, j) != 0.0) return butcher.A_dot(i, j) / butcher.A_dot(j, j);
     return butcher.A(j, j) != 0.0 ? butcher.A(i, j) / butcher.A(j, j) : 0.0;
@@ -64,7 +65,7 @@ struct limit_scheme::impl {
     return false;
   }
 
-  /// The explicit method on the moments.
+  /// Performs a step of the explicit method on the moments.
   void step_moments(double dt) {
     std::vector<field> slopes(stages);
     field stage;

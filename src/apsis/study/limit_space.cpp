@@ -149,7 +149,7 @@ double limit_space::limiter_coefficient(const pencil& p, int cell, std::size_t k
                                       out - limiter::low_order_edge(here), inverse_cfl_[k]);
 }
 
-/// The upwind value of component k at the face between cells `face` − 1 and `face`.
+/// Returns the upwind value of component k at the face between cells `face` − 1 and `face`.
 double limit_space::face_value(const pencil& p, int face, std::size_t k, bool ahead) const {
   const int donor = ahead ? face - 1 : face, receiver = ahead ? face : face - 1;
   const double average = p.row(donor)[k];

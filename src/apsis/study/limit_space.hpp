@@ -11,34 +11,34 @@
 
 namespace apsis {
 
-/// Space discretisation of a case, face by face, for the limit ε → 0. Independent of the operators of a run
-/// (semidiscrete): it uses only reconstruction, quartic, limiter and ghost cells of the space rooms, and
-/// moments and equilibrium of the model. Simple and slow.
+/// Space discretisation of a case, face by face, for the limit ε → 0. It is independent of the operators of a
+/// run (semidiscrete). It uses only reconstruction, quartic, limiter and ghost cells of the space rooms, and
+/// moments and equilibrium of the model. It is simple and slow.
 class limit_space {
  public:
-  /// `equation` must outlive this. Throws input_error for an unknown reconstruction, for solid boxes, and
-  /// unless the rows beyond every face are rows of cells (periodic, outflow).
+  /// `equation` must outlive this object. Throws input_error for an unknown reconstruction, and for solid
+  /// boxes or bodies. Also throws it unless the rows beyond every face are rows of cells (periodic, outflow).
   limit_space(const case_config& config, const relaxation_model& equation);
 
-  /// Sets 1/κ of limited fluxes for steps of `share` times the longest, 1 at first: κ =
-  /// share Σ_k |v_k|/Δx_k, relative to the fastest component.
+  /// Sets 1/κ of limited fluxes for steps of `share` times the longest; `share` is initially 1. κ = share Σ_k
+  /// |v_k|/Δx_k, relative to the fastest component.
   void limit_for_steps(double share);
 
-  /// Cells of the mesh; 1 without space.
+  /// Returns the number of cells of the mesh; 1 without space.
   int cells() const { return space_.mesh().size(); }
-  /// Whether unknowns are averages of cells in which the equilibrium varies, so that their equilibrium is a
-  /// mean over Gauss points; otherwise all operations are pointwise.
+  /// Returns whether unknowns are averages of cells in which the equilibrium varies. Their equilibrium is
+  /// then a mean over Gauss points; otherwise all operations are pointwise.
   bool averages() const { return averages_; }
 
-  /// ω_i = ℛu_i, [cells][moments].
+  /// Returns ω_i = ℛu_i, [cells][moments].
   field moments(const field& u) const;
-  /// E(ω_i), [cells][components]. Throws numerical_error if ω has no equilibrium.
+  /// Returns E(ω_i), [cells][components]. Throws numerical_error if ω has no equilibrium.
   field equilibria(const field& omega) const;
-  /// Π(u)_i = Σ_q w_q E(ℛu(x_q)) with the (limited) quartics u(x) of every component through the averages u;
-  /// only if averages(). ℛΠ(u) = ℛu.
+  /// Returns Π(u)_i = Σ_q w_q E(ℛu(x_q)) with the (limited) quartics u(x) of every component through the
+  /// averages u. Requires averages(). ℛΠ(u) = ℛu.
   field equilibrium_averages(const field& u) const;
-  /// T(u)_i = −Σ_k (φ_{k,i+1/2} − φ_{k,i−1/2})/Δx_k + S(u_i), φ_k the upwind fluxes of all components along
-  /// direction k.
+  /// Returns T(u)_i = −Σ_k (φ_{k,i+1/2} − φ_{k,i−1/2})/Δx_k + S(u_i). φ_k are the upwind fluxes of all
+  /// components along direction k.
   field transport(const field& u) const;
 
  private:

@@ -7,19 +7,20 @@
 
 namespace apsis {
 
-/// A small case defined by the entry of a model alone: its first initial data and default parameters, on [0,
-/// 2] with 16 cells and 60 velocities if it has them, to t = 8 Δt with Δt = Δx/2 over the largest speed (1/32
-/// without space). ε = 1, method md-imex-6-3; overrides "key=value" change other keys.
+/// Returns a small case defined by the entry of a model alone, with its first initial data and default
+/// parameters. It has 16 cells on [0, 2], and 60 velocities if the model has a velocity grid. It runs to t =
+/// 8 Δt with Δt = Δx/2 over the largest speed (1/32 without space). ε is 1 and the method md-imex-6-3;
+/// `overrides` "key=value" change other keys.
 case_config small_case(const std::string& model, const std::vector<std::string>& overrides = {});
 
-/// Names of the models of the registry whose collision is a relaxation.
+/// Returns the names of the models of the registry whose collision is a relaxation.
 std::vector<std::string> relaxation_model_names();
 
-/// The discretizations with a limit scheme (limit_space): "finite-volume" and "finite-difference"; "" alone
-/// for a model without space.
+/// Returns the discretizations with a limit scheme (limit_space): "finite-volume" and "finite-difference";
+/// only "" for a model without space.
 std::vector<std::string> formulation_names(const std::string& model);
 
-/// The override that sets the discretization (discretization_override()); none for "".
+/// Returns the override that sets the discretization (discretization_override()); an empty list for "".
 std::vector<std::string> formulation_override(const std::string& discretization);
 
 }  // namespace apsis

@@ -35,7 +35,7 @@ row equilibrium_of(const relaxation_model& m, const row& omega) {
   return e;
 }
 
-/// Q(u) = C(ω)(E(ω) − u).
+/// Returns Q(u) = C(ω)(E(ω) − u).
 row collision_of(const relaxation_model& m, const row& u) {
   const row omega = moments_of(m, u);
   row q = equilibrium_of(m, omega);
@@ -44,8 +44,8 @@ row collision_of(const relaxation_model& m, const row& u) {
   return q;
 }
 
-/// ‖Q'(u)Q(u) + C Q(u)‖. Q is linear along Q(u), where the moments are constant, so the differences may
-/// be wide.
+/// Returns ‖Q'(u)Q(u) + C Q(u)‖. Q is linear along Q(u), where the moments are constant. The differences
+/// may therefore be wide.
 double derivative_defect(const relaxation_model& m, const row& u, const row& q, double rate) {
   constexpr double h = 1e-2;
   const auto at = [&](double s) {

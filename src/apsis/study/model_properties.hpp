@@ -11,14 +11,14 @@ namespace apsis {
 struct made_model {
   const model_entry* entry;         ///< of the registry
   std::unique_ptr<model> equation;  ///< never null
-  /// The same if Q = C(ω)(E(ω) − u), else nullptr.
+  /// `equation` if Q = C(ω)(E(ω) − u), else nullptr.
   const relaxation_model* relaxation;
 };
 
-/// Every model of the registry.
+/// Returns every model of the registry.
 std::vector<made_model> all_models();
-/// Every model of the registry with nonnegative unknowns, whose collisions keep them nonnegative: by
-/// tails = "nonnegative" where the default does not.
+/// Returns every model of the registry with nonnegative unknowns, with collisions that keep them nonnegative.
+/// Where the default collisions do not, it has tails = "nonnegative".
 std::vector<made_model> nonnegative_models();
 
 /// Defects of a state in Properties 3–5 of the paper; zero up to rounding.
@@ -28,11 +28,12 @@ struct relaxation_defects {
   double derivative;    ///< ‖Q'(u)Q(u) + C Q(u)‖ / ((1 + C)(1 + ‖u‖ + ‖Q‖))   (Property 5)
 };
 
-/// Maximum norms; Q'(u)Q(u) by fourth-order differences of Q. Throws numerical_error if u has no equilibrium.
+/// Returns the defects in maximum norms, with Q'(u)Q(u) by fourth-order differences of Q. Throws
+/// numerical_error if u has no equilibrium.
 relaxation_defects defects_of(const relaxation_model& m, const std::vector<double>& u);
 
-/// v = u + λ Q(v), a backward Euler step of the collision alone, solved as inside a stage. Throws
-/// numerical_error if u has no equilibrium, or Newton's method no solution.
+/// Returns v = u + λ Q(v), a backward Euler step of the collision alone, solved as inside a stage. Throws
+/// numerical_error if u has no equilibrium, or Newton's method finds no solution.
 std::vector<double> backward_euler_on_collision(const model& m, const std::vector<double>& u, double lambda);
 
 }  // namespace apsis

@@ -66,7 +66,7 @@ experiment words(const method& m, const std::vector<double>& epsilons) {
           }};
 }
 
-/// The largest growth of several random functionals.
+/// Returns a search for the largest growth of several random functionals.
 experiment permutations(const method& m, const std::vector<double>& epsilons) {
   return {"permutations that change from stage to stage", "random symmetric convex functionals", epsilons,
           [&m](double epsilon, double promised) {
@@ -88,7 +88,8 @@ experiment permutations(const method& m, const std::vector<double>& epsilons) {
           }};
 }
 
-/// A small case uses a method of the catalogue; any other one of the same kind sets up the same operators.
+/// Returns the method that sets up a small case, which must be of the catalogue. Any method of the same kind
+/// sets up the same operators.
 std::string stand_in(method_kind kind) {
   if (solves_exactly(kind)) return integrator_names(to_string(kind)).front();
   return kind == method_kind::explicit_only ? "ssprk-2-2" : "forward-backward-euler";

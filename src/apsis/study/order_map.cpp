@@ -14,8 +14,8 @@
 namespace apsis {
 namespace {
 
-constexpr double tolerance = 1e-11;           // of the references …
-constexpr double measurable = 5 * tolerance;  // … which have about the same accuracy
+constexpr double tolerance = 1e-11;           // of the references
+constexpr double measurable = 5 * tolerance;  // smallest error that the references resolve
 
 }  // namespace
 

@@ -23,7 +23,8 @@ outcome compute_outcome(const case_config& config, const study_control& control)
   out.state = run.state();
   out.exact = run.exact_state();
   if (run.setup().has_space()) out.cell_volume = make_mesh(config).cell_volume();
-  // That of a uniform velocity grid, or the mean; velocities of other models have no part in norms.
+  // Weight of a uniform velocity grid, otherwise the mean weight. Velocities of other models
+  // have no part in norms.
   if (find_model(config.model.name).has_velocity_grid) {
     const auto weights = run.setup().equation->velocities().weights();
     const bool equal =

@@ -19,7 +19,7 @@
 namespace apsis {
 namespace {
 
-/// The case on point values with the method of both solutions.
+/// Returns the case on point values with the method of both solutions.
 case_config reference_case(case_config config) {
   config.space.discretization = "finite-difference";
   config.time.method = "ars-443";
@@ -31,7 +31,7 @@ case_config reference_case(case_config config) {
   return config;
 }
 
-/// The longest step of a run, without its start-up.
+/// Returns the longest step of a run, without its start-up.
 double step_of(case_config config) {
   if (config.time.tolerance)
     throw input_error(place_of(config, "time.tolerance"),
@@ -41,7 +41,8 @@ double step_of(case_config config) {
   return simulation(config).dt();
 }
 
-/// flux, last, layer and decay for any z, also that of a cell with ε = 0. Below 10⁻⁶ all are 1 up to O(z).
+/// Returns flux, last, layer and decay for any z, also that of a cell with ε = 0. Below 10⁻⁶
+/// all are 1 up to O(z).
 finite_rate<double> at_any_rate(const butcher_form<double>& b, double z) {
   if (z < 1e-6) return {1.0, 1.0, 1.0, 1.0 - z};
   const auto at = at_finite_rate(b, std::min(z, 1e12));
@@ -53,13 +54,13 @@ finite_rate<double> at_any_rate(const butcher_form<double>& b, double z) {
   return at;
 }
 
-/// The steps of a run: `first` instead of the first one, and `further` steps of length dt.
+/// The steps of a run: `first` replaces the first one, and `further` steps of length dt follow.
 struct step_sequence {
   std::vector<double> first;
   double dt;
   long further;
 
-  /// Graded as a run with time.startup = "graded" would be for this relaxation time, if it is positive.
+  /// Makes a graded start as a run with time.startup = "graded" does, if the relaxation time is positive.
   step_sequence(double end, double longest, double relaxation_time, int growth)
       : further(std::max(std::lround(std::ceil(end / longest * (1.0 - 1e-12))), 1L) - 1) {
     dt = end / static_cast<double>(further + 1);
@@ -67,7 +68,7 @@ struct step_sequence {
   }
 };
 
-/// Returns ∫ D/D₀ dt over a deviation D from the initial layer, as the stages have it; `rate` is C/ε.
+/// Returns ∫ D/D₀ dt of a deviation D in the initial layer, as the stages compute it. `rate` is C/ε.
 double layer_in_stages(const butcher_form<double>& b, const step_sequence& steps, double rate) {
   double acts = 0.0, left = 1.0;
   for (const double dt : steps.first) {
@@ -81,7 +82,7 @@ double layer_in_stages(const butcher_form<double>& b, const step_sequence& steps
   return acts + steps.dt * at.layer * left * sum;
 }
 
-/// ∫ e^{−Ct/ε} dt from 0 to `end`.
+/// Returns ∫ e^{−Ct/ε} dt from 0 to `end`.
 double exact_layer(double rate, double end) {
   return rate > 0.0 ? -std::expm1(-rate * end) / rate : end;
 }
@@ -126,7 +127,8 @@ class response {
     const auto [least, largest] = std::minmax_element(flux.begin(), flux.end());
     out.least_flux = *least;
     out.largest_flux = *largest;
-    // A negative ε would be no model: then a part of the change, whose response is linear.
+    // ε must not become negative. Otherwise only a part of the change is applied; the
+    // response to it is linear.
     const double part = *least < 0.0 ? 1.0 / (1.0 - *least) : 1.0;
     std::vector<perturbed_cell> cells;
     for (std::size_t k = 0; k < flux.size(); ++k) {
@@ -158,7 +160,7 @@ class response {
     return problem_builder(setup_.builder()).with_epsilon(std::move(epsilon)).build();
   }
 
-  /// C/ε of every cell; 0 in solid cells.
+  /// Returns C/ε of every cell; 0 in solid cells.
   std::vector<double> rates(const field& u) const {
     std::vector<double> omega(static_cast<std::size_t>(equation_->moment_count())), all;
     for (int cell = 0; cell < u.cells(); ++cell) {
@@ -187,7 +189,7 @@ class response {
     return u;
   }
 
-  /// The solution with a changed ε, from data shifted by −layer T′(E) D₀.
+  /// Returns the solution with a changed ε, from data shifted by −layer T′(E) D₀.
   field solution_of(const std::vector<perturbed_cell>& cells) const {
     std::map<position, double> changed;
     field shifted = equilibrium_, u = start_;
@@ -204,7 +206,7 @@ class response {
     return solve(*problem, std::move(u), nullptr);
   }
 
-  /// l2 norms of (u − solution)/part in the densities of the invariants.
+  /// Returns the l2 norms of (u − solution)/part in the densities of the invariants.
   std::vector<double> norms(const field& u, double part) const {
     const std::size_t count = equation_->invariants().size();
     std::vector<double> sums(count), here(count), there(count);

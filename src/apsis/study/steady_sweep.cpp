@@ -25,7 +25,7 @@ std::optional<double> number_in(const std::string& text) {
   return x;
 }
 
-/// "a..b" as `points` values; nothing if the text is not a range of numbers.
+/// Returns the `points` values of "a..b"; nothing if the text is not a range of numbers.
 std::optional<std::vector<std::string>> range_in(const std::string& text, int points) {
   const auto dots = text.find("..");
   if (dots == std::string::npos) return std::nullopt;
@@ -45,7 +45,7 @@ std::optional<std::vector<std::string>> range_in(const std::string& text, int po
   return values;
 }
 
-/// The mass, or the sum of the first invariant.
+/// Returns the mass, that is, the sum of the first invariant.
 double content(const model& equation, const field& u) {
   std::vector<double> densities(equation.invariants().size());
   exact_sum sum;
@@ -56,7 +56,7 @@ double content(const model& equation, const field& u) {
   return sum.value();
 }
 
-/// A state as the start of another run, with the mass of its initial data.
+/// Returns a state as the start of another run, with the mass of its initial data.
 state_source start_from(const std::vector<double>& state) {
   return [&state](const run_setup& setup) {
     field u = setup.initial_state();
@@ -87,7 +87,7 @@ class sweep {
     std::vector<case_config> cases;
     for (const std::string& value : varied_.values) {
       cases.push_back(case_of(value));
-      static_cast<void>(run_setup(cases.back()));  // refuses what only the objects of a case can
+      static_cast<void>(run_setup(cases.back()));  // refuses errors that only the objects of a case reveal
     }
     table_.title = cases.front().title.empty() ? case_name_ : cases.front().title;
     table_.key = varied_.key;
@@ -224,7 +224,7 @@ nlohmann::ordered_json to_json(const sweep_table& table) {
 
 namespace {
 
-/// Invariants with a flux that matters, in their order.
+/// Returns the invariants with a visible flux, in the order of the fluxes.
 std::vector<std::string> invariants_in(const sweep_table& table) {
   std::vector<std::string> found;
   for (const std::size_t k : visible_fluxes(table)) {

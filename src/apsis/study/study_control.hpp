@@ -19,11 +19,11 @@ struct study_control {
   void check() const;
 };
 
-/// A study was asked to stop.
+/// Thrown when a study was asked to stop.
 struct study_interrupted {};
 
-/// Runs body(k), k = 0 … count−1, on all threads (see set_threads) in the order of k, each run on one thread;
-/// reports progress and stops between runs.
+/// Runs body(k), k = 0 … count−1, on all threads (see set_threads) in the order of k, each run on one thread.
+/// Reports progress and stops between runs.
 void run_all(const study_control& control, const std::string& what, int count,
              const std::function<void(int)>& body);
 

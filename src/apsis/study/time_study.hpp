@@ -22,9 +22,10 @@ enum class first_step {
   resolved  ///< divided into steps that resolve the initial layer (graded_start)
 };
 
-/// Temporal accuracy: a case with a relaxation model on its mesh, as a system of ordinary differential
-/// equations whose exact solution is computed by extrapolate(). Space is discretised once and does not affect
-/// the error. ε is constant and given here; the ε, method and step of the case are not used.
+/// Temporal accuracy of methods on a case with a relaxation model. On its mesh, the case is a system of
+/// ordinary differential equations; extrapolate() computes the exact solution of this system. Space is
+/// discretised once and does not affect the error. ε is constant and given here; the ε, method and step of
+/// the case are not used.
 class time_study {
  public:
   /// Throws input_error unless the model is a relaxation model, and the errors of run_setup.
@@ -32,20 +33,20 @@ class time_study {
   ~time_study();
   time_study(time_study&&) noexcept;  ///< leaves the source empty
 
-  /// The initial state; always point values.
+  /// Returns the initial state, which always has point values.
   field start(start_data data) const;
-  /// The solution at the end time with `steps` equal steps.
+  /// Returns the solution at the end time with `steps` equal steps.
   field solve(const method& m, long steps, start_data data = start_data::given,
               first_step first = first_step::plain, const study_control& control = {}) const;
-  /// The exact solution of the discretised system up to about 100 · tolerance.
+  /// Returns the exact solution of the discretised system up to about 100 · tolerance.
   field reference(start_data data = start_data::given, double tolerance = 1e-11,
                   const study_control& control = {}) const;
 
-  /// time.end of the case.
+  /// Returns time.end of the case.
   double end() const;
-  /// ω = ℛu of all cells.
+  /// Returns ω = ℛu of all cells.
   std::vector<double> moments(const field& u) const;
-  /// E(ℛu) − u of all cells, component by component.
+  /// Returns E(ℛu) − u of all cells, component by component.
   std::vector<double> deviation(const field& u) const;
 
  private:
@@ -53,7 +54,7 @@ class time_study {
   std::unique_ptr<impl> impl_;
 };
 
-/// Largest difference of two states.
+/// Returns the largest difference of two states.
 double largest_difference(const field& u, const field& v);
 
 }  // namespace apsis

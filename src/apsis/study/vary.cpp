@@ -15,8 +15,8 @@
 namespace apsis {
 namespace {
 
-/// Parts of a list between commas, without space around them; commas inside brackets, braces and quotes
-/// belong to a value.
+/// Returns the parts of a list between commas, without space around them. Commas inside brackets, braces and
+/// quotes belong to a value.
 std::vector<std::string> split(const std::string& text) {
   std::vector<std::string> parts(1);
   int depth = 0;
@@ -43,10 +43,10 @@ std::vector<std::string> split(const std::string& text) {
   return parts;
 }
 
-/// A number as it is written: an integer, a fraction of integers, or a decimal.
+/// A number in its notation: an integer, a fraction of integers, or a decimal.
 struct written_number {
   double value;
-  std::optional<long> above, below;  ///< of an integer (below 1) or a fraction
+  std::optional<long> above, below;  ///< numerator and denominator of an integer or a fraction
 
   static std::optional<written_number> read(const std::string& text) {
     const auto slash = text.find('/');
@@ -58,7 +58,7 @@ struct written_number {
                           slash == std::string::npos ? 1 : parse<long>(text.substr(slash + 1))};
   }
 
-  /// The number times 2^k, in the same notation if possible.
+  /// Returns the number times 2^k, in the same notation if possible.
   std::string scaled(int k) const {
     constexpr long small = 1L << 31;
     if (!above || !below || *above > small || *below > small || std::abs(k) > 30)
@@ -84,7 +84,7 @@ struct written_number {
   throw input_error(fmt::format("--vary '{}': {}; {}", shown(text), problem, advice));
 }
 
-/// The values of "a..b"; empty if the text is not a range of numbers.
+/// Returns the values of "a..b"; empty if the text is not a range of numbers.
 std::vector<std::string> range(const std::string& value, const std::string& vary) {
   const auto dots = value.find("..");
   if (dots == std::string::npos) return {};

@@ -11,9 +11,9 @@ struct varied_key {
   std::vector<std::string> values;  ///< {"20", "40", "80"}
 };
 
-/// From "key=v1,v2,…": commas inside brackets, braces and quotes do not separate. "a..b" doubles or halves a
-/// until b: space.cells=20..160, time.dt=1/16..1/4096. Throws input_error: no key, no value, an empty or
-/// repeated value, a range that doubling does not close.
+/// Reads "key=v1,v2,…". Commas inside brackets, braces and quotes do not separate values. "a..b" doubles or
+/// halves a until b: space.cells=20..160, time.dt=1/16..1/4096. Throws input_error if there is no key or no
+/// value, a value is empty or repeated, or doubling misses the end of a range.
 varied_key parse_vary(const std::string& text);
 
 /// The reference of the errors.
@@ -28,7 +28,7 @@ struct convergence_reference {
     given        ///< each run again with `overrides`
   };
   kind type = kind::automatic;              ///< the kind in use
-  std::vector<std::string> overrides = {};  ///< "key=value", of kind::given
+  std::vector<std::string> overrides = {};  ///< "key=value", for kind::given
 };
 
 /// Reads "exact", "next", "time", "space+time", "METHOD@STEP" (method and dt of the reference) or

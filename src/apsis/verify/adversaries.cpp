@@ -80,8 +80,8 @@ void staged_problem::add_collision(double, const state& u, std::span<const targe
   });
 }
 
-// A word is a number in base letters + 1: the equilibrium (0: the initial data), then `memory` digits, with
-// the first letter as the last digit; the digit 0 is no letter.
+// A word is a number in base letters + 1. Its first digit is the equilibrium (0: the initial data), and
+// `memory` digits follow. The first letter is the last digit; the digit 0 is no letter.
 staged_problem word_problem(int letters, int memory, double epsilon) {
   const auto base = static_cast<std::size_t>(letters) + 1;
   std::size_t words = 1;

@@ -15,12 +15,12 @@ namespace apsis {
 /// Δt_FE = 1.
 
 /// u_i' = u_{i−1} − u_i on a ring: advection by first-order upwind. For τ ≤ 1 a forward Euler step u + τT(u)
-/// is a convex combination of u and u shifted by one cell, and preserves every convex functional that is
+/// is a convex combination of u and u shifted by one cell. It preserves every convex functional that is
 /// invariant under the shift. Q = 0.
 class ring_advection {
  public:
   using state = std::vector<double>;  ///< u around the ring
-  using real = double;                ///< of time and coefficients
+  using real = double;                ///< number type of time and coefficients
 
   /// acc ← (fresh ? 0 : acc) + α u + β T(u) for every target.
   void add_transport(double, const state& u, std::span<const target<state, double>> targets) {
@@ -48,21 +48,21 @@ class ring_advection {
   state work_;
 };
 
-/// A step, a spike, a comb and `random` random rows in [0, 1], each of `cells` numbers.
+/// Returns a step, a spike, a comb and `random` random rows in [0, 1], each of `cells` numbers.
 std::vector<std::vector<double>> adversarial_rows(std::size_t cells, int random);
 
-/// A problem whose T and Q are different operators at every stage, which the theory allows and which makes
-/// its bounds sharp. The last number of the state is a clock, θ' = θ, whose value identifies the stage; for
-/// the other numbers z,
-///   T(u) = S_θ z − z,   Q(u) = (E_θ(mass z) − z)/ε,
-/// with a linear map S_θ and an equilibrium E_θ that preserve the property; both may depend on θ arbitrarily,
-/// and Q conserves θ. So Properties 1–5 of the paper hold, with Δt_FE = 1. Clock values are numbered 0, 1, …
+/// A problem whose T and Q are different operators at every stage. The theory allows this, and on such
+/// problems its bounds are sharp. The last number of the state is a clock, θ' = θ, whose value identifies the
+/// stage. The other numbers z have
+///   T(u) = S_θ z − z,   Q(u) = (E_θ(mass z) − z)/ε.
+/// The linear map S_θ and the equilibrium E_θ preserve the property. Both may depend on θ arbitrarily, and Q
+/// conserves θ. Properties 1–5 of the paper therefore hold, with Δt_FE = 1. Clock values are numbered 0, 1, …
 /// in the order of their occurrence.
 class staged_problem {
  public:
   using state = std::vector<double>;  ///< z, followed by the clock
-  using real = double;                ///< of time and coefficients
-  /// out ← S_k z for the k-th value of the clock; `out` comes with room.
+  using real = double;                ///< number type of time and coefficients
+  /// out ← S_k z for the k-th value of the clock; `out` has the size of z.
   using motion = std::function<void(int k, std::span<const double> z, std::span<double> out)>;
   /// out ← E_k(mass), for the k-th value of the clock.
   using equilibrium = std::function<void(int k, double mass, std::span<double> out)>;
@@ -92,33 +92,35 @@ class staged_problem {
   state work_;
 };
 
-/// The problem of this kind that is worst for positivity. Cells are words: the last `memory` operators that
-/// acted, in the alphabet of `letters` shifts, on one of `letters` equilibria or on the initial data. S_k
-/// prepends the letter k to every word and E_k puts all mass into the word of this equilibrium alone, so
-/// contributions along different paths do not mix, and a negative coefficient of the method becomes a
-/// negative number in a cell. Methods with more stages than letters reuse letters.
+/// Returns the staged problem that is worst for positivity. Cells are words: the last `memory` operators that
+/// acted on one of `letters` equilibria or on the initial data. The alphabet of the operators has `letters`
+/// shifts. S_k prepends the letter k to every word, and E_k puts all mass into the word of its equilibrium
+/// alone. Contributions along different paths therefore do not mix: a negative coefficient of the method
+/// becomes a negative number in a cell. Methods with more stages than letters reuse letters.
 staged_problem word_problem(int letters, int memory, double epsilon);
 
-/// All mass on the word that is the initial data; the clock is 1.
+/// Returns data with all mass on the word of the initial data; the clock is 1.
 std::vector<double> word_data(int letters, int memory);
 
-/// The same problem with random permutations of `cells` cells and the mean as equilibrium: a symmetric convex
-/// functional of the cells cannot grow.
+/// Returns a staged problem with random permutations of `cells` cells, and the mean as equilibrium. A
+/// symmetric convex functional of the cells cannot grow.
 staged_problem permutation_problem(int cells, double epsilon, std::uint64_t seed);
 
-/// Spikes and random rows of `cells` numbers, followed by the clock.
+/// Returns a step, a spike, a comb and random rows of `cells` numbers, each followed by the clock.
 std::vector<std::vector<double>> permutation_data(int cells, int random);
 
-/// Σ_i h(u_i) over all but the last `ignored` numbers, with h the maximum of a few random affine functions.
+/// Returns Σ_i h(u_i) over all but the last `ignored` numbers, with h the maximum of a few
+/// random affine functions.
 std::function<double(const std::vector<double>&)> random_symmetric_functional(random_source& random,
                                                                               std::size_t ignored = 0);
 
-/// Distance of the smallest number, without the last `ignored` ones, below 0, for stays_inside.
+/// Returns the distance of the smallest number below 0 as a functional for stays_inside. The last `ignored`
+/// numbers do not count.
 std::function<double(const std::vector<double>&)> negative_part(std::size_t ignored = 0);
 
-/// Σ_i |u_i − u_{i−1}| on a ring.
+/// Returns Σ_i |u_i − u_{i−1}| on a ring.
 double total_variation(const std::vector<double>& u);
-/// max |u_i|.
+/// Returns max |u_i|.
 double maximum_norm(const std::vector<double>& u);
 
 }  // namespace apsis

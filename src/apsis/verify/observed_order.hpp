@@ -17,10 +17,10 @@ struct observed_order {
   double order;  ///< log(error before/error)/log(dt before/dt); NaN in the first row
 };
 
-/// Observed order of a method on any problem (also of a user's type, see integrate/problem.hpp): u' = T + Q
-/// is integrated from `start` at t0 to t1 with each number of steps, coarse to fine, through the stepper.
-/// Errors are distance(u(t1), reference), with a function of two states that returns a number; dimensionless
-/// if the problem is. Throws the errors of integrate().
+/// Returns the observed order of a method on any problem (also of a user's type, see integrate/problem.hpp).
+/// Integrates u' = T + Q from `start` at t0 to t1 with each number of steps, coarse to fine, through the
+/// stepper. Errors are distance(u(t1), reference), with a function of two states that returns a number. They
+/// are dimensionless if the problem is. Throws the errors of integrate().
 template <problem P, class Distance>
 std::vector<observed_order> observed_orders(const method& m, P& p, const typename P::state& start,
                                             typename P::real t0, typename P::real t1,
@@ -42,8 +42,8 @@ std::vector<observed_order> observed_orders(const method& m, P& p, const typenam
   return rows;
 }
 
-/// The same without a reference: each run against the next finer one; the finest run has no row. Differences
-/// of consecutive runs show the order without the error of a reference.
+/// Returns the observed order without a reference. Compares each run with the next finer one; the finest run
+/// has no row. Differences of consecutive runs show the order without the error of a reference.
 template <problem P, class Distance>
 std::vector<observed_order> observed_orders(const method& m, P& p, const typename P::state& start,
                                             typename P::real t0, typename P::real t1,

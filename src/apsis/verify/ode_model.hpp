@@ -8,12 +8,12 @@
 
 namespace apsis {
 
-/// A state of the ODE model of the paper (eq. vdp, numerical section) in any precision: u1' = u2,
-/// u2' = (1 + u1²)(sin u1 − u2)/ε, from t = 0 to 1. Dimensionless.
+/// A state of the ODE model of the paper (eq. vdp, numerical section) in any precision. The model is u1' =
+/// u2, u2' = (1 + u1²)(sin u1 − u2)/ε, from t = 0 to 1. Dimensionless.
 template <class Real>
 using ode_state = std::array<Real, 2>;
 
-/// The model for integrate() and extrapolate(), in closed form at every stage.
+/// Returns the model for integrate() and extrapolate(). Every stage has a closed-form solution.
 template <class Real>
 auto ode_problem(Real epsilon) {
   return make_relaxation_problem<ode_state<Real>>(
@@ -27,20 +27,20 @@ enum class ode_data {
   consistent     ///< u2 = E − ε E′E/C with E = sin 2, C = 5: the slow manifold up to O(ε²)
 };
 
-/// Initial value u(0) of these data.
+/// Returns the initial value u(0) of these data.
 template <class Real>
 ode_state<Real> ode_initial(ode_data data, Real epsilon) {
   if (data == ode_data::inconsistent) return {2, 0};
   return {2, std::sin(Real(2)) - epsilon * std::cos(Real(2)) * std::sin(Real(2)) / 5};
 }
 
-/// The paper's measure of error: |Δu1| + |Δu2|.
+/// Returns the paper's measure of error: |Δu1| + |Δu2|.
 template <class Real, class Other>
 double ode_distance(const ode_state<Real>& u, const ode_state<Other>& v) {
   return static_cast<double>(std::abs(u[0] - v[0]) + std::abs(u[1] - v[1]));
 }
 
-/// The solution at t = 1 to 1e-13 for every ε, by extrapolation in long double.
+/// Returns the solution at t = 1 to 1e-13 for every ε, by extrapolation in long double.
 ode_state<long double> ode_reference(double epsilon, ode_data data = ode_data::inconsistent,
                                      extrapolation_options<long double> how = {1e-13L});
 

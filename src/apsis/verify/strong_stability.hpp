@@ -17,16 +17,16 @@
 
 namespace apsis {
 
-/// A property that a step from `before` to `after` should preserve. `excess` measures the violation beyond
-/// rounding: ≤ 0 if preserved; NaN counts as lost. Dimensionless.
+/// A property that a step from `before` to `after` should preserve. Dimensionless.
 template <class State>
 struct kept_property {
   std::string name;  ///< "total variation"
-  /// By how much a step does not keep it; ≤ 0 where it does.
+  /// Returns the violation beyond rounding: ≤ 0 if the step preserves the property; NaN counts as lost.
   std::function<double(const State& before, const State& after)> excess;
 };
 
-/// A convex functional Φ that must not grow: Φ(after) ≤ Φ(before) + rounding (1 + |Φ(before)|).
+/// Returns the property that a convex functional Φ does not grow: Φ(after) ≤ Φ(before) +
+/// rounding (1 + |Φ(before)|).
 template <class State>
 kept_property<State> does_not_grow(std::string name, std::function<double(const State&)> functional,
                                    double rounding = 1e-13) {
@@ -37,8 +37,8 @@ kept_property<State> does_not_grow(std::string name, std::function<double(const 
           }};
 }
 
-/// Membership of a convex set, given by the distance of a state outside it (≤ 0 inside): max(0, distance)
-/// ≤ rounding.
+/// Returns membership of a convex set, given by the distance of a state outside it (≤ 0 inside), as a
+/// property: max(0, distance) ≤ rounding.
 template <class State>
 kept_property<State> stays_inside(std::string name, std::function<double(const State&)> distance,
                                   double rounding = 0.0) {
@@ -47,13 +47,13 @@ kept_property<State> stays_inside(std::string name, std::function<double(const S
           }};
 }
 
-/// r such that Δt ≤ r Δt_FE preserves what forward Euler steps preserve, from the certificate: steps of the
-/// transport for IMEX methods, of T + Q for explicit ones. Implicit methods: infinity if unconditional,
-/// otherwise the classical radius in forward Euler steps of Q.
+/// Returns r such that Δt ≤ r Δt_FE preserves what forward Euler steps preserve, from the certificate. These
+/// are steps of the transport for IMEX methods, of T + Q for explicit ones. For implicit methods r is
+/// infinity if the property is unconditional, otherwise the classical radius in forward Euler steps of Q.
 double promised_coefficient(const certificate& c);
 
-/// A problem with observed stages: `look(u)` is called with every stage value. With exact collisions,
-/// collisions are exact if they are known.
+/// A problem with observed stages: `look(u)` is called with every stage value. For methods with exact
+/// collisions, it uses the exact collisions of the problem, if they are known.
 template <problem P>
 class watched_problem {
  public:
@@ -96,9 +96,9 @@ class watched_problem {
   {
     inner_.add_collision(t, u, targets);
   }
-  /// Δt_FE of the problem.
+  /// Returns Δt_FE of the problem.
   real forward_euler_step(real t, const state& u) const { return inner_.forward_euler_step(t, u); }
-  /// Whether collisions are exact.
+  /// Returns whether collisions are exact.
   bool collides_exactly() const { return exact_ || apsis::collides_exactly(inner_); }
 
  private:
@@ -107,11 +107,11 @@ class watched_problem {
   std::function<void(const state&)> look_;
 };
 
-/// The largest Δt for which a method preserves a property in every one of `how.steps` steps from all of the
-/// data, in units of Δt_FE (the smallest of the data; `how.unit` if T has none). Methods with SSP coefficient
-/// r preserve what forward Euler steps preserve for Δt ≤ r Δt_FE, so a smaller result refutes the method, the
-/// property or Δt_FE; a larger one means that the data are not the worst. A step that ends with a
-/// numerical_error loses the property. Throws input_error without data or unit.
+/// Returns the largest Δt for which a method preserves a property in every one of `how.steps` steps from all
+/// of the data. It is in units of Δt_FE, the smallest of the data (`how.unit` if T has none). Methods with
+/// SSP coefficient r preserve what forward Euler steps preserve for Δt ≤ r Δt_FE. A smaller result therefore
+/// refutes the method, the property or Δt_FE. A larger one means that the data are not the worst. A step that
+/// ends with a numerical_error loses the property. Throws input_error without data or unit.
 template <problem P>
 step_limit largest_step(const method& m, P& equation, std::span<const typename P::state> data,
                         const kept_property<typename P::state>& property, const step_search& how = {}) {
@@ -147,8 +147,9 @@ step_limit largest_step(const method& m, P& equation, std::span<const typename P
   });
 }
 
-/// The largest τ for which u + τ T(u) preserves the property from all of the data: an upper bound of Δt_FE.
-/// In units of the problem's own Δt_FE: a result below 1 refutes it. Throws as largest_step.
+/// Returns the largest τ for which u + τ T(u) preserves the property from all of the data: an upper
+/// bound of Δt_FE. It is in units of the problem's own Δt_FE, so that a result below 1 refutes it.
+/// Throws as largest_step does.
 template <problem P>
 step_limit largest_forward_euler_step(P& equation, std::span<const typename P::state> data,
                                       const kept_property<typename P::state>& property,

@@ -4,9 +4,9 @@ namespace apsis {
 namespace e5_problem {
 namespace {
 
-/// Four species. The rate of the third is the difference of two others: y₂ − y₃ − y₄ = 0 is conserved to
-/// rounding errors of the largest values, 1e-10, which add up to 1e-25. Digits below this are not asked for
-/// (`sizes`).
+/// Four species. The rate of the third is the difference of two others, so that y₂ − y₃ − y₄ = 0 is
+/// conserved up to rounding. Rounding errors of the largest values, 1e-10, add up to 1e-25. Digits below
+/// this do not count (`sizes`).
 struct formula {
   template <class T, class U, class V>
   void operator()(const T&, const U& y, V& f) const {

@@ -6,7 +6,7 @@ namespace {
 
 constexpr std::size_t cells = 200;
 
-/// An antibody that diffuses from the left into a tissue of immobile receptors, each cell a pair of unknowns.
+/// An antibody diffuses from the left into a tissue of immobile receptors. Each cell has a pair of unknowns.
 struct formula {
   double left;  ///< concentration at the left end, which jumps
 

@@ -4,7 +4,7 @@ namespace apsis {
 namespace oregonator_problem {
 namespace {
 
-/// Belousov–Zhabotinskii reaction, a limit cycle with layers.
+/// Belousov–Zhabotinskii reaction: a limit cycle with layers.
 struct formula {
   template <class T, class U, class V>
   void operator()(const T&, const U& y, V& f) const {

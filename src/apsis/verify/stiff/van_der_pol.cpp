@@ -4,7 +4,7 @@ namespace apsis {
 namespace van_der_pol_problem {
 namespace {
 
-/// y' = z, z' = ((1 − y²) z − y)/ε.
+/// y' = z, z' = ((1 − y²) z − y)/ε with ε = 1e-6.
 struct formula {
   template <class T, class U, class V>
   void operator()(const T&, const U& y, V& f) const {

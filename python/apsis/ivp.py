@@ -10,9 +10,10 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _core
 from .arguments import number, real_array, text
+from .derivatives import as_square_matrix
 from .errors import CostWarning, InputError, NumericalError
 from .methods import Method, method as find_method
-from .system import System
+from .system import System, entries_of
 
 if TYPE_CHECKING:
     from scipy.optimize import OptimizeResult
@@ -26,7 +27,7 @@ def solve_ivp(transport: Function | None, collision: Function | None, t_span: Se
               args: Sequence[Any] = (), rtol: ArrayLike = 1e-3, atol: ArrayLike = 1e-6, jac: Any = None, jac_sparsity: Any = None,
               vectorized: bool = False, first_step: float | None = None, max_step: float = math.inf, dt: float | None = None,
               forward_euler_step: Function | None = None, admissible: Function | None = None, solver: str = "dense",
-              controller: str = "predictive") -> OptimizeResult:
+              controller: str = "predictive", mass: Any = None) -> OptimizeResult:
     """Solves y' = T(t, y) + Q(t, y), y(t0) = y0, T explicitly and Q implicitly. Returns the result object of SciPy's solve_ivp.
 
         scipy.integrate.solve_ivp(f, t_span, y0, method="Radau", jac=J)        becomes
@@ -52,6 +53,9 @@ def solve_ivp(transport: Function | None, collision: Function | None, t_span: Se
     nonzero. It or a sparse jac chooses sparse factorizations; differences then need one call for each group of columns. A constant
     matrix, or a sparse jac at (t0, y0), defines the pattern itself. solver="krylov" iterates without matrices, for Q that is not stiff.
 
+    `mass`, a constant array or sparse matrix M of shape (n, n), makes the system M y' = T(t, y) + Q(t, y), as finite elements have it.
+    M must be invertible. forward_euler_step is then that of y' = M⁻¹ T. A sparse M and a sparse jac keep stage systems sparse.
+
     Returns scipy.optimize.OptimizeResult with t (m,), y (n, m), sol (scipy.integrate.OdeSolution or None), t_events, y_events, nfev
     (calls of transport and collision), njev (of jac), nlu (matrices factorized), status (0: end reached, 1: a terminal event, −1: a step
     failed), message and success. Further entries are method, steps, rejected and derivatives.
@@ -71,10 +75,11 @@ def solve_ivp(transport: Function | None, collision: Function | None, t_span: Se
     if dt is not None and controller != "predictive":
         raise InputError("dt and a controller are given (with dt all steps have that length); remove one of them")
     problem.prepare(span, start, jac, jac_sparsity)
+    masses = None if mass is None else (start.size, entries_of(as_square_matrix("mass is", mass, start.size)))
     if np.any(integrator.ddot != 0):
         problem.require_exact(start, integrator.name)
     evolution = _core.Evolution(problem, integrator._core, relative, absolute, *_step_lengths(dt, first_step, max_step, forward_euler_step is not None),
-                                text("controller", controller), _is_krylov(solver, problem, start.size, integrator), problem.places,
+                                text("controller", controller), _is_krylov(solver, problem, start.size, integrator), problem.places, masses,
                                 [int(np.sign(getattr(e, "direction", 0))) for e in listed], [_endings(e) > 0 for e in listed])
     record = _Record(evolution, wanted, dense_output, span[0], start)
     status, message = _march(evolution, record, span, start, listed)

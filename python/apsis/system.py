@@ -128,6 +128,13 @@ class System:
                              "none there); give jac_sparsity with all places")
 
 
+def entries_of(matrix: Any) -> list[tuple[int, int, float]]:
+    """Returns row, column and value of the entries of an array or sparse matrix that are not 0."""
+    rows, columns = _entries(matrix, zeros=False)
+    values = matrix[rows, columns] if not hasattr(matrix, "tocoo") else matrix.tocoo().data[matrix.tocoo().data != 0]
+    return list(zip(rows.tolist(), columns.tolist(), np.asarray(values).ravel().tolist()))
+
+
 def _entries(matrix: Any, zeros: bool) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     """Rows and columns of the entries that are not 0; with `zeros`, of all stored ones of a sparse matrix."""
     if not hasattr(matrix, "tocoo"):

@@ -4,6 +4,7 @@
 #include "callback.hpp"
 
 #include <apsis/core/errors.hpp>
+#include <apsis/integrate/mass_matrix.hpp>
 #include <apsis/integrate/newton_problem.hpp>
 #include <apsis/integrate/sparsity_pattern.hpp>
 
@@ -12,6 +13,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -118,6 +120,16 @@ class counted_problem : public newton_problem<transport, timed_field> {
   long systems_ = 0;
 };
 
+/// Number of rows, and row, column and value of every entry.
+using mass_entries = std::pair<std::size_t, std::vector<std::tuple<std::size_t, std::size_t, double>>>;
+
+std::optional<mass_matrix<double>> matrix_of(const std::optional<mass_entries>& of) {
+  if (!of) return std::nullopt;
+  std::vector<mass_matrix<double>::entry> entries;
+  for (const auto& [row, column, value] : of->second) entries.push_back({row, column, value});
+  return mass_matrix<double>(of->first, entries);
+}
+
 /// How long steps are.
 struct step_lengths {
   std::vector<double> rtol, atol;         ///< one number, or one for each unknown
@@ -136,7 +148,7 @@ class python_evolution {
  public:
   python_evolution(const py::object& of, const method& m, const step_lengths& steps, bool krylov,
                    const std::optional<std::pair<std::size_t, std::vector<sparsity_pattern::place>>>& places,
-                   event_functions<state, double> events)
+                   std::optional<mass_matrix<double>> mass, event_functions<state, double> events)
       : of_(of), problem_(of_, krylov ? linear_solver::krylov : linear_solver::dense) {
     std::optional<step_tolerance<state, double>> tolerance;
     if (!steps.dt) {
@@ -145,6 +157,7 @@ class python_evolution {
       tolerance = {1.0, wanted, steps.first, steps.controller};
     }
     if (places) problem_.with_sparsity(sparsity_pattern(places->first, places->second));
+    if (mass) problem_.with_mass(std::move(*mass));
     if (of_.admissible)
       problem_.with_admissible(
           [this](std::span<const double> v) { return of_.admissible->truth((*of_.admissible)(look(v))); });
@@ -203,11 +216,12 @@ void bind_evolution(py::module_& m) {
                   std::optional<double> dt, std::optional<double> first, std::optional<double> most,
                   std::string controller, bool krylov,
                   const std::optional<std::pair<std::size_t, std::vector<sparsity_pattern::place>>>& places,
-                  const std::vector<int>& directions, std::vector<bool> ends) {
+                  const std::optional<mass_entries>& mass, const std::vector<int>& directions,
+                  std::vector<bool> ends) {
                  return std::make_unique<python_evolution>(
                      of, by,
                      step_lengths{std::move(rtol), std::move(atol), dt, first, most, std::move(controller)},
-                     krylov, places,
+                     krylov, places, matrix_of(mass),
                      event_functions<state, double>{directions.size(), {}, directions, std::move(ends)});
                }),
            py::keep_alive<1, 3>())

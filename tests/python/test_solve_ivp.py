@@ -258,7 +258,67 @@ def test_strong_stability_limits_steps():
         assert (y.min() >= -1e-13 and y.max() <= 1 + 1e-13) == kept
 
 
+class Elements:
+    """Linear finite elements of u_t = u_xx with u = 0 at the ends of [0, 1]: M u' = K u."""
+
+    def __init__(self, n):
+        self.h, self.x = 1 / (n + 1), np.arange(1, n + 1) / (n + 1)
+        self.mass = self.h / 6 * scipy_sparse.diags([1.0, 4.0, 1.0], [-1, 0, 1], shape=(n, n), format="csr")
+        self.stiffness = scipy_sparse.diags([1.0, -2.0, 1.0], [-1, 0, 1], shape=(n, n), format="csr") / self.h
+
+    def exact(self, k, t):
+        """Returns the mode sin(kπx), which decays at the rate 6/h² (1 − cos kπh)/(2 + cos kπh): insert it into the equations."""
+        c = math.cos(k * math.pi * self.h)
+        return np.sin(k * math.pi * self.x) * math.exp(-6 / self.h ** 2 * (1 - c) / (2 + c) * t)
+
+
+@pytest.mark.parametrize("method", ["auto", "md-imex-8-3-mixed", "extrapolated-euler-5"])
+@pytest.mark.parametrize("form", ["sparse", "dense", "columns"])
+def test_finite_elements_decay_as_their_modes_do(form, method):
+    of = Elements(100)  # stiffness 12/h² = 1.2e5
+    jac = {"sparse": of.stiffness, "dense": of.stiffness.toarray(), "columns": None}[form]
+    mass = of.mass if form == "sparse" else of.mass.toarray()
+    found = apsis.solve_ivp(None, lambda t, y: of.stiffness @ y, (0, 0.05), of.exact(1, 0) + of.exact(3, 0), method=method, jac=jac,
+                            mass=mass, rtol=1e-6, atol=1e-9)
+    assert found.success and found.steps < 400
+    # A digit less than the tolerance of one step: errors of steps add up.
+    np.testing.assert_allclose(found.y[:, -1], of.exact(1, 0.05) + of.exact(3, 0.05), rtol=0, atol=2e-5)
+
+
+def test_a_mass_matrix_divides_both_parts():
+    mass = np.array([[2.0, 1.0], [0.5, 3.0]])
+
+    def transport(t, y):
+        return np.array([math.cos(t) * y[1], -y[0]])
+
+    def collision(t, y):
+        return np.array([-50 * (y[0] - np.sin(t)) ** 3 - 50 * y[0], y[0] - y[1]])
+
+    radau = scipy_integrate.solve_ivp(lambda t, y: np.linalg.solve(mass, transport(t, y) + collision(t, y)), (0, 2), [1.0, 0.5],
+                                      method="Radau", rtol=1e-10, atol=1e-12)
+    for form in (mass, mass.tolist(), scipy_sparse.csc_matrix(mass)):
+        found = apsis.solve_ivp(transport, collision, (0, 2), [1.0, 0.5], method="ark-548-2", mass=form, rtol=1e-8, atol=1e-10)
+        np.testing.assert_allclose(found.y[:, -1], radau.y[:, -1], rtol=1e-6)  # two digits less than the tolerance of a step
+    krylov = apsis.solve_ivp(transport, collision, (0, 2), [1.0, 0.5], method="ark-548-2", mass=mass, solver="krylov", rtol=1e-8, atol=1e-10)
+    np.testing.assert_allclose(krylov.y[:, -1], radau.y[:, -1], rtol=1e-6)
+    # Explicit methods use M, too.
+    driven = apsis.solve_ivp(lambda t, y: transport(t, y) + collision(t, y), None, (0, 2), [1.0, 0.5], method="dop853", mass=mass, rtol=1e-8,
+                             atol=1e-10)
+    np.testing.assert_allclose(driven.y[:, -1], radau.y[:, -1], rtol=1e-6)
+
+
+def test_units_of_equations_do_not_matter_to_a_mass_matrix():
+    of, units = Elements(20), np.exp2(np.arange(20) * 4 - 40)
+    ends = [apsis.solve_ivp(None, lambda t, y: scale * (of.stiffness @ y), (0, 0.05), of.exact(1, 0), jac=scipy_sparse.diags(scale) @ of.stiffness,
+                            mass=scipy_sparse.diags(scale) @ of.mass, rtol=1e-6).y[:, -1] for scale in (np.ones(20), units)]
+    np.testing.assert_allclose(ends[0], ends[1], rtol=1e-9)  # roundings of another order of elimination
+
+
 REFUSED = [
+    (dict(mass=[[0.0]]), "the mass matrix is singular to working precision"),
+    (dict(mass=[[math.nan]]), "the mass matrix has an entry nan in row 0 and column 0"),
+    (dict(mass=[1.0, 2.0]), r"mass is an array of shape \(2,\)"),
+    (dict(mass=np.eye(2)), r"mass is an array of shape \(2, 2\)"),
     (dict(t_span=(1, 0)), "t_span does not increase"),
     (dict(t_span=(0, math.inf)), "t_span is not two finite times"),
     (dict(y0=[[1.0]]), r"y0 has the shape \(1, 1\)"),

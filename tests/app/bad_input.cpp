@@ -1,5 +1,5 @@
-// Bad input to the real program: exit code, one clear message, nothing on standard output, no files
-// left behind.
+// The real program refuses bad input with its exit code and one clear message. It prints nothing to standard
+// output and leaves no files behind.
 #include <support/bad_input.hpp>
 
 #include "program.hpp"
@@ -23,7 +23,7 @@ const std::string good_method =
     "ssp_coefficient = \"unconditional\"\n[shu_osher]\nP = [[]]\n"
     "d = [\"1\"]\nddot = [\"-1/2\"]\n";
 
-/// "a.a.a", n parts.
+/// Returns "a.a.a" with n parts.
 std::string many_dots(int n) {
   std::string key = "a";
   for (int i = 1; i < n; ++i) key += ".a";
@@ -54,8 +54,7 @@ void write_files(const work_folder& folder) {
   folder.file("unnamed.toml", named(""));
   folder.file("taken.toml", named("md-imex-3-2"));
   folder.file("dots.toml", many_dots(50000) + " = 1\n" + good_method);
-  // A megabyte of comments: if the file were truncated there, the rest would be a method without its
-  // last lines.
+  // A megabyte of comments. If the program cut the file there, it would read a method without its last lines.
   folder.file("long.toml", good_method + "#" + std::string(1'100'000, 'x') + "\n");
   std::filesystem::create_directory(folder.path() / "damaged");
   folder.file("damaged/manifest.json", "{");
@@ -63,8 +62,8 @@ void write_files(const work_folder& folder) {
   folder.file("not_hdf5.h5", "this is no HDF5 file");
 }
 
-/// Runs a command that must leave no file behind and, unless a claim does not hold, print nothing but an
-/// error.
+/// Runs a command, which must leave no file behind. It prints only an error, or a report if a claim does not
+/// hold (exit code 5).
 bad_input::answer answer_to(const work_folder& folder, const std::vector<std::string>& arguments) {
   const auto before = folder.listing();
   const outcome result = run_apsis(folder, arguments);
@@ -138,7 +137,7 @@ TEST(bad_input, results_of_an_earlier_run_survive_a_failed_start) {
 TEST(bad_input, a_numerical_failure_retains_the_computed_results_and_reports_it) {
   const work_folder folder;
   write_files(folder);
-  // The explicit method far above its stability limit of dt = O(epsilon).
+  // This step of the explicit method is far above its stability limit, dt = O(epsilon).
   const outcome result = run_apsis(folder, {"run", "good.toml", "time.method=ssprk-2-2", "model.epsilon=1e-6",
                                             "time.end=0.5", "time.dt=0.001", "--out", "o"});
   EXPECT_EQ(result.code, 3) << result.err;

@@ -57,7 +57,8 @@ TEST(list, of_methods_has_a_cell_for_every_column) {
     const auto found = std::find_if(lines.begin(), lines.end(),
                                     [&](const std::string& line) { return line.starts_with(name + " "); });
     ASSERT_NE(found, lines.end()) << name;
-    // Name, ten numbers or dashes, the data and the terms of size ε: "any m" and "cons. m" have two words.
+    // Every row has a name, ten numbers or dashes, the data and the terms of size ε. The last entries may
+    // have two words: "any m", "cons. m".
     const auto words = words_of(*found);
     ASSERT_GE(words.size(), 12u) << *found;
     EXPECT_EQ(words[1], std::to_string(m["order"].get<int>())) << *found;
@@ -93,7 +94,7 @@ TEST(run, without_a_method_states_the_choice_in_the_first_line_of_its_log) {
 TEST(run, restarts_with_the_method_of_the_checkpoint_where_the_program_chose_it) {
   const work_folder folder;
   folder.file("law.toml", law);
-  // As a program with another table of choices would have begun it.
+  // The method differs from the choice, as after a start by a program with another table of choices.
   ASSERT_EQ(run_apsis(folder, {"run", "law.toml", "time.method=md-imex-5-2", "--out", "r"}).code, 0);
   const auto later =
       run_apsis(folder, {"run", "law.toml", "time.end=0.02", "--restart", "r/checkpoint.h5", "--out", "r"});

@@ -24,7 +24,7 @@ std::vector<std::string> command_files() {
   return names;
 }
 
-/// The first words of the lines below "Subcommands:".
+/// Returns the first words of the lines below "Subcommands:".
 std::vector<std::string> commands_of_the_help() {
   const work_folder folder;
   std::istringstream help(run_apsis(folder, {"--help"}).out);
@@ -47,7 +47,7 @@ TEST(commands, of_the_help_are_the_files_of_their_folder) {
 }
 
 TEST(commands, of_the_help_begin_with_those_that_compute) {
-  // In the order of the files the help would begin with check.
+  // If the help listed commands in the order of their files, it would begin with check.
   const auto names = commands_of_the_help();
   ASSERT_GE(names.size(), 2U);
   EXPECT_EQ(names[0], "run");

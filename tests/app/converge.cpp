@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 const std::vector<std::string> small = {"converge", "paper/ode",         "--vary", "model.epsilon=1,1e-10",
                                         "--vary",   "time.dt=1/16..1/64"};
 
-/// Rows without the columns that differ between two identical runs.
+/// Returns the rows without the columns that differ between two identical runs.
 json without_times(json rows) {
   for (auto& row : rows)
     for (const char* time : {"wall_s", "cpu_s"}) row.erase(time);
@@ -41,7 +41,7 @@ TEST(converge, prints_only_an_array) {
     for (const std::string key :
          {"model.epsilon", "time.dt", "error", "rate", "steps", "dt", "wall_s", "cpu_s", "min_value"})
       EXPECT_TRUE(row.contains(key)) << key;
-  // Third order, against the next finer run.
+  // The errors against the next finer run decrease with order 3, up to terms of higher order.
   EXPECT_NEAR(rows[2]["rate"].get<double>(), 3.0, 0.15);
   EXPECT_NEAR(rows[5]["rate"].get<double>(), 3.0, 0.15);
   EXPECT_TRUE(fs::is_empty(folder.path()));
@@ -94,7 +94,7 @@ TEST(converge, a_picture_is_drawn_or_its_absence_is_reported) {
 
 TEST(converge, a_failed_run_is_a_row_and_gives_exit_code_3) {
   const work_folder folder;
-  // The explicit method far beyond its stability limit: its values overflow.
+  // The step of the explicit method is far beyond its stability limit, so its values overflow.
   const outcome result = run_apsis(
       folder, {"converge", "paper/ode", "model.epsilon=1e-6", "--vary", "time.method=ssprk-3-3,md-imex-6-3",
                "--vary", "time.dt=1/128,1/256", "--reference", "md-imex-6-3@1/1024", "--json", "--out", "o"});
@@ -110,7 +110,7 @@ TEST(converge, a_failed_run_is_a_row_and_gives_exit_code_3) {
 
 TEST(converge, an_interrupt_retains_finished_runs) {
   const work_folder folder;
-  // Fifty runs one after the other: several seconds on any machine.
+  // Fifty runs in succession take several seconds on any machine.
   process run(folder, {"converge", "paper/bgk-accuracy", "velocity.points=100", "time.end=0.3", "--threads",
                        "1", "--vary", "space.cells=24", "--vary",
                        "model.epsilon=1,2,3,4,5,6,7,8,9,10,11,12,13,14,15,16,17,18,19,20,21,22,23,24,25",

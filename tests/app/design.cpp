@@ -35,13 +35,13 @@ TEST(design, writes_a_method_that_can_be_checked_and_used) {
   const json found = json::parse(result.out);
   EXPECT_EQ(found["starts"], 40);
   EXPECT_TRUE(found["found"].get<bool>());
-  // r = s - 2 is the ceiling; Ipopt stops within 1e-9 of it.
+  // The largest r is s - 2. Ipopt stops within 1e-9 of it.
   EXPECT_NEAR(found["method"]["ssp_coefficient"].get<double>(), 1.0, 1e-6);
   const outcome check = run_apsis(folder, {"check", "found.toml", "--json"});
   ASSERT_EQ(check.code, 0) << check.err;
   EXPECT_EQ(json::parse(check.out), found["method"]);
   EXPECT_EQ(run_apsis(folder, {"run", "paper/ode", "time.method=found.toml"}).code, 0);
-  // The same search has the same result.
+  // A repeated search has the same result.
   const std::string first = read(folder.path() / "found.toml");
   ASSERT_EQ(run_apsis(folder, design({"--order", "2", "--stages", "3", "--starts", "40", "--time", "3600",
                                       "--threads", "1"}))
@@ -71,7 +71,7 @@ TEST(design, writes_a_two_step_method_that_can_be_checked_improved_and_run) {
   const outcome drawn = run_apsis(folder, {"plot", "found.toml"});
   EXPECT_EQ(drawn.code, 2);
   EXPECT_THAT(drawn.err, HasSubstr("'found' takes two steps (steps = 2: equal ones"));
-  // From the method itself the search ends with one that is no worse.
+  // A search that starts from the method itself ends with one that is no worse.
   const outcome again = run_apsis(
       folder, {"design", "--out", "again.toml", "--steps", "2", "--order", "2", "--stages", "3",
                "--objective", "error", "--ssp", "0.5", "--starts", "1", "--from", "found.toml", "--json"});
@@ -118,7 +118,7 @@ TEST(design, writes_a_method_again_with_its_embedded_solution) {
   };
   EXPECT_EQ(run_apsis(folder, with_method("with.toml")).code, 0);
   EXPECT_EQ(run_apsis(folder, with_method("ars-443")).code, 0);
-  // A damaged row is caught.
+  // check detects a damaged row.
   std::string text = read(folder.path() / "with.toml");
   text.replace(text.rfind("d = \"1/2\""), 9, "d = \"1/3\"");
   folder.file("damaged.toml", text);

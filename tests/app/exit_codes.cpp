@@ -17,8 +17,8 @@ namespace fs = std::filesystem;
 
 constexpr int input = 2, output = 4;
 
-/// A command line; "FILE" stands for the file in question. Exit codes if it is missing, a folder, or
-/// not text.
+/// A command line, in which "FILE" stands for the file in question. The exit codes are those for a missing
+/// file, a folder, and bytes that are not text.
 struct reader {
   std::vector<std::string> arguments;
   int missing, folder, garbage;
@@ -46,7 +46,7 @@ void expect_failure(const work_folder& folder, const reader& r, const std::strin
   SCOPED_TRACE(arguments.front() + " " + arguments.back());
   const auto before = folder.listing();
   const outcome result = run_apsis(folder, arguments);
-  // Without Python nothing is drawn, and this is reported first.
+  // Without Python no picture is drawn. The program reports this before it reads the file.
   if (result.err.find("pictures cannot be drawn") != std::string::npos) return;
   EXPECT_EQ(result.code, code) << result.err;
   EXPECT_THAT(result.err, HasSubstr("error: "));
@@ -90,8 +90,7 @@ TEST(exit_codes, of_files_that_are_missing_folders_or_no_text) {
 
 TEST(exit_codes, of_files_that_cannot_be_read) {
   const work_folder folder;
-  // The first page of a process's memory: it can be opened, and reading it fails for every user,
-  // including root.
+  // This is the first page of a process's memory. Every user can open it, but reading fails, even for root.
   fs::create_symlink("/proc/self/mem", folder.path() / "broken.toml");
   folder.file("closed.toml", "[model]\n");
   fs::permissions(folder.path() / "closed.toml", fs::perms::none);

@@ -1,5 +1,5 @@
-// Signals: a command reacts within a step of the first one. No test depends on time: a signal is sent when a
-// line was printed or a file was opened, during work that never ends by itself.
+// A command reacts to a signal within a step. No test depends on time: the signal is sent after a line was
+// printed or a file was opened, during work that would last for hours or minutes.
 #include "program.hpp"
 
 #include <csignal>
@@ -43,7 +43,7 @@ class every_signal : public testing::TestWithParam<int> {};
 
 TEST_P(every_signal, ends_converge_within_a_step_and_states_what_it_waits_for) {
   const work_folder folder;
-  // Ten thousand million steps, for hours.
+  // Ten thousand million steps take hours.
   process run(folder,
               {"converge", "paper/ode", "--vary", "time.dt=1e-10,1e-11", "--threads", "1", "--out", "o"});
   ASSERT_TRUE(run.wait_for("3 runs; "));
@@ -58,7 +58,7 @@ TEST_P(every_signal, ends_converge_within_a_step_and_states_what_it_waits_for) {
 
 TEST_P(every_signal, ends_a_run_before_its_first_step_and_leaves_nothing_behind) {
   const work_folder folder;
-  // Ten million cells with ten formulas each: minutes of sampling.
+  // The sampling of three formulas in 1.5 million cells lasts until the signal arrives.
   folder.file("c.toml",
               "[model]\nname = \"bgk\"\nepsilon = 0.1\n[velocity]\nmax = 8\npoints = 16\n[space]\ncells = "
               "1500000\ndomain = [0, 1]\n[time]\nmethod = \"md-imex-6-3\"\nend = 1.0\ndt = "
@@ -95,7 +95,7 @@ TEST_P(every_signal, ends_commands_that_have_nothing_to_save) {
 
 TEST_P(every_signal, ends_the_drawing_of_plot_and_report_and_leaves_nothing_behind) {
   const work_folder folder, temporary;
-  // Replaces Python: succeeds in the test for its modules, then runs without end.
+  // This script replaces Python. It succeeds in the test for its modules, then runs without end.
   folder.file("python",
               "#!/bin/sh\ncase \"$1\" in -c) exit 0;; esac\necho $$ > child; echo drawing >&2\n"
               "exec tail -f /dev/null\n");

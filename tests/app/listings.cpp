@@ -1,4 +1,4 @@
-// Lists, certificates and manuals: the same facts as text and as JSON.
+// Lists, certificates and manuals contain the same facts as text and as JSON.
 #include "program.hpp"
 
 #include <map>
@@ -75,7 +75,7 @@ TEST(listings, the_list_of_methods_fits_a_wide_terminal_and_names_the_families) 
   const work_folder folder;
   const std::string text = run_apsis(folder, {"list", "methods"}).out;
   std::istringstream lines(text);
-  // Characters of one byte only, so bytes are columns.
+  // All characters have one byte, so the number of bytes is the number of columns.
   for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 130U) << line;
   EXPECT_THAT(text, HasSubstr("md-imex-chain-S-2"));
   EXPECT_THAT(text, HasSubstr("no O(epsilon) plateau"));

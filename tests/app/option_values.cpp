@@ -1,4 +1,4 @@
-// Values of options and arguments: every one of every command, from the command definitions themselves.
+// Values of all options and arguments of all commands, which the test reads from the command definitions.
 #include "program.hpp"
 
 #include <gmock/gmock.h>
@@ -67,7 +67,8 @@ TEST(option_values, the_definitions_name_options_of_every_type) {
     numbers += t.type == "FLOAT" ? 1 : 0;
     integers += t.type == "INT" || t.type == "UINT" ? 1 : 0;
   }
-  // Current number, half of them of apsis design; fewer means that the test no longer reads all definitions.
+  // These are the current numbers, half of them of apsis design. Fewer mean that the test no longer
+  // reads all definitions.
   EXPECT_GE(options, APSIS_HAS_DESIGN ? 30 : 17);
   EXPECT_GE(arguments, 9);
   EXPECT_GE(numbers, APSIS_HAS_DESIGN ? 8 : 1);
@@ -81,7 +82,7 @@ TEST(option_values, that_cannot_be_meant_are_refused_by_the_name_of_the_option) 
     for (const std::string& value : bad_values(t)) {
       SCOPED_TRACE(t.command + " " + t.name + " '" + value + "'");
       std::vector<std::string> arguments = {t.command};
-      // An argument is the n-th of its command: the ones before it get a word.
+      // The arguments before this one get a word.
       if (t.type.empty())
         for (const taker& other : takers) {
           if (other.command != t.command || !other.type.empty()) continue;

@@ -1,4 +1,4 @@
-// `apsis run --profile`: exactly the kernels that the schedule of the method requires.
+// `apsis run --profile` lists exactly the kernels that the schedule of the method requires.
 #include "program.hpp"
 
 #include <apsis/integrate/schedule.hpp>
@@ -75,11 +75,11 @@ TEST(profile, counts_walls_and_forces_where_there_are_some) {
   };
   const auto tube = kernels_in("gas/sod"), plates = kernels_in("gas/couette"),
              driven = kernels_in("gas/poiseuille");
-  EXPECT_EQ(tube.count("walls"), 1U);  // its ends are open
+  EXPECT_EQ(tube.count("walls"), 1U);  // both ends are open
   EXPECT_EQ(tube.count("forces"), 0U);
   EXPECT_GT(plates.at("walls")["numbers"].get<double>(), 0.0);
   EXPECT_EQ(plates.count("forces"), 0U);
-  // A force acts on all numbers as often as the sweeps.
+  // A force acts on all numbers as often as the sweeps do.
   EXPECT_DOUBLE_EQ(driven.at("forces")["numbers"].get<double>(),
                    driven.at("fluxes")["numbers"].get<double>());
 }

@@ -23,7 +23,8 @@ class work_folder {
   work_folder& operator=(const work_folder&) = delete;
   const std::filesystem::path& path() const { return path_; }
   std::string file(const std::string& name, const std::string& text) const;
-  /// Every path below, sorted, with sizes: two equal listings mean that no file was left behind.
+  /// Returns every path below the folder, sorted, with sizes. Two equal listings mean that no file
+  /// was left behind.
   std::vector<std::string> listing() const;
 
  private:
@@ -34,15 +35,15 @@ class work_folder {
 class process {
  public:
   enum class hangups { received, ignored };
-  /// With `ignored` signals, as under nohup.
+  /// Starts the program; with `ignored` it ignores hangups, as under nohup.
   process(const work_folder& folder, const std::vector<std::string>& arguments,
           hangups hangup = hangups::received);
   void send(int signal) const;
-  /// Waits until seen() or the end of the program, without a time limit; returns seen().
+  /// Waits without a time limit until seen() or the end of the program, and returns seen().
   bool wait_until(const std::function<bool()>& seen) const;
-  /// Standard error so far.
+  /// Returns the text on standard error so far.
   std::string said() const;
-  /// Waits until standard error has the text; false if the program ends without it.
+  /// Waits until standard error has the text; returns false if the program ends without it.
   bool wait_for(const std::string& text) const;
   outcome wait();
 
@@ -55,7 +56,7 @@ outcome run_apsis(const work_folder& folder, const std::vector<std::string>& arg
 
 std::string read(const std::filesystem::path& path);
 
-/// Returns the arguments with more of them behind.
+/// Appends `more` to the arguments.
 inline std::vector<std::string> with(std::vector<std::string> arguments,
                                      const std::vector<std::string>& more) {
   arguments.insert(arguments.end(), more.begin(), more.end());

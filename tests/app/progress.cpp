@@ -1,4 +1,4 @@
-// The progress bar: only on a terminal.
+// The progress bar appears only on a terminal.
 #include "terminal.hpp"
 
 #include <gmock/gmock.h>
@@ -22,7 +22,8 @@ namespace {
 const std::string erase_line = "\r\033[K";
 constexpr const char* bar = "\\[=*>? *\\] +[0-9]+ %  ([0-9:]+|--) left  ";
 
-/// Texts on the terminal between erasures, including the text before the first and after the last.
+/// Returns the texts on the terminal between erasures, including the text before the first and
+/// after the last.
 std::vector<std::string> drawn(const std::string& text) {
   std::vector<std::string> parts;
   for (std::size_t begin = 0;;) {
@@ -33,7 +34,7 @@ std::vector<std::string> drawn(const std::string& text) {
   }
 }
 
-/// Only texts with a bar.
+/// Returns only the texts with a bar.
 std::vector<std::string> bars(const std::string& text) {
   std::vector<std::string> found;
   for (const auto& part : drawn(text))
@@ -53,7 +54,7 @@ TEST(progress, of_a_run_on_a_terminal_is_drawn_with_its_steps_and_erased_at_the_
   EXPECT_THAT(bars(run.err),
               Each(ContainsRegex("^" + std::string(bar) + "step [0-9]+/[0-9]+  t = .*  min .*[0-9]$")));
   EXPECT_THAT(run.err, EndsWith(erase_line));
-  // The summary is on standard output, untouched by the bar.
+  // The summary is on standard output, without characters of the bar.
   EXPECT_THAT(run.out, HasSubstr("complete"));
   EXPECT_THAT(run.out, Not(HasSubstr("\033")));
 }
@@ -99,7 +100,7 @@ TEST(progress, of_a_study_begins_with_the_number_of_its_runs) {
 
 TEST(progress, is_erased_before_an_error_is_reported) {
   const work_folder folder;
-  // No method of order 4 has two stages, so that every start fails.
+  // No method of order 4 has two stages, so every start fails.
   const outcome run = run_on_terminal(
       folder, {"design", "--order", "4", "--stages", "2", "--starts", "3", "--out", "d.toml"}, 0);
   ASSERT_EQ(run.code, 3) << run.err;

@@ -1,4 +1,4 @@
-// apsis reproduce as a process: verdicts, report, resuming, and failures.
+// `apsis reproduce` as a process: verdicts, report, resuming, and failures.
 #include "program.hpp"
 
 #include <csignal>
@@ -20,7 +20,7 @@ using nlohmann::json;
 using testing::HasSubstr;
 using testing::Not;
 
-/// An environment variable for the programs started in this scope.
+/// Sets an environment variable for the programs that this scope starts.
 class environment {
  public:
   environment(const char* name, const char* value) : name_(name) { setenv(name, value, 1); }
@@ -92,7 +92,7 @@ TEST(reproduce, keeps_the_data_where_no_python_draws) {
 
 TEST(reproduce, an_interrupt_retains_checked_claims) {
   const work_folder folder;
-  // All claims take more than a minute, so the first one is not the last when the signal comes.
+  // All claims take more than a minute, so the signal comes before the last one.
   app_test::process running(folder, {"reproduce", "--threads", "1", "--out", "r"});
   const auto file = folder.path() / "r" / "reproduce.json";
   ASSERT_TRUE(running.wait_until([&] { return std::filesystem::exists(file); }));

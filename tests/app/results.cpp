@@ -25,7 +25,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Large enough for hundreds of steps, small enough for a second.
+// The case is large enough for hundreds of steps and small enough for a second.
 const std::vector<std::string> small = {"run", "paper/bgk-mixed", "space.cells=20", "velocity.points=100"};
 
 std::vector<std::string> lines(const std::string& text) {
@@ -35,7 +35,7 @@ std::vector<std::string> lines(const std::string& text) {
   return out;
 }
 
-/// All numbers and the case; the manifest in the file contains the time of writing.
+/// Compares all numbers and the case, but not the manifest in the file, which contains the time of writing.
 void expect_same_solution(const fs::path& a, const fs::path& b) {
   const auto one = apsis::hdf5_file::open(a.string()), other = apsis::hdf5_file::open(b.string());
   ASSERT_EQ(one.datasets(), other.datasets());
@@ -69,7 +69,7 @@ void expect_same_results(const fs::path& a, const fs::path& b) {
     EXPECT_TRUE(read(a / "snapshots" / name) == read(b / "snapshots" / name)) << name;
 }
 
-/// Checks that every dataset of the description exists with the stated size. Returns their number.
+/// Checks that every dataset of the description exists with the stated size, and returns their number.
 int check_references(const fs::path& folder) {
   const std::string text = read(folder / "solution.xdmf");
   static const std::regex item("Precision=\"([48])\" Dimensions=\"([0-9 ]+)\">([^:<]+):/([^<]+)<");
@@ -113,8 +113,8 @@ TEST(results, the_state_of_an_ode_is_printed_with_every_digit) {
       run_apsis(folder, {"run", "paper/decay", "time.method=imdrk-1-2", "time.dt=2.0", "--json"});
   ASSERT_EQ(result.code, 0) << result.err;
   const double u = json::parse(result.out)["state"][0].get<double>();
-  // One step of u = 10 - dt 10 u² - dt²/2 200 u³ with dt = 2. The residual is the sum of terms of size 10, so
-  // some roundings of 1e-15.
+  // One step of u = 10 - dt 10 u² - dt²/2 200 u³ with dt = 2. The residual adds terms of size 10, so it has
+  // some rounding errors of 1e-15.
   EXPECT_NEAR(10.0 - 20.0 * u * u - 400.0 * u * u * u - u, 0.0, 1e-13);
 }
 
@@ -148,7 +148,7 @@ TEST(results, files_agree_with_each_other) {
             "step,t,dt,min_value,negative_values,conservation_mass,conservation_momentum,conservation_energy,"
             "entropy,"
             "entropy_change,change,total_mass,total_momentum,total_energy");
-  // A header, the initial state, and every step.
+  // The file has a header, the initial state, and every step.
   EXPECT_EQ(history.size(), 2 + manifest["result"]["steps"].get<std::size_t>());
   const auto fields = lines(read(folder.path() / "o/fields.csv"));
   EXPECT_EQ(fields[0], "t,x,rho,u,T,heat_flux");
@@ -176,7 +176,7 @@ TEST(results, a_solution_carries_its_case_and_its_manifest) {
   ASSERT_EQ(run_apsis(folder, with(small, {"time.end=0.004", "--out", "o"})).code, 0);
   const auto file = apsis::hdf5_file::open((folder.path() / "o/solution.h5").string());
   EXPECT_EQ(file.read_text_attribute("manifest"), read(folder.path() / "o/manifest.json"));
-  // The case in the file is complete: it runs to the same numbers.
+  // The case in the file is complete: a run of it gives the same numbers.
   folder.file("again.toml", file.read_text_attribute("case"));
   ASSERT_EQ(run_apsis(folder, {"run", "again.toml", "--out", "p"}).code, 0);
   expect_same_solution(folder.path() / "o/solution.h5", folder.path() / "p/solution.h5");
@@ -206,19 +206,19 @@ TEST(results, snapshots_of_the_distribution_are_of_some_cells_and_of_the_chosen_
         ASSERT_EQ(static_cast<float>(f[300 * cell + k]), static_cast<float>(g[100 * cell + k]));
     }
   }
-  // The last snapshot is the end, with every digit of every cell.
+  // The last snapshot is the final state, with every digit of every cell.
   const auto last = apsis::hdf5_file::open((folder.path() / "all/snapshots" / names.back()).string());
   const auto end = apsis::hdf5_file::open((folder.path() / "some/solution.h5").string());
   EXPECT_EQ(last.read("f"), end.read("f"));
   for (const std::string which : {"all", "some"}) EXPECT_GT(check_references(folder.path() / which), 20);
-  // A run without snapshots removes those of the earlier one.
+  // A run without snapshots removes those of an earlier run.
   ASSERT_EQ(run_apsis(folder, with(run, {"output.distribution=none", "--out", "all"})).code, 0);
   EXPECT_FALSE(fs::exists(folder.path() / "all/snapshots"));
   EXPECT_FALSE(apsis::hdf5_file::open((folder.path() / "all/solution.h5").string()).has("f"));
 }
 
-/// Runs that share no kernel of their transport or collision: point values, averages with collisions at Gauss
-/// points and at centres, laws with formulas and a gas between walls.
+/// The runs share no kernel of transport or collision: point values, averages with collisions at Gauss points
+/// and at centres, laws with formulas, and a gas between walls.
 TEST(results, two_runs_and_any_number_of_threads_give_the_same_bits) {
   const std::vector<std::vector<std::string>> runs = {
       with(small, {"time.end=0.005"}),
@@ -258,7 +258,8 @@ class interruption : public testing::TestWithParam<int> {};
 
 TEST_P(interruption, gives_130_and_a_checkpoint_that_continues_bit_for_bit) {
   const work_folder folder;
-  // The signal comes after the first step, when a checkpoint exists; the run is then far from its end.
+  // The signal comes when the first checkpoint exists, after the first step and long before the end
+  // of the run.
   const fs::path checkpoint = folder.path() / "stopped/checkpoint.h5";
   process run(folder, with(small, {"time.end=50.0", "output.every=0.01", "output.checkpoint_every=1", "--out",
                                    "stopped"}));
@@ -293,7 +294,7 @@ TEST(results, fifty_kills_at_random_moments_lose_nothing) {
   for (int attempt = 0; attempt < 50; ++attempt) {
     const std::string before = read(saved);
     process run(folder, go_on("1"));
-    // Every second run reaches at least its first step, and is killed at a random moment after it.
+    // Every second run completes at least its first step before it is killed at a random moment.
     if (attempt % 2 == 0) {
       ASSERT_TRUE(run.wait_until([&] { return read(saved) != before; }));
     }
@@ -317,7 +318,7 @@ INSTANTIATE_TEST_SUITE_P(signals, interruption, testing::Values(SIGINT, SIGTERM,
 
 TEST(results, a_graded_start_continues_from_a_checkpoint_bit_for_bit_and_reports_its_cost) {
   const work_folder folder;
-  // Steps slow enough that the run can be stopped after the first step of the graded start.
+  // The steps are slow enough that the run can be stopped after the first step of the graded start.
   const std::vector<std::string> slow = {"run",
                                          "paper/bgk-mixed",
                                          "time.method=md-imex-4-2",
@@ -371,7 +372,8 @@ TEST(results, a_checkpoint_of_another_case_or_a_damaged_one_is_refused) {
 TEST(results, a_run_to_a_tolerance_continues_from_a_checkpoint_bit_for_bit_and_reports_rejections) {
   const work_folder folder;
   const auto run = with(small, {"time.method=md-imex-8-3", "time.tolerance=1e-5", "time.end=0.4"});
-  // At half the time, on any machine; its checkpoint belongs to a run with a later end.
+  // The first run ends at half the time, independently of the machine. Its checkpoint continues in a run with
+  // a later end.
   ASSERT_EQ(run_apsis(folder, with(run, {"time.end=0.2", "--out", "stopped"})).code, 0);
   const outcome resumed =
       run_apsis(folder, with(run, {"--restart", "stopped/checkpoint.h5", "--out", "resumed"}));

@@ -1,5 +1,5 @@
-// Threats to the results of a user: full disks, closed terminals, two runs in one folder, more memory or more
-// steps than available.
+// The results of a user survive full disks, closed terminals, two runs in one folder, and runs that need more
+// memory or more steps than available.
 #include "program.hpp"
 
 #include <apsis/core/version.hpp>
@@ -30,7 +30,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Runs a line of sh in the folder, with $APSIS for the program and its output in files.
+/// Runs a line of sh in the folder. $APSIS is the program; its output is in files.
 outcome shell(const work_folder& folder, const std::string& line) {
   folder.file("line.sh", "APSIS='" + std::string(APSIS_PROGRAM) + "'\ncd '" + folder.path().string() +
                              "' || exit 99\n{ " + line + "\n} > out.txt 2> err.txt\n");
@@ -48,13 +48,13 @@ std::vector<std::string> into(std::vector<std::string> arguments, const std::str
   return arguments;
 }
 
-/// Waits for a condition that will become true.
+/// Waits for a condition that will become true. The wait has no time limit.
 template <class Condition>
 void await(const Condition& happened) {
   while (!happened()) std::this_thread::sleep_for(std::chrono::milliseconds(5));
 }
 
-/// Ends the process with 41 and the message of the error.
+/// Writes beyond a limit of the file size, and ends the process with code 41 and the message of the error.
 [[noreturn]] void write_beyond_a_limit(const std::string& path) {
   std::signal(SIGXFSZ, SIG_IGN);
   const rlimit small{4096, 4096};
@@ -76,8 +76,8 @@ void await(const Condition& happened) {
 TEST(a_full_disk, is_an_output_error_in_every_file_and_leaves_the_earlier_results_alone) {
   const work_folder folder;
   ASSERT_EQ(shell(folder, "$APSIS run " + gas + " time.end=0.002 --out o").code, 0);
-  // A file size limit acts as a full disk. In units of 512 bytes: from one that stops the first file to one
-  // that stops only the last HDF5 file.
+  // A limit of the file size acts as a full disk. The limits, in units of 512 bytes, range from one that
+  // stops the first file to one that stops only the last HDF5 file.
   for (const int blocks : {1, 8, 20, 36}) {
     const outcome full = shell(
         folder, "ulimit -f " + std::to_string(blocks) + "; $APSIS run " + gas + " time.end=0.01 --out o");
@@ -95,7 +95,7 @@ TEST(a_full_disk, is_an_output_error_in_every_file_and_leaves_the_earlier_result
 TEST(a_full_disk, ends_an_hdf5_file_without_a_crash_at_the_end_of_the_process) {
   const work_folder folder;
   const std::string path = (folder.path() / "x.h5").string();
-  // In a separate process: HDF5 used to crash when the process ended.
+  // HDF5 used to crash at the end of the process, so the test needs a process of its own.
   EXPECT_EXIT(write_beyond_a_limit(path), testing::ExitedWithCode(41), "File too large");
 }
 
@@ -112,7 +112,7 @@ TEST(unwritable_messages, do_not_change_how_the_program_ends) {
 
 TEST(unwritable_messages, do_not_end_up_in_results) {
   const work_folder folder;
-  // Without descriptors 1 and 2 the first files of the run would get their numbers.
+  // Without descriptors 1 and 2 the first files of the run would get these numbers.
   EXPECT_EQ(shell(folder, "$APSIS run paper/ode --out o >&- 2>&-").code, 4);
   for (const std::string name : {"manifest.json", "history.csv", "fields.csv", "solution.xdmf"})
     EXPECT_THAT(read(folder.path() / "o" / name), Not(HasSubstr("info: "))) << name;
@@ -131,7 +131,7 @@ TEST(a_result_folder, belongs_to_one_run_at_a_time) {
     EXPECT_THAT(second.err, AllOf(HasSubstr("is in use (process "), HasSubstr("wait for that run to end")))
         << what;
   }
-  // A killed process releases the folder, whatever files it leaves.
+  // The end of a killed process releases the folder, even if files remain.
   first.send(SIGKILL);
   EXPECT_EQ(first.wait().code, 1000 + SIGKILL);
   EXPECT_TRUE(fs::exists(folder.path() / "o/.lock"));
@@ -172,7 +172,7 @@ TEST(a_hangup, is_ignored_under_nohup) {
       folder,
       {"run", "paper/bgk-mixed", "space.cells=20", "velocity.points=100", "time.end=0.05", "--out", "o"},
       process::hangups::ignored);
-  // Not before the program runs: between fork and exec a hangup still kills.
+  // Wait until the program runs: between fork and exec a hangup still kills it.
   await(
       [&] { return fs::exists(folder.path() / "o/.lock") || fs::exists(folder.path() / "o/manifest.json"); });
   await([&] {
@@ -207,7 +207,7 @@ TEST(a_run, of_very_many_steps_is_announced_as_such_and_its_history_stays_small)
   for (std::string line; std::getline(history, line); ++lines) last = line;
   EXPECT_LE(lines, 1001);
   EXPECT_EQ(std::stol(last), manifest["result"]["steps"].get<long>());
-  // The estimate comes after a thousand steps, which a machine may not reach in half a second.
+  // The program prints the estimate after a thousand steps. A machine may not reach them in half a second.
   if (manifest["result"]["steps"].get<long>() >= 1000) {
     EXPECT_THAT(result.err, AllOf(HasSubstr("about 1e+12 steps are left"), HasSubstr(" s a step")));
   }
@@ -237,7 +237,7 @@ TEST(a_manifest, records_version_command_and_host_of_a_run) {
 
 namespace {
 
-/// Names under which a run writes into its folder before its files are complete, and their final names.
+/// Names under which a run writes files before they are complete, and the final names of these files.
 const std::vector<std::string> written_names = {".lock",
                                                 ".probe.partial",
                                                 ".history.csv.partial",
@@ -351,7 +351,7 @@ TEST(safety_of_results, iterations_that_were_not_enough_continue_from_their_chec
   EXPECT_THAT(first.err, HasSubstr("no steady state in 5 iterations"));
   const outcome second = run("100", {"--restart", "o/checkpoint.h5"});
   EXPECT_EQ(second.code, 0) << second.err;
-  // Every iteration is in the history once.
+  // The history has every iteration once.
   std::istringstream history(read(folder.path() / "o/history.csv"));
   std::string line;
   std::getline(history, line);

@@ -30,7 +30,7 @@ struct pseudo_terminal {
   int reader, writer = -1;
 };
 
-/// Everything up to the end of the last process that can write.
+/// Reads until the last process that can write has ended.
 std::string read_all(int descriptor) {
   std::string text;
   char part[4096];

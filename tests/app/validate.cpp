@@ -1,4 +1,4 @@
-// apsis validate as a process: verdicts, report, a value for other parameters, and refusals.
+// `apsis validate` as a process: verdicts, report, a value for other parameters, and refusals.
 #include "program.hpp"
 
 #include <filesystem>
@@ -40,7 +40,7 @@ TEST(validate, computes_a_value_for_other_parameters) {
   EXPECT_EQ(document["name"], "couette");
   EXPECT_EQ(document["settings"], (json{"delta=2.5", "velocity.points=48"}));
   EXPECT_EQ(document["warnings"], json::array());
-  // Between the reference values at δ = 2 and 5.
+  // The value lies between the reference values at δ = 2 and 5.
   EXPECT_LT(document["value"].get<double>(), 0.4436);
   EXPECT_GT(document["value"].get<double>(), 0.2522);
   EXPECT_FALSE(std::filesystem::exists(folder.path() / "results"));  // nothing is written

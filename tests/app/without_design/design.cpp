@@ -1,5 +1,5 @@
-// apsis design in a program that was built without Ipopt: an error of exit code 2 that says so, whatever is
-// asked.
+// In a program without Ipopt, apsis design ends with exit code 2 and a message that says so,
+// whatever its arguments.
 #include "command_registry.hpp"
 
 #include <apsis/core/errors.hpp>
@@ -25,7 +25,7 @@ TEST(without_design, the_command_says_that_it_is_missing) {
     CLI::App program;
     CLI::App* command = program.add_subcommand(apsis::app::command_design.name);
     const auto run = apsis::app::command_design.define(*command);
-    program.parse(std::vector<std::string>(line.rbegin(), line.rend()));  // as CLI11 wants it
+    program.parse(std::vector<std::string>(line.rbegin(), line.rend()));  // CLI11 expects the reverse order
     ASSERT_TRUE(command->parsed());
     try {
       run();

@@ -1,4 +1,4 @@
-// Identities that hold to the last bit, or to rounding errors.
+// Identities of shapes and rotations that hold to the last bit or up to rounding errors.
 #include "body/examples.hpp"
 
 #include <apsis/body/rotation.hpp>
@@ -20,7 +20,7 @@ namespace {
 using namespace body_examples;
 using apsis::shape_list;
 
-/// A random number of [−2, 2] with a full significand.
+/// Returns a random number of [−2, 2] with a full significand.
 double any_number() {
   return *rc::gen::inRange(-2'000'000'000, 2'000'000'001) / 999'999'937.0;
 }
@@ -58,7 +58,8 @@ TEST(exact_shapes, functions_of_multiples_of_a_right_angle_are_exact) {
   }
   for (double degrees = -720.0; degrees <= 720.0; degrees += 7.3) {
     const auto [c, s] = apsis::functions_of_degrees(degrees);
-    // The argument in radians has a rounding error of 2e-15.
+    // The argument in radians has a rounding error of 2e-15, which changes cosine and sine by at
+    // most as much.
     EXPECT_NEAR(c, std::cos(degrees * std::numbers::pi / 180.0), 4e-15) << degrees;
     EXPECT_NEAR(s, std::sin(degrees * std::numbers::pi / 180.0), 4e-15) << degrees;
   }
@@ -73,7 +74,7 @@ TEST(exact_shapes, rotations_by_right_angles_only_permute_coordinates) {
       return made("box",
                   {{"from", numbers{-0.1, 0.3, 0.7}}, {"to", numbers{1.3, 0.9, 1.7}}, {"rotate", turn}}, 3);
     };
-    // The bodies are rotated forwards, so the point is rotated backwards.
+    // The keys rotate the bodies forwards, so the point rotates backwards.
     EXPECT_EQ(about({0, 0, 2, 90})->outside(x), cuboid->outside({x[1], -x[0], x[2]}));
     EXPECT_EQ(about({0.5, 0, 0, 90})->outside(x), cuboid->outside({x[0], x[2], -x[1]}));
     EXPECT_EQ(about({0, 1, 0, -90})->outside(x), cuboid->outside({x[2], x[1], -x[0]}));

@@ -16,12 +16,12 @@ using apsis::position;
 
 /// A shape with values of its keys.
 struct example {
-  std::string name;            ///< of the kind
+  std::string name;            ///< name of the kind
   int dimensions = 2;          ///< 2 or 3
-  apsis::shape_values values;  ///< of its keys
+  apsis::shape_values values;  ///< values of its keys
   std::function<bool(const position& x)>
-      is_body;              ///< whether a point belongs to the body, by another formula
-  bool is_distance = true;  ///< whether φ is a distance, of Lipschitz constant 1
+      is_body;              ///< returns true in the body, by another formula than that of the shape
+  bool is_distance = true;  ///< true if φ is a distance, with Lipschitz constant 1
 };
 
 using numbers = std::vector<double>;
@@ -67,7 +67,7 @@ inline std::vector<example> planar_examples() {
        2,
        {{"from", numbers{-0.5, -0.2}}, {"to", numbers{0.7, 0.6}}},
        [](const position& x) { return x[0] >= -0.5 && x[0] <= 0.7 && x[1] >= -0.2 && x[1] <= 0.6; }},
-      // An L, clockwise.
+      // An L with clockwise corners.
       {"polygon",
        2,
        {{"points", points{{0, 0}, {0, 1}, {0.4, 1}, {0.4, 0.5}, {1, 0.5}, {1, 0}}}},
@@ -113,7 +113,7 @@ inline std::vector<example> spatial_examples() {
              return square((x[0] - 0.1) / 0.9) + square(x[1] / 0.3) + square((x[2] - 0.2) / 0.5) <= 1.0;
            },
            false},
-          // Along (1, 2, 2)/3, with ends at ±0.6.
+          // The axis is (1, 2, 2)/3, the ends lie at ±0.6.
           {"cylinder",
            3,
            {{"centre", numbers{0.1, 0.0, 0.0}},
@@ -158,7 +158,7 @@ inline std::vector<example> all_examples() {
   return all;
 }
 
-/// Random points of [−1.5, 1.5]^d, the same in every run.
+/// Draws random points of [−1.5, 1.5]^d, the same in every run.
 class random_points {
  public:
   explicit random_points(int dimensions) : dimensions_(static_cast<std::size_t>(dimensions)) {}

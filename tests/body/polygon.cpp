@@ -1,4 +1,4 @@
-// Polygons: distances, orientation, and what is refused.
+// Polygons: distances, orientation, and refused input.
 #include "body/examples.hpp"
 
 #include <apsis/core/errors.hpp>
@@ -38,7 +38,7 @@ TEST(polygon, with_many_sides_is_a_circle) {
   constexpr int sides = 1000;
   const auto many = made("polygon", {{"points", regular(sides, 0.8)}}, 2);
   const auto circle = made("circle", {{"centre", numbers{0, 0}}, {"radius", 0.8}}, 2);
-  // The surfaces differ by at most r (1 − cos(π/n)).
+  // The surfaces of the polygon and the circle differ by at most r (1 − cos(π/n)).
   const double sagitta = 0.8 * (1.0 - std::cos(std::numbers::pi / sides));
   random_points points(2);
   for (int n = 0; n < 500; ++n) {
@@ -60,7 +60,7 @@ TEST(polygon, that_is_a_rectangle_equals_a_box) {
       const position x = points.next();
       EXPECT_NEAR(rectangle->outside(x), box->outside(x), 1e-15);
     }
-    // A ray along x passes through corners and along edges.
+    // Rays along x from these points pass through corners or along edges.
     EXPECT_LT(rectangle->outside({0.0, 0.4, 0.0}), 0.0);
     EXPECT_GT(rectangle->outside({-1.0, 0.1, 0.0}), 0.0);
     EXPECT_GT(rectangle->outside({-1.0, 0.7, 0.0}), 0.0);
@@ -78,8 +78,8 @@ RC_GTEST_PROP(polygon, of_a_star_contains_the_points_below_its_radius, ()) {
     corners.push_back({r * std::cos(angle), r * std::sin(angle)});
   }
   const auto star = made("polygon", {{"points", corners}}, 2);
-  // Each sector is a triangle with a corner at the origin: x = s a + t b with s, t ≥ 0 lies inside for s + t
-  // < 1.
+  // Each sector is a triangle with a corner at the origin. The point x = s a + t b with s, t ≥ 0 lies inside
+  // if s + t < 1.
   const auto k = static_cast<std::size_t>(*rc::gen::inRange(0, count));
   const auto &a = corners[k], &b = corners[(k + 1) % corners.size()];
   const double s = *rc::gen::inRange(1, 100) / 90.0, t = *rc::gen::inRange(1, 100) / 90.0;

@@ -1,4 +1,4 @@
-// Files of surfaces: both formats, and what is refused.
+// Files of surfaces: both formats, and refused input.
 #include <apsis/body/read_stl.hpp>
 
 #include "body/triangles.hpp"
@@ -110,7 +110,8 @@ TEST(read_stl, refuses_coordinates_that_are_not_finite_numbers) {
   });
   triangle_list triangles = unit_cube();
   triangles[1][2][0] = std::nan("");
-  // 84 bytes of the header, 50 of the first triangle, 12 of the normal and 24 of two corners.
+  // The position has 84 bytes of the header, 50 of the first triangle, 12 of the normal and 24
+  // of two corners.
   bad_input::expect_refused({
       {[&] { read("nan.stl", binary_stl(triangles)); }, {"at byte 170", "in triangle 2"}},
   });
@@ -138,10 +139,10 @@ TEST(read_stl, finds_a_built_in_file_by_its_name) {
     volume += (a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) +
                a[2] * (b[0] * c[1] - b[1] * c[0])) /
               6.0;
-  // A box and two panels; coordinates have single precision.
+  // The satellite is a box with two panels. Its coordinates have single precision.
   EXPECT_NEAR(volume, 1.2 * 1.2 * 1.2 + 2 * 0.4 * 1.0 * 0.8, 1e-6);
   EXPECT_TRUE(apsis::built_in_stl("gas/satellite.stl")->starts_with("solid satellite\n"));
-  // Another path of the same letters is that of a file.
+  // A path other than the built-in name is that of a file.
   EXPECT_THROW(apsis::read_stl("./gas/satellite.stl"), apsis::io_error);
   EXPECT_FALSE(apsis::built_in_stl("gas/satellite"));
 }
@@ -158,7 +159,7 @@ TEST(shape_stl, is_scaled_rotated_and_then_shifted) {
   random_points points(3);
   for (int n = 0; n < 1'000; ++n) {
     const position x = points.next();
-    // The same distances, rounded in another order.
+    // Both shapes have the same distances, rounded in another order.
     ASSERT_NEAR(stl->outside(x), box->outside(x), 2e-15);
   }
 }

@@ -1,4 +1,4 @@
-// Kinds of shapes and their keys: what is refused, and with which words.
+// Kinds of shapes and their keys: refused input and the words of the refusals.
 #include "body/examples.hpp"
 
 #include <apsis/core/errors.hpp>
@@ -34,7 +34,7 @@ TEST(shape_registry, describes_every_kind_and_its_keys) {
     EXPECT_NE(entry->make, nullptr) << entry->name;
     EXPECT_FALSE(entry->dimensions.empty()) << entry->name;
     if (entry->dimensions.size() == 1) {
-      // Another shape, or the shape in its list.
+      // The advice for a shape of one number of dimensions names another shape, or the list for the shape.
       const std::string& advice = entry->alternative;
       if (entry->keys.front().kind == apsis::shape_value_kind::shapes) {
         EXPECT_THAT(advice,

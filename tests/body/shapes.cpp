@@ -1,4 +1,4 @@
-// Signs and distances of all shapes, against independent formulas.
+// Signs and distances of all shapes agree with independent formulas.
 #include "body/examples.hpp"
 
 #include <apsis/core/errors.hpp>
@@ -25,7 +25,7 @@ double distance(const position& a, const position& b) {
   return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
 }
 
-/// R y about a unit axis, by the half-angle formula of quaternions.
+/// Returns R y for the rotation R about a unit axis, by the half-angle formula of quaternions.
 position turned_by(double degrees, const position& axis, const position& y) {
   const double half = degrees * std::numbers::pi / 360.0, w = std::cos(half), s = std::sin(half);
   const position q = {s * axis[0], s * axis[1], s * axis[2]};
@@ -36,7 +36,7 @@ position turned_by(double degrees, const position& axis, const position& y) {
   return {y[0] + 2.0 * (w * t[0] + u[0]), y[1] + 2.0 * (w * t[1] + u[1]), y[2] + 2.0 * (w * t[2] + u[2])};
 }
 
-/// Length of the gradient by central differences.
+/// Returns the length of the gradient by central differences.
 double slope_of(const apsis::shape& of, const position& x, int dimensions) {
   constexpr double h = 1e-5;
   double sum = 0.0;
@@ -49,7 +49,7 @@ double slope_of(const apsis::shape& of, const position& x, int dimensions) {
   return std::sqrt(sum);
 }
 
-/// A point with φ = 0 between a point of the gas and one of the body, by bisection.
+/// Returns a point with φ = 0 between a point of the gas and one of the body, by bisection.
 position surface_point(const apsis::shape& of, position gas, position body) {
   for (int n = 0; n < 60; ++n) {
     const position middle = {0.5 * (gas[0] + body[0]), 0.5 * (gas[1] + body[1]), 0.5 * (gas[2] + body[2])};
@@ -79,7 +79,7 @@ TEST(shapes, the_sign_is_that_of_an_independent_description) {
       ASSERT_EQ(phi <= 0.0, one.is_body(x)) << one.name << ": " << x[0] << ' ' << x[1] << ' ' << x[2];
       bodies += phi <= 0.0 ? 1 : 0;
     }
-    // Some hundred points lie on either side.
+    // At least 1 % of the points lie on either side.
     EXPECT_GT(bodies, 200) << one.name;
     EXPECT_LT(bodies, 19'800) << one.name;
   }
@@ -127,7 +127,8 @@ TEST(shapes, no_shape_has_jumps) {
       const position x = points.next();
       position y = points.next();
       for (std::size_t k = 0; k < 3; ++k) y[k] = x[k] + 1e-7 * y[k];
-      // Approximations of the distance are steeper than 1, but at most by the ratio of the semi-axes.
+      // Approximations of the distance may be steeper than 1. The ratio of the semi-axes, below 10, bounds
+      // their slope.
       ASSERT_LE(std::abs(made_shape->outside(x) - made_shape->outside(y)), 10.0 * distance(x, y)) << one.name;
     }
   }
@@ -158,9 +159,9 @@ TEST(shapes, an_ellipsoid_is_continuous_at_its_centre_and_exact_there) {
       made("ellipsoid", {{"centre", numbers{0, 0, 0}}, {"semi_axes", numbers{2.0, 0.25, 1.0}}}, 3);
   EXPECT_EQ(flat->outside({0, 0, 0}), -0.25);
   for (const position& direction : {position{1, 0, 0}, position{0, 1, 0}, position{0.6, 0.0, -0.8}})
-    // φ changes by a multiple of the distance, at most the ratio of the semi-axes.
+    // The ratio of the semi-axes, 8, bounds the slope of φ.
     EXPECT_NEAR(flat->outside({1e-9 * direction[0], 1e-9 * direction[1], 1e-9 * direction[2]}), -0.25, 1e-7);
-  // On the axes, distances from the vertices are exact outside.
+  // On the axes outside, φ is the exact distance from the vertices.
   EXPECT_DOUBLE_EQ(flat->outside({3.0, 0, 0}), 1.0);
   EXPECT_DOUBLE_EQ(flat->outside({0, -1.0, 0}), 0.75);
 }

@@ -1,4 +1,4 @@
-// Signed distances of surfaces of triangles, against solids in closed form.
+// Signed distances of surfaces of triangles agree with those of solids in closed form.
 #include <apsis/body/triangle_surface.hpp>
 
 #include "body/triangles.hpp"
@@ -37,7 +37,7 @@ void expect_unit_cube(const triangle_surface& cube) {
   random_points points(3);
   for (int n = 0; n < 2'000; ++n) {
     const position x = points.next();
-    // Squares of numbers of size 2 have rounding errors of 4e-16, as do their square roots.
+    // Squares of numbers of size 2 and their square roots have rounding errors of 4e-16.
     ASSERT_NEAR(cube.signed_distance(x), box->outside(x), 2e-15);
   }
 }
@@ -51,7 +51,7 @@ double determinant(const position& a, const position& b, const position& c) {
          a[2] * (b[0] * c[1] - b[1] * c[0]);
 }
 
-/// Prism over a star with acute corners, between z = 0 and 1; and the polygon.
+/// Returns the prism over a star with acute corners, between z = 0 and 1, and sets the corners of the star.
 triangle_list star_prism(body_examples::points& corners) {
   constexpr int count = 10;
   for (int k = 0; k < count; ++k) {
@@ -141,7 +141,7 @@ RC_GTEST_PROP(triangle_surface, of_a_tetrahedron_contains_points_with_positive_b
   };
   const double whole = volume(p[0], p[1], p[2], p[3]);
   RC_PRE(std::abs(whole) > 1e-4);
-  // The constructor turns the surface outwards, whichever sign the volume has.
+  // The constructor turns the surface outwards, also if the volume of the given triangles is negative.
   const triangle_surface solid(
       {{p[0], p[2], p[1]}, {p[0], p[1], p[3]}, {p[1], p[2], p[3]}, {p[2], p[0], p[3]}});
   RC_ASSERT(std::abs(solid.volume() - std::abs(whole)) < 1e-15);
@@ -158,7 +158,7 @@ RC_GTEST_PROP(triangle_surface, of_a_tetrahedron_contains_points_with_positive_b
 
 TEST(triangle_surface, of_a_solid_with_sharp_spikes_has_the_sign_of_its_tetrahedra_from_the_centre) {
   triangle_list triangles = icosphere(1.0, 3);
-  // Equal corners get equal radii, between 0.2 and 1.3 without any order.
+  // Equal corners get equal, pseudo-random radii between 0.2 and 1.3.
   for (auto& triangle : triangles)
     for (position& x : triangle) {
       const double seed = std::abs(std::sin(1e4 * (x[0] + 2.3 * x[1] + 5.1 * x[2])));
@@ -232,7 +232,7 @@ TEST(triangle_surface, drops_triangles_with_equal_corners) {
 }
 
 TEST(triangle_surface, flips_triangles_with_collinear_corners) {
-  // One side of a face has further points, which flat triangles connect with the neighbouring face.
+  // One side of a face has additional points, which flat triangles connect with the neighbouring face.
   triangle_list triangles = unit_cube();
   const position a = triangles[0][0], b = triangles[0][1], x = triangles[0][2];
   const auto between = [&](double t) {

@@ -16,14 +16,14 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-/// Surfaces of solids, and files of them.
+/// Surfaces of solids, and STL files with them.
 namespace body_triangles {
 
 using apsis::position;
 using apsis::space_triangle;
 using triangle_list = std::vector<space_triangle>;
 
-/// Surface of a box; each face has two triangles.
+/// Returns the surface of a box, with two triangles for each face.
 inline triangle_list cuboid(const position& low, const position& high) {
   triangle_list triangles;
   for (std::size_t k = 0; k < 3; ++k)
@@ -44,7 +44,8 @@ inline triangle_list unit_cube() {
   return cuboid({0, 0, 0}, {1, 1, 1});
 }
 
-/// Icosahedron with corners at a distance r from the origin; each level divides triangles into four.
+/// Returns an icosahedron with corners at the distance r from the origin; each level divides
+/// triangles into four.
 inline triangle_list icosphere(double radius, int levels) {
   const double g = 0.5 * (1.0 + std::sqrt(5.0));
   const std::vector<position> p = {{-1, g, 0},  {1, g, 0},  {-1, -g, 0}, {1, -g, 0}, {0, -1, g},  {0, 1, g},
@@ -76,7 +77,7 @@ inline triangle_list icosphere(double radius, int levels) {
   return triangles;
 }
 
-/// Reverses the orientation.
+/// Reverses the orientation of the surface.
 inline triangle_list reversed(triangle_list triangles) {
   for (auto& triangle : triangles) std::swap(triangle[1], triangle[2]);
   return triangles;

@@ -1,4 +1,4 @@
-// The axis, and other boundaries of F = r f.
+// The axis, and other boundaries of the unknowns F = r f.
 #include <apsis/boundary/boundary_registry.hpp>
 #include <apsis/boundary/domain.hpp>
 #include <apsis/boundary/radial_boundary.hpp>
@@ -33,7 +33,7 @@ velocity_set four() {
   return {{{1.0, -1.0, -1.0, 1.0}, {2.0, 2.0, -2.0, -2.0}}, {1.0, 1.0, 1.0, 1.0}};
 }
 
-/// Emits 2 + f of the first component that leaves, f of the first ghost row, and t; records the place.
+/// Emits 2 + f of the first outgoing component, f of the first ghost row, t, and the radius.
 class recording final : public apsis::incoming_boundary {
  public:
   void incoming_given_outgoing(const face&, double t, const position& at, const double* outgoing,
@@ -47,7 +47,7 @@ class recording final : public apsis::incoming_boundary {
   std::optional<std::vector<double>> entropy_bound() const override { return std::vector<double>{}; }
 };
 
-/// Rows 10 i + k.
+/// Returns rows with the components 10 i + k.
 field numbered(int cells, int components) {
   field u(cells, components);
   for (int i = 0; i < cells; ++i)
@@ -138,7 +138,7 @@ TEST(radial_boundary, repeats_rows_along_the_axis_and_their_f_along_the_radius) 
   space.segment_rows(u, 0, 1, 3, 5, rows);
   EXPECT_EQ(rows[0], u.row(7));  // without a copy
   space.segment_rows(u, 1, 2, 3, 5, rows);
-  // Cells at r = 3.5 and 4.5 repeat the f of the one at r = 2.5, whose row begins with 80.
+  // Cells at r = 3.5 and 4.5 repeat the f of the cell at r = 2.5. The row of that cell begins with 80.
   EXPECT_DOUBLE_EQ(rows[0][0], 80.0 * 3.5 / 2.5);
   EXPECT_DOUBLE_EQ(rows[1][3], 83.0 * 4.5 / 2.5);
 }

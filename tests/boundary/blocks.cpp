@@ -1,5 +1,5 @@
-// Rows beyond the ends of segments in the blocks of a mesh that several processes share are those of the
-// whole mesh.
+// A mesh is divided into blocks for several processes. Rows beyond the ends of segments in a block equal
+// those of the whole mesh.
 #include <apsis/boundary/boundary_registry.hpp>
 #include <apsis/boundary/domain.hpp>
 #include <apsis/core/errors.hpp>
@@ -27,7 +27,7 @@ using apsis::domain;
 using apsis::field;
 using apsis::grid;
 
-/// Ghost rows that depend on as many rows inside as there are ghost rows, on the time and on the place.
+/// Fills ghost rows from as many rows inside as there are ghost rows, the time and the place.
 class deep final : public apsis::boundary {
  public:
   void fill(const apsis::face& where, double t, const apsis::pencil_end& rows) const override {
@@ -72,13 +72,13 @@ problem random_problem(apsis::random_source& random) {
     if (!boxes.empty()) made.mesh = made.mesh.with_solids(boxes);
     for (std::size_t k = 0; k < boxes.size(); ++k) made.solids.push_back(one_of());
   } catch (const apsis::input_error&) {
-    // Nothing was left.
+    // The solids would leave no cell of gas, so the mesh stays without them.
   }
   made.width = random.integer(1, 6);
   return made;
 }
 
-/// A row that names its cell.
+/// Fills every row with numbers that identify its cell.
 field numbered(const grid& whole, const grid& block) {
   field u(block.size(), 3);
   for (int cell = 0; cell < block.size(); ++cell)
@@ -86,7 +86,7 @@ field numbered(const grid& whole, const grid& block) {
   return u;
 }
 
-/// The rows from `width` before to `width` beyond a cell of the gas along a direction.
+/// Returns the rows from `width` before to `width` beyond a cell of the gas along a direction.
 std::vector<double> neighbourhood(const domain& space, const field& u, int direction, int cell, int width) {
   const auto& segments = space.segments().along(direction);
   const int stride = space.mesh().stride(direction);
@@ -157,7 +157,8 @@ TEST(blocks, of_a_single_cell_reach_over_several_neighbours) {
 }
 
 TEST(blocks, send_no_more_rows_than_their_surfaces_need) {
-  // 2 x 3 blocks of 6 x 4 cells: the middle ones have a halo of 4 cells on three sides, the others on two.
+  // There are 2 x 3 blocks of 6 x 4 cells. The halo of width 4 lies on three sides of the middle blocks, and
+  // on two of the others.
   const grid mesh(2, {12, 12, 1}, {0, 0, 0}, {1, 1, 1});
   const block_partition blocks(mesh, {2, 3, 1});
   const auto side = apsis::make_boundary("outflow");

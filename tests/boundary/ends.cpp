@@ -1,4 +1,4 @@
-// Open ends of a gas: far field, reservoir of given pressure, given distribution.
+// Open ends of a gas: far field, reservoir with a given pressure, given distribution.
 #include <apsis/boundary/boundary_registry.hpp>
 #include <apsis/core/errors.hpp>
 #include <apsis/model/model_registry.hpp>
@@ -33,7 +33,7 @@ std::unique_ptr<apsis::model> monatomic_gas(int dimensions = 1) {
   return apsis::find_model("bgk").make(parts);
 }
 
-/// The Maxwellian of (ρ, u, T).
+/// Returns the Maxwellian of (ρ, u, T).
 std::vector<double> maxwellian(const apsis::model& gas, const std::vector<double>& state) {
   std::vector<double> row(static_cast<std::size_t>(gas.components()));
   const std::string problem = gas.data_forms().front().row(state, row);
@@ -47,7 +47,8 @@ double moment(const apsis::model& gas, const std::vector<double>& row, std::size
   return all[k];
 }
 
-/// The row that enters beside a gas in this state, uniform up to the face; its outgoing half comes with it.
+/// Returns the row at the face beside a uniform gas: the incoming components of the boundary, and the
+/// outgoing ones of the gas.
 std::vector<double> entering(const apsis::model& gas, const std::string& kind, const face_quantities& values,
                              const std::vector<double>& inside, bool upper) {
   const face where{0, upper};
@@ -75,7 +76,8 @@ RC_GTEST_PROP(far_field, does_not_disturb_a_uniform_gas, ()) {
 TEST(far_field, takes_the_invariants_of_the_euler_equations_from_where_they_come) {
   const auto gas = monatomic_gas();
   const std::vector<double> far = {1.0, 0.2, 1.0}, inside = {1.3, 0.5, 1.2};
-  // Through the right face u + 3a leaves and u − 3a enters (γ = 5/3); gas that leaves keeps its entropy.
+  // At the right face the invariant u + 3a leaves and u − 3a enters (γ = 5/3). Gas that leaves
+  // keeps its entropy.
   const double leaving = 0.5 + 3.0 * std::sqrt(heat_ratio * 1.2),
                entering_invariant = 0.2 - 3.0 * std::sqrt(heat_ratio);
   const double u = 0.5 * (leaving + entering_invariant), a = (leaving - entering_invariant) / 6.0,
@@ -86,7 +88,7 @@ TEST(far_field, takes_the_invariants_of_the_euler_equations_from_where_they_come
   EXPECT_NEAR(moment(*gas, row, 0), rho, 1e-12);
   EXPECT_NEAR(moment(*gas, row, 1), rho * u, 1e-12);
   EXPECT_NEAR(moment(*gas, row, 2), 0.5 * rho * (u * u + 3.0 * T), 1e-12);
-  // Mirrored, through the left face.
+  // The mirrored data at the left face give the mirrored flow.
   const auto mirrored =
       entering(*gas, "far-field", {{"rho", {1.0}}, {"u", {-0.2}}, {"T", {1.0}}}, {1.3, -0.5, 1.2}, false);
   EXPECT_NEAR(moment(*gas, mirrored, 1), -rho * u, 1e-12);
@@ -102,8 +104,7 @@ TEST(far_field, faster_than_sound_is_the_state_upstream) {
 
 TEST(far_field, lets_gas_into_a_vacuum_and_out_of_it_at_the_speed_of_sound) {
   const auto gas = monatomic_gas();
-  // In a rarefaction of gas at rest u = a where a + 3a is the invariant 3√γ: a = 3/4 √γ, T = 9/16, ρ =
-  // T^(3/2).
+  // The gas at rest expands to u = a. The invariant is 3√γ = a + 3a, so a = 3/4 √γ, T = 9/16 and ρ = T^(3/2).
   const double a = 0.75 * std::sqrt(heat_ratio), T = 0.5625, rho = 0.75 * T;
   const face_quantities still = {{"rho", {1.0}}, {"T", {1.0}}},
                         thin = {{"rho", {1e-6}}, {"u", {2.0}}, {"T", {1.0}}};
@@ -121,7 +122,7 @@ TEST(pressure_end, has_its_pressure_and_lets_the_outgoing_characteristic_pass) {
   const auto gas = monatomic_gas(2);
   const double rho = 1.2, u = 0.3, uy = 0.4, T = 1.1, p_inside = rho * T, a = std::sqrt(heat_ratio * T),
                p = 1.25;
-  // u + p/(ρa) leaves; the density changes at constant entropy, to first order.
+  // The invariant u + p/(ρa) leaves. The density changes at constant entropy, to first order.
   const double u_out = u + (p_inside - p) / (rho * a), rho_out = rho + (p - p_inside) / (a * a);
   const auto row = entering(*gas, "pressure", {{"p", {p}}}, {rho, u, uy, T}, true);
   EXPECT_NEAR(moment(*gas, row, 0), rho_out, 1e-12);
@@ -140,7 +141,7 @@ TEST(pressure_end, gives_gas_of_its_temperature_at_most_at_the_speed_of_sound) {
   EXPECT_NEAR(moment(*gas, row, 2), 0.0, 1e-12);  // not the 0.4 of the gas inside
   const auto fast = entering(*gas, "pressure", {{"p", {50.0}}, {"T", {0.9}}}, {1.0, 0.0, 0.0, 1.0}, false);
   EXPECT_NEAR(moment(*gas, fast, 1) / moment(*gas, fast, 0), std::sqrt(heat_ratio * 0.9), 1e-12);
-  // Faster than sound the reservoir is not felt.
+  // Gas that leaves faster than sound does not depend on the reservoir.
   const auto leaves = entering(*gas, "pressure", {{"p", {50.0}}}, {1.0, 1.6, 0.0, 1.0}, true);
   EXPECT_NEAR(moment(*gas, leaves, 0), 1.0, 1e-12);
 }

@@ -1,4 +1,4 @@
-// Kernels against their formulas on single numbers, point by point: the same bits in every instruction set.
+// Kernels and their formulas on single numbers have the same bits in every instruction set, at every point.
 #include <apsis/boundary/continuation_rows.hpp>
 #include <apsis/boundary/formulas/continuation.hpp>
 #include <apsis/core/random_source.hpp>
@@ -54,7 +54,8 @@ TEST(formulas, continuations_are_those_of_single_numbers) {
 }
 
 TEST(continuations, of_smooth_averages_are_parabolas_of_any_size) {
-  // Averages of 1 + x + x² over cells of width h beside 0: what the limit of steepness changes is O(h¹²).
+  // Averages of 1 + x + x² over cells of width h beside x = 0. The limit of steepness changes the
+  // continuation by O(h¹²) only.
   const double h = 0.01;
   const auto average = [h](double k) { return 1.0 + (k + 0.5) * h + (k * k + k + 1.0 / 3.0) * h * h; };
   for (const double size : {1.0, 1e300, 1e-290})
@@ -64,7 +65,8 @@ TEST(continuations, of_smooth_averages_are_parabolas_of_any_size) {
 }
 
 TEST(continuations, of_jumps_stay_near_the_value_inside) {
-  // One difference vanishes beside the other: 1 - x² is 2e⁴/(s⁴ + e⁴) or less.
+  // Of the differences s, d beside the value a = 2e, one vanishes. The kept share is then at most
+  // 2e⁴/(s⁴ + e⁴).
   EXPECT_EQ(continued(0.0, 0.0, 0.0, 1.0), 0.0);
   EXPECT_EQ(continued(2.5, 2.5, 2.5, 2.0), 2.5);
   EXPECT_NEAR(continued(1e-3, 1.0, 1.0, 1.0), 1e-3, 1e-9);

@@ -1,4 +1,4 @@
-// Ends of given mass flux, and walls whose temperature follows from the heat that crosses them.
+// Ends with a given mass flux, and walls whose temperature balances the heat that crosses them.
 #include <apsis/boundary/boundary_registry.hpp>
 #include <apsis/boundary/limited_flow.hpp>
 #include <apsis/core/errors.hpp>
@@ -40,7 +40,7 @@ row maxwellian(const apsis::model& gas, const row& state) {
   return f;
 }
 
-/// The sums Σ w v_n (1, ½|v − u|²) over all velocities: mass and heat through a face into the gas.
+/// Returns the sums Σ w v_n (1, ½|v − u|²) over all velocities, the fluxes of mass and heat into the gas.
 std::array<double, 2> fluxes(const apsis::model& gas, const face& where, const row& f, double along = 0.0) {
   const auto& v = gas.velocities();
   const auto n = static_cast<std::size_t>(v.size());
@@ -58,7 +58,7 @@ std::array<double, 2> fluxes(const apsis::model& gas, const face& where, const r
   return sums;
 }
 
-/// The row at the face: what leaves from `inside`, and what the boundary lets in.
+/// Returns the row at the face: the outgoing components of `inside` and the incoming ones of the boundary.
 row at_face(const apsis::model& gas, const apsis::boundary& side, const face& where, const row& inside) {
   const auto inward = apsis::inward_speeds(where, gas.velocities());
   row leaving = inside, values(inside.size());
@@ -82,7 +82,7 @@ double distance(const row& a, const row& b) {
   return most;
 }
 
-/// A distribution far from equilibrium, with zeros.
+/// Returns a distribution far from equilibrium, with zeros.
 row noise(const apsis::model& gas, std::mt19937& random) {
   std::uniform_real_distribution<double> number(0.0, 1.0);
   row f = maxwellian(gas, row(gas.data_forms().front().variables[1].size == 2 ? row{1.0, 0.3, -0.4, 1.2}
@@ -102,7 +102,7 @@ TEST(mass_flow, is_reached_to_rounding_beside_any_gas) {
       const face where{static_cast<int>(random() % static_cast<unsigned>(d)), random() % 2 == 0};
       const double m = flux(random), T = temperature(random);
       const row f = at_face(*gas, "mass-flow", {{"flux", {m}}, {"T", {T}}}, where, noise(*gas, random));
-      // Sums of some hundred terms of size 1.
+      // The flux is a sum of some hundred terms of size 1, each rounded to 1e-16.
       EXPECT_NEAR(fluxes(*gas, where, f)[0], m, 2e-14);
       EXPECT_GE(*std::min_element(f.begin(), f.end()), 0.0);
     }
@@ -128,11 +128,12 @@ TEST(mass_flow, that_is_not_reached_lets_nothing_enter_and_says_so) {
   const row inside = maxwellian(*gas, {1.0, 0.0, 1.0});
   EXPECT_FALSE(flow.take_shortfall());
   const row f = at_face(*gas, *side, where, inside);
-  // All that arrives of a gas at rest, √(T/2π), by the rule of midpoints: Δv²/24 times the slope v M at 0.
+  // All arriving gas at rest leaves: √(T/2π). The error of the midpoint rule is about Δv²/24 times the slope
+  // of v M at 0.
   EXPECT_NEAR(fluxes(*gas, where, f)[0], -1.0 / std::sqrt(2.0 * M_PI), 5e-3);
   EXPECT_TRUE(flow.take_shortfall());
   EXPECT_FALSE(flow.take_shortfall());
-  // A vacuum is filled at an inlet, and nothing leaves it at an outlet.
+  // An inlet fills a vacuum, and nothing leaves a vacuum at an outlet.
   const row nothing(inside.size(), 0.0);
   EXPECT_EQ(at_face(*gas, *side, where, nothing), nothing);
   EXPECT_NEAR(fluxes(*gas, where, at_face(*gas, "mass-flow", {{"flux", {0.3}}}, where, nothing))[0], 0.3,
@@ -153,7 +154,7 @@ TEST(heat_balance, of_an_adiabatic_wall_is_zero_to_rounding) {
                             where, noise(*gas, random));
       const auto [mass, heat] = fluxes(*gas, where, f, u);
       EXPECT_NEAR(mass, 0.0, 1e-14);
-      // Of heat fluxes of about 1; the discrete Maxwellian is solved to rounding.
+      // Heat fluxes are about 1, and the discrete Maxwellian is solved up to rounding errors.
       EXPECT_NEAR(heat, 0.0, 2e-14);
       EXPECT_GE(*std::min_element(f.begin(), f.end()), 0.0);
     }
@@ -161,7 +162,8 @@ TEST(heat_balance, of_an_adiabatic_wall_is_zero_to_rounding) {
 }
 
 TEST(heat_balance, of_the_slowest_and_of_the_fastest_molecules_is_found) {
-  // T_w tends to v² where molecules of one speed v arrive, beyond which the velocities have no Maxwellian.
+  // If all molecules arrive with one speed v, T_w tends to v². With larger T_w the velocities
+  // have no Maxwellian.
   const face where{0, true};
   for (const auto& [d, degrees] : {std::pair(1, 1), std::pair(2, 2), std::pair(1, 3)}) {
     const auto gas = gas_of(d, degrees);
@@ -181,7 +183,7 @@ TEST(heat_balance, of_the_slowest_and_of_the_fastest_molecules_is_found) {
         const auto [mass, heat] = fluxes(*gas, where, f);
         const double arriving = std::abs(fluxes(*gas, where, inside)[1]) + 0.5 * v * v;
         EXPECT_NEAR(mass, 0.0, 1e-13 * (1.0 + v)) << d << degrees << slow << share;
-        // At the very end only to the tolerance of the balance.
+        // At this limit the heat vanishes only up to the tolerance of the balance.
         EXPECT_NEAR(heat, 0.0, 1e-10 * (1.0 + arriving) * (1.0 + v)) << d << degrees << slow << share;
         EXPECT_GE(*std::min_element(f.begin(), f.end()), 0.0);
       }
@@ -189,7 +191,7 @@ TEST(heat_balance, of_the_slowest_and_of_the_fastest_molecules_is_found) {
 }
 
 TEST(heat_balance, of_free_molecules_has_the_recovery_temperature) {
-  // Molecules with the velocity U along the wall bring ½U² more than the 2T of those at rest, (D + 1)/2 = 2:
+  // Molecules at rest along the wall bring 2T, as (D + 1)/2 = 2. Those with the velocity U bring ½U² more, so
   // T_w = T + U²/4.
   const auto gas = gas_of(2, 3);
   const face where{0, false};
@@ -197,7 +199,7 @@ TEST(heat_balance, of_free_molecules_has_the_recovery_temperature) {
   const row inside = maxwellian(*gas, {1.0, 0.0, U, T});
   const row f = at_face(*gas, "adiabatic", {}, where, inside),
             diffuse = at_face(*gas, "diffuse", {{"T", {T + 0.25 * U * U}}}, where, inside);
-  // The sums over half of the velocities differ from the integrals by the rule of midpoints.
+  // The midpoint rule changes the sums over half of the velocities.
   EXPECT_LT(distance(f, diffuse), 1e-2 * *std::max_element(f.begin(), f.end()));
   // A gas at rest stays in equilibrium with its wall.
   const row still = maxwellian(*gas, {1.0, 0.0, 0.0, T});
@@ -216,10 +218,10 @@ TEST(heat_balance, of_a_radiating_wall_tends_to_its_limits_and_balances_between_
   EXPECT_EQ(radiating(0.0, 0.8), at_face(*gas, "adiabatic", {}, where, inside));
   EXPECT_EQ(radiating(3.0, 0.8, 0.0), at_face(*gas, "adiabatic", {}, where, inside));
   EXPECT_EQ(radiating(3.0, 0.8, 0.5), radiating(1.5, 0.8));
-  // Strong radiation holds the temperature of the surroundings.
+  // A wall with strong radiation has the temperature of the surroundings.
   EXPECT_LT(distance(radiating(1e10, 0.8), at_face(*gas, "diffuse", {{"T", {0.8}}}, where, inside)), 1e-9);
-  // At a temperature in between, the heat of the diffuse wall is what that temperature radiates: for
-  // T_w = 1.1 and this σ the two walls are one.
+  // σ is such that a wall with T_w = 1.1 radiates the heat of the diffuse wall. The radiating wall then
+  // equals the diffuse one.
   const row known = at_face(*gas, "diffuse", {{"T", {1.1}}}, where, inside);
   const double heat = -fluxes(*gas, where, known)[1], between = std::pow(1.1, 4) - std::pow(0.8, 4);
   const row found = radiating(heat / between, 0.8);
@@ -233,16 +235,15 @@ TEST(heat_balance, that_no_temperature_has_is_an_error_with_its_reason) {
   const face where{0, true};
   row inside(static_cast<std::size_t>(gas->components()), 0.0);
   inside.back() = 1.0;
-  // All molecules at the last velocity v: the wall has that of T = v², beside which no other f >= 0 is
-  // hotter.
+  // All molecules have the largest speed v, so the wall has T = v². No other f >= 0 gives a hotter wall.
   const row same = at_face(*gas, "adiabatic", {}, where, inside);
   EXPECT_NEAR(fluxes(*gas, where, same)[1], 0.0, 1e-8);
-  // Radiation heats the wall beyond it.
+  // Radiation would heat the wall above this limit.
   bad_input::expect_refused(
       {{[&] { at_face(*gas, "radiating", {{"sigma", {1e6}}, {"surroundings", {100.0}}}, where, inside); },
         {"a wall 'radiating' has no temperature that balances its heat (near T = "},
         3}});
-  // Where nothing arrives nothing leaves.
+  // If no molecules arrive, none leave.
   const row nothing(inside.size(), 0.0);
   EXPECT_EQ(at_face(*gas, "adiabatic", {}, where, nothing), nothing);
   bad_input::expect_refused({{[&] {

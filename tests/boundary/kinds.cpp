@@ -1,4 +1,4 @@
-// Ghost rows of each kind of boundary, and that transport does not depend on how they are provided.
+// Each kind of boundary has the right ghost rows. Transport does not depend on how a boundary provides them.
 #include <apsis/boundary/boundary_registry.hpp>
 #include <apsis/core/errors.hpp>
 #include <apsis/model/model_registry.hpp>
@@ -20,7 +20,7 @@ using apsis::face;
 using apsis::field;
 using apsis::grid;
 
-/// The same boundary with computed rows.
+/// The same boundary, but with computed instead of repeated rows.
 class copied final : public apsis::boundary {
  public:
   explicit copied(std::shared_ptr<const apsis::boundary> of) : of_(std::move(of)) {}
@@ -34,7 +34,7 @@ class copied final : public apsis::boundary {
   std::shared_ptr<const apsis::boundary> of_;
 };
 
-/// Ghost rows that record where and when they were filled.
+/// Fills ghost rows with the place and time of the call.
 class recording final : public apsis::boundary {
  public:
   void fill(const face& where, double t, const apsis::pencil_end& rows) const override {
@@ -75,8 +75,8 @@ TEST(boundary, outflow_ghosts_repeat_the_nearest_cell_inside) {
 }
 
 TEST(boundary, computed_rows_give_the_results_of_repeated_rows) {
-  // For every kind that repeats rows, in every direction of meshes of 1, 2 and 3 dimensions, some narrower
-  // than the stencil.
+  // The test covers every kind that repeats rows, in every direction of meshes of 1, 2 and 3 dimensions. Some
+  // of the meshes are narrower than the stencil.
   for (const grid& mesh : {grid::line(5, 0, 1), grid(2, {2, 4, 1}, {0, 0, 0}, {1, 1, 1}),
                            grid(3, {4, 3, 2}, {0, 0, 0}, {1, 1, 1})})
     for (const std::string& name : apsis::boundary_names()) {
@@ -115,8 +115,8 @@ TEST(boundary, receives_face_time_and_position_of_every_pencil) {
     space.segment_rows(u, direction, pencil, i, i + 1, rows);
     return std::vector<double>(rows[0], rows[0] + 7);
   };
-  // Cells are numbered with the last direction fastest: (x, y) is cell 3x + y, its row begins with 100 (3x +
-  // y).
+  // The last direction of the cell numbers is the fastest. So (x, y) is cell 3x + y, whose row begins with
+  // 100 (3x + y).
   EXPECT_EQ(ghost(0, 1, -2), (std::vector<double>{0.25, 0.0, 1.0, 100.0, 0.0, 13.0, 0.0}));
   EXPECT_EQ(ghost(0, 2, 2), (std::vector<double>{0.25, 0.5, 0.0, 500.0, 1.0, 15.0, 0.0}));
   EXPECT_EQ(ghost(1, 1, -1), (std::vector<double>{0.25, 1.0, 0.0, 300.0, 0.75, 10.0, 0.0}));

@@ -1,4 +1,4 @@
-// Specular reflection at walls with any normal: fluxes, signs, Maxwellians and mirrored components.
+// Specular reflection at walls with any normal: fluxes, signs, Maxwellians, mirrored components.
 #include <apsis/boundary/oblique_reflection.hpp>
 
 #include "boundary/oblique_rows.hpp"
@@ -26,7 +26,7 @@ namespace {
 using namespace oblique_rows;
 using apsis::oblique_reflection;
 
-/// Mean error of reflecting f over some normals, relative in the flux of mass.
+/// Returns the mean error of reflecting f over some normals, relative to the flux of mass.
 double error_of(const std::string& kind, int points,
                 const std::function<double(const vector& v, const vector& n, const vector& t)>& f) {
   const velocity_set set = grid_of(2, kind, points, 7.0, 1);
@@ -65,7 +65,7 @@ RC_GTEST_PROP(oblique_reflection, what_leaves_has_the_fluxes_of_what_arrives_and
   std::vector<double> made(f.size(), std::numeric_limits<double>::quiet_NaN());
   const auto report = oblique_reflection(set).reflect(n, inward.data(), f.data(), made.data());
   for (std::size_t k = 0; k < f.size(); ++k) RC_ASSERT(!(inward[k] > 0.0) || made[k] >= 0.0);
-  // Sums of at most 512 numbers, to which Newton's method converges.
+  // Newton's method matches sums of at most 512 numbers up to their rounding errors.
   const double error = difference(fluxes_of(set, n, inward, -1.0, f), fluxes_of(set, n, inward, 1.0, made),
                                   !report.is_matched);
   RC_ASSERT(error <= 1e-14);
@@ -173,7 +173,7 @@ RC_GTEST_PROP(oblique_reflection, of_a_maxwellian_at_rest_is_this_maxwellian, ()
   const auto f = row_of(set, [&](const vector& v) { return maxwellian(v, {}, T); });
   std::vector<double> made(f.size());
   RC_ASSERT(oblique_reflection(set).reflect(n, inward.data(), f.data(), made.data()).is_matched);
-  // Exponents of at most 140, with multipliers to some units of rounding.
+  // The Maxwellian has exponents of at most 140. Its multipliers are accurate to some units of rounding.
   for (std::size_t k = 0; k < f.size(); ++k)
     RC_ASSERT(!(inward[k] > 0.0) || std::abs(made[k] - f[k]) <= 1e-14 + 1e-12 * f[k]);
 }
@@ -185,14 +185,14 @@ TEST(oblique_reflection, of_moving_maxwellians_is_accurate) {
     };
   };
   for (const std::string kind : {"uniform", "graded"}) {
-    // Along the wall, fluxes that leave are those that arrive to the accuracy of sums over all velocities.
+    // For gas that moves along the wall the fluxes agree up to the error of sums over all velocities.
     EXPECT_LT(error_of(kind, 32, moving(1.0, 0.0)), 1e-7) << kind;
-    // Towards it, sums over half of the velocities have the order 3 here.
+    // For gas that moves towards the wall, sums over half of the velocities have order 3 here.
     const double coarse = error_of(kind, 16, moving(0.8, 0.5)), fine = error_of(kind, 32, moving(0.8, 0.5));
     EXPECT_LT(coarse, 2e-3) << kind;
     EXPECT_GT(std::log2(coarse / fine), 2.8) << kind;
   }
-  // Of two gases, the interpolation is of second order.
+  // For a mixture of two gases the interpolation is of second order.
   const auto both = [&](const vector& v, const vector& n, const vector& t) {
     return moving(0.8, 0.5)(v, n, t) + 0.5 * maxwellian(v, {0.3 * n[0] - t[0], 0.3 * n[1] - t[1], 0.0}, 0.5);
   };

@@ -54,7 +54,8 @@ inline std::vector<double> inward_of(const velocity_set& set, const vector& norm
   return inward;
 }
 
-/// Sums over a half of the velocities: mass, tangential momentum, energy of g and of h, and their sizes.
+/// Fluxes over half of the velocities: mass, tangential momentum, energy of g and of h, and the sizes of
+/// these sums.
 struct fluxes {
   std::array<long double, 6> sum{}, size{};
 };
@@ -81,7 +82,8 @@ inline fluxes fluxes_of(const velocity_set& set, const vector& normal, const std
   return all;
 }
 
-/// The largest difference of fluxes that arrive and leave, relative to their sizes; of mass alone, or of all.
+/// Returns the largest difference between arriving and leaving fluxes, relative to their sizes. With
+/// `mass_alone` it compares only the mass.
 inline double difference(const fluxes& a, const fluxes& b, bool mass_alone) {
   double most = 0.0;
   for (std::size_t k = 0; k < (mass_alone ? 1 : a.sum.size()); ++k)
@@ -92,7 +94,7 @@ inline double difference(const fluxes& a, const fluxes& b, bool mass_alone) {
 
 enum class row_kind { positive, decades, few };
 
-/// Positive numbers; numbers over ten decades with zeros and subnormal numbers; or few of them.
+/// Returns positive numbers, or numbers over ten decades with zeros and subnormal numbers, or mostly zeros.
 inline std::vector<double> random_row(row_kind kind, std::size_t count, std::mt19937& generator) {
   std::uniform_real_distribution<double> share(0.0, 1.0);
   std::vector<double> f(count);

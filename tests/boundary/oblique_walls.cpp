@@ -1,4 +1,4 @@
-// Walls with any normal that reflect a part of the molecules, or all.
+// Walls with any normal that reflect some or all molecules.
 #include "boundary/oblique_rows.hpp"
 
 #include <apsis/boundary/boundary_registry.hpp>
@@ -126,7 +126,7 @@ TEST(oblique_walls, without_a_given_temperature_balance_heat_and_mass_of_any_row
           const auto arrives = fluxes_of(set, normal, inward, -1.0, f),
                      leaves = fluxes_of(set, normal, inward, 1.0, values);
           if (!(arrives.sum[0] > 0.0L)) continue;  // internal energy without molecules is no gas
-          // Sums of a thousand terms. Reflection matches its sums to 1e-14 in other tests.
+          // The sums have a thousand terms. Other tests show that reflection matches its sums to 1e-14.
           EXPECT_LT(difference(arrives, leaves, true), 1e-13) << d << alpha;
           const long double size = arrives.size[4] + arrives.size[5];
           EXPECT_NEAR(static_cast<double>((heat(leaves) - heat(arrives)) / size), 0.0, 1e-13) << d << alpha;
@@ -167,7 +167,7 @@ TEST(oblique_walls, have_the_temperature_with_which_they_emit) {
   const auto sums = fluxes_of(set, n, inward, -1.0, f);
   apsis::arriving_gas arriving{
       static_cast<double>(sums.sum[0]), {}, static_cast<double>(sums.sum[4] + sums.sum[5])};
-  // Momentum along the wall; that along the normal does not matter, as the wall moves along itself.
+  // Only the momentum along the wall matters, because the wall moves along itself.
   for (std::size_t k = 0; k < 3; ++k) arriving.momentum[k] = static_cast<double>(sums.sum[1 + k]);
   const std::vector<apsis::face_quantity> velocity = {-0.4 * n[1], 0.4 * n[0]};
   const auto wall = apsis::make_boundary("radiating", *gas,

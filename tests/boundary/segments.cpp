@@ -1,4 +1,4 @@
-// Rows that sweeps see beyond the ends of segments.
+// Rows beyond the ends of segments, as sweeps access them.
 #include <apsis/boundary/boundary_registry.hpp>
 #include <apsis/boundary/domain.hpp>
 
@@ -9,7 +9,7 @@
 namespace segments_test {
 
 TEST(segments, continue_across_periodic_faces_until_the_next_solid_cell) {
-  // Cells 0 1 | solid 2 | 3 4 of a ring: the ring is cut once.
+  // The cells 0 1 | solid 2 | 3 4 form a ring with one cut.
   const apsis::grid mesh = apsis::grid::line(5, 0.0, 1.0).with_solids({{{2, 0, 0}, {1, 1, 1}}});
   const auto periodic = apsis::make_boundary("periodic");
   apsis::domain space(mesh, {{periodic, periodic}}, {apsis::make_boundary("outflow")});
@@ -18,7 +18,7 @@ TEST(segments, continue_across_periodic_faces_until_the_next_solid_cell) {
   space.reserve(1, 4);
   space.fill_ghosts(0.0, u);
   std::vector<const double*> rows;
-  space.segment_rows(u, 0, 0, -4, 5, rows);  // 0 1: beyond 0 lie 4, 3 and the wall behind it
+  space.segment_rows(u, 0, 0, -4, 5, rows);  // cells 0 and 1; beyond 0 lie 4, 3 and the wall
   std::vector<double> values;
   for (const double* row : rows) values.push_back(*row);
   EXPECT_EQ(values, (std::vector<double>{3, 3, 3, 4, 0, 1, 1, 1, 1}));

@@ -19,7 +19,8 @@ using apsis::mirrored_components;
 using apsis::velocity_set;
 using testing::ElementsAre;
 
-/// Points (±a, ±b) of random a, b > 0, shuffled, with weights that depend on |v| alone; `sets` of components.
+/// Returns shuffled points (±a, ±b) with random a, b > 0, `sets` sets of components, and weights that depend
+/// on |v| alone.
 velocity_set random_symmetric_set(int sets) {
   std::vector<std::array<double, 3>> points;  // a, b, weight
   const int count = *rc::gen::inRange(1, 8);

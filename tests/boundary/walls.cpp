@@ -1,4 +1,4 @@
-// Boundaries that prescribe what enters: walls and inflow.
+// Boundaries that prescribe the incoming components: walls and inflow.
 #include <apsis/boundary/boundary_registry.hpp>
 #include <apsis/core/errors.hpp>
 #include <apsis/model/model_registry.hpp>
@@ -34,13 +34,13 @@ std::unique_ptr<apsis::model> gas_of(int dimensions, int degrees, int points = 2
   return apsis::find_model("bgk").make(parts);
 }
 
-/// A wall with tables for a face.
+/// Returns a wall with its tables for a face.
 std::shared_ptr<const apsis::boundary> wall(const apsis::model& gas, const face& where,
                                             const face_quantities& values) {
   return make_boundary("diffuse", gas, values)->prepared(where, gas.velocities());
 }
 
-/// Outgoing components: random numbers; others 0.
+/// Returns random outgoing components; all others are 0.
 std::vector<double> random_outgoing(const apsis::model& gas, const face& where) {
   std::vector<double> f(static_cast<std::size_t>(gas.components()));
   const auto enters = apsis::entering_components(where, gas.velocities());
@@ -49,7 +49,7 @@ std::vector<double> random_outgoing(const apsis::model& gas, const face& where) 
   return f;
 }
 
-/// Flux of an invariant through the face, Σ φ_j v_j f_j.
+/// Returns the fluxes of the invariants through the face, Σ φ_j v_j f_j.
 std::vector<double> fluxes(const apsis::model& gas, const std::vector<double>& f) {
   std::vector<double> moving = f, sums(gas.invariants().size());
   for (std::size_t k = 0; k < f.size(); ++k) moving[k] *= gas.speeds(0)[k];
@@ -77,12 +77,12 @@ RC_GTEST_PROP(diffuse_wall, no_mass_crosses_and_everything_emitted_is_nonnegativ
     RC_ASSERT(entering[k] >= 0.0);
     all[k] = entering[k];
   }
-  // Relative to the mass that arrives; a sum of at most 2000 numbers of one sign.
+  // The error is relative to the mass that arrives, a sum of at most 2000 numbers of one sign.
   RC_ASSERT(std::abs(fluxes(*gas, all)[0]) <= 1e-14 * std::abs(fluxes(*gas, leaving)[0]));
 }
 
 TEST(diffuse_wall, re_emits_the_equilibrium_that_arrives) {
-  // A gas at rest in equilibrium with the wall does not notice it.
+  // A gas at rest in equilibrium with the wall does not change.
   for (const int degrees : {0, 3}) {
     const auto gas = gas_of(1, degrees);
     std::vector<double> f(static_cast<std::size_t>(gas->components()));
@@ -205,7 +205,7 @@ TEST(inflow, enters_whatever_leaves) {
 
 namespace {
 
-/// Ghost rows of two components, which move with −1 and 1, beyond the lower face.
+/// Returns ghost rows of two components, which move with −1 and 1, beyond the lower face.
 std::vector<std::array<double, 2>> ghosts_of(const std::vector<std::array<double, 2>>& cells) {
   class nothing final : public apsis::incoming_boundary {
    public:
@@ -224,8 +224,9 @@ std::vector<std::array<double, 2>> ghosts_of(const std::vector<std::array<double
 }  // namespace
 
 TEST(incoming_boundary, continues_quadratics_exactly) {
-  // Averages of f = 1 + 0.03 x + 0.02 x² over cells of width 0.1, x counted inwards from the face, in units
-  // of that width. A share 1 − x² of the continuation is kept, where x² is of size Δx⁸ here, below rounding.
+  // Averages of f = 1 + 0.03 x + 0.02 x² over cells of width 0.1, inwards from the face. `left` is in units
+  // of this width. The boundary keeps a share 1 − y² of the continuation. Here y is about 1e-10, so y² is
+  // below rounding.
   const auto average = [](double left) {
     const double right = left + 1.0;
     return 1.0 + 0.0015 * (right * right - left * left) +
@@ -245,11 +246,11 @@ TEST(incoming_boundary, does_not_continue_a_jump_inside) {
     std::vector<std::array<double, 2>> cells(4);
     for (int i = 0; i < 4; ++i) cells[static_cast<std::size_t>(i)] = {i < at ? 1.0 : 9.0, 9.0};
     for (const auto& ghost : ghosts_of(cells)) {
-      // The quadratic would be 1 ± 72. A jump of 8 beside 1 keeps a share 2 (1/16)⁴ of it.
+      // The quadratic would be 1 ± 72. A jump of 8 from the value 1 keeps a share 2 (1/16)⁴ of it.
       EXPECT_NEAR(ghost[0], 1.0, 3e-3) << at;
       EXPECT_EQ(ghost[1], 9.0);
     }
-    // Beside a vacuum it keeps none.
+    // A jump from a vacuum keeps no share.
     for (int i = 0; i < 4; ++i) cells[static_cast<std::size_t>(i)] = {i < at ? 1e-12 : 1.0, 0.0};
     for (const auto& ghost : ghosts_of(cells)) EXPECT_EQ(ghost, (std::array{1e-12, 0.0})) << at;
   }
@@ -266,14 +267,14 @@ TEST(incoming_boundary, continues_any_data_by_finite_numbers_that_scale_with_the
       const auto of_scaled = ghosts_of(scaled);
       for (std::size_t g = 0; g < ghosts.size(); ++g) {
         RC_ASSERT(std::isfinite(of_scaled[g][0]));
-        // Subnormal numbers are multiples of 2^-1074, and so are the errors of some operations on them; the
-        // share depends on the data, of more than 2^-1063, by 2^-9 of such an error.
+        // Subnormal numbers are multiples of 2^-1074, and some operations have errors of this size. The share
+        // depends on the data, which exceed 2^-1063, by 2^-9 of such an error.
         const double expected = std::ldexp(ghosts[g][0], exponent);
         RC_ASSERT(std::abs(of_scaled[g][0] - expected) <=
                   1e-13 * std::abs(expected) + std::ldexp(exponent < -1000 ? 1e4 : 0.0, -1074));
       }
     }
-    // A continuation stays within the quadratic: its share is one.
+    // The share is at most 1, so the continuation deviates no more than the quadratic.
     for (std::size_t g = 0; g < ghosts.size(); ++g) {
       const double n = static_cast<double>(g) + 1.0, a0 = cells[0][0], s = a0 - cells[1][0],
                    c = s - (cells[1][0] - cells[2][0]), quadratic = n * (s + 0.5 * (n + 1.0) * c);
@@ -283,7 +284,8 @@ TEST(incoming_boundary, continues_any_data_by_finite_numbers_that_scale_with_the
 }
 
 TEST(incoming_boundary, is_a_smooth_function_of_the_cells) {
-  // Second derivatives along lines through the data, by differences: a kink makes them grow as 1/h.
+  // Differences along lines through the data approximate second derivatives. At a kink they would
+  // grow as 1/h.
   const auto steepest = [](double a1, double a2, double d0, double d1, double h) {
     const auto ghost = [&](double x) {
       return ghosts_of({{1.0 + d0 * x, 0.0}, {a1 + d1 * x, 0.0}, {a2, 0.0}})[0][0];

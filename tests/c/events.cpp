@@ -1,4 +1,4 @@
-// Dense output, events and stop times by the C interface.
+// Dense output, events and stop times of the C interface.
 #include <apsis/integrate/evolution.hpp>
 #include <apsis/integrate/relaxation_problem.hpp>
 
@@ -21,7 +21,7 @@ using testing::HasSubstr;
 using state = std::vector<double>;
 using rule = apsis::step_rule<double>;
 
-/// The model of ode.hpp with the events that a test sees.
+/// The model of ode.hpp, and the events and times that its callbacks record.
 struct watched {
   ode of{0.1};
   apsis_integrator* called = nullptr;

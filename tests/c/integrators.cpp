@@ -1,4 +1,4 @@
-// Integrators by the C interface: settings, callbacks that fail, what they count and what they refuse.
+// Integrators of the C interface: settings, failing callbacks, counts and refusals.
 #include <array>
 #include <cmath>
 #include <limits>
@@ -21,9 +21,9 @@ using testing::HasSubstr;
 /// Answers of the callbacks of a test.
 struct script {
   double epsilon = 0.1;
-  double from = std::numeric_limits<double>::infinity();  ///< time of the first answer below
-  int answer = 0;                                         ///< what the transport returns then
-  double value = 0.0;                                     ///< what it adds to T then
+  double from = std::numeric_limits<double>::infinity();  ///< time after which the transport behaves as below
+  int answer = 0;                                         ///< value that the transport then returns
+  double value = 0.0;                                     ///< number that it then adds to T
   apsis_integrator* called = nullptr;
   std::vector<int> statuses{};
 };
@@ -116,7 +116,8 @@ TEST(c_integrators, report_callbacks_that_fail_with_step_and_time) {
   EXPECT_LE(apsis_time(s.get()), 0.5);
   EXPECT_GT(apsis_time(s.get()), 0.45);
   data.answer = 0;
-  EXPECT_EQ(apsis_integrate(s.get(), 1), APSIS_OK) << apsis_error_message();  // from the last accepted step
+  EXPECT_EQ(apsis_integrate(s.get(), 1), APSIS_OK)
+      << apsis_error_message();  // continues from the last accepted step
 }
 
 TEST(c_integrators, store_errors_of_libraries_that_extend_the_interface) {
@@ -139,8 +140,8 @@ TEST(c_integrators, name_the_callback_that_gives_nan) {
 }
 
 TEST(c_integrators, repeat_steps_that_a_callback_rejects_if_a_tolerance_controls_them) {
-  // The transport is defined for u1 < 2.5 only; a first step of length 1 leaves this set, and short ones
-  // reach it.
+  // The transport is defined for u1 < 2.5 only. A first step of length 1 leaves this set, and shorter steps
+  // stay inside.
   script data{.epsilon = 1e-3};
   const auto limited = [](double t, size_t n, const double* u, double* out, void* of) {
     transport(t, n, u, out, of);
@@ -176,7 +177,7 @@ TEST(c_integrators, refuse_calls_of_their_callbacks) {
     now.statuses.push_back(apsis_integrate(now.called, 2));
     now.statuses.push_back(apsis_set_step(now.called, 0.5));
     now.statuses.push_back(apsis_start(now.called, 0, u));
-    EXPECT_EQ(apsis_state(now.called), u);  // which may be read
+    EXPECT_EQ(apsis_state(now.called), u);  // a callback may read the state
     return 1;
   });
   EXPECT_EQ(apsis_integrate(s.get(), 1), APSIS_STOPPED);
@@ -219,14 +220,14 @@ TEST(c_integrators, solve_blocks_as_problems_of_their_own) {
     auto one = of_ode("md-imex-6-3", data);  // by closed formulas
     apsis_set_step(one.get(), 1.0 / 64);
     ASSERT_EQ(apsis_integrate(one.get(), 1), APSIS_OK);
-    // Newton's method ends at rounding errors, which the stiffest block divides by ε in Q̇ = Q'Q.
+    // Newton's method ends at rounding errors. The stiffest block divides them by ε = 1e-6 in Q̇ = Q'Q.
     for (std::size_t i = 0; i < 2; ++i)
       EXPECT_NEAR(apsis_state(all.get())[2 * k + i], apsis_state(one.get())[i], 1e-9) << "block " << k;
   }
 }
 
 TEST(c_integrators, keep_newtons_method_inside_the_admissible_states) {
-  // Q = −√u has no real value below 0, which a Newton step from u = 1 with a large Δt would reach.
+  // Q = −√u has no real value below 0. A Newton step from u = 1 with a large Δt would reach such u.
   const auto root = [](size_t, size_t, const double* u, double* q, void*) {
     q[0] = -std::sqrt(u[0]);
     return 0;
@@ -247,7 +248,7 @@ TEST(c_integrators, keep_newtons_method_inside_the_admissible_states) {
   const double u0[] = {1};
   apsis_start(s.get(), 0, u0);
   ASSERT_EQ(apsis_integrate(s.get(), 1), APSIS_OK) << apsis_error_message();
-  EXPECT_NEAR(apsis_state(s.get())[0], 0.25, 0.01);  // (1 − t/2)², with four steps of order 2
+  EXPECT_NEAR(apsis_state(s.get())[0], 0.25, 0.01);  // exact value (1 − t/2)² at t = 1; four steps of order 2
 }
 
 TEST(c_integrators, of_two_threads_do_not_disturb_each_other) {
@@ -334,7 +335,7 @@ TEST(c_integrators, refuse_bad_settings) {
        },
        {"dt and a forward Euler step are given"}},
       {[&] {
-         const auto one = ready("ars-222");  // whose SSP coefficient is 0
+         const auto one = ready("ars-222");  // its SSP coefficient is 0
          apsis_set_forward_euler_step(one.get(), always);
          advance(one);
        },

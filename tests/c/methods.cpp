@@ -1,4 +1,4 @@
-// Methods by the C interface: the catalogue, coefficients, certificates and method files.
+// Methods of the C interface: the catalogue, coefficients, certificates and method files.
 #include <apsis/method/certificate.hpp>
 #include <apsis/method/export.hpp>
 #include <apsis/method/tableau.hpp>
@@ -75,7 +75,8 @@ TEST(c_methods, have_coefficients_in_both_forms) {
   EXPECT_EQ(coefficients(m, APSIS_SHU_OSHER_R, 1), std::vector<double>{form.r});
   const auto p = coefficients(m, APSIS_SHU_OSHER_P, s * s), w = coefficients(m, APSIS_SHU_OSHER_W, s * s),
              d = coefficients(m, APSIS_SHU_OSHER_D, s * s);
-  // The Butcher form satisfies R Â = W/r, R A = D and R Ȧ = diag(ḋ) with R = I − P − W, to rounding.
+  // The Butcher form satisfies R Â = W/r, R A = D and R Ȧ = diag(ḋ) with R = I − P − W, up
+  // to rounding errors.
   const auto explicit_part = coefficients(m, APSIS_BUTCHER_A_HAT, s * s),
              implicit_part = coefficients(m, APSIS_BUTCHER_A, s * s),
              derivative = coefficients(m, APSIS_BUTCHER_A_DOT, s * s);
@@ -122,7 +123,7 @@ TEST(c_methods, are_read_from_files_that_the_interface_writes) {
   EXPECT_EQ(coefficients(m, APSIS_SHU_OSHER_DDOT, 6), coefficients(of_catalogue, APSIS_SHU_OSHER_DDOT, 6));
   EXPECT_EQ(fact(m, "order"), 3);
 
-  // A claim of order 4 does not hold.
+  // The method has order 3, so a claim of order 4 does not hold.
   std::string wrong = text;
   wrong.replace(wrong.find("order = 3"), 9, "order = 4");
   std::ofstream(path) << wrong;

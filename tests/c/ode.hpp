@@ -9,7 +9,7 @@
 
 #include <gtest/gtest.h>
 
-/// The ODE model of the paper by callbacks, and handles that release themselves.
+/// Callbacks for the ODE model of the paper, and handles that release themselves.
 namespace c_interface {
 
 struct free_method {
@@ -33,7 +33,7 @@ inline integrator make(const char* name, std::size_t n) {
   return integrator(made);
 }
 
-/// Throws the error of a function of the C interface, for tables of bad input.
+/// Throws the error of a function of the C interface, as tables of bad input expect.
 inline void rethrow(int status) {
   if (status >= 0) return;
   EXPECT_EQ(status, APSIS_INPUT_ERROR);
@@ -72,7 +72,7 @@ inline int flow(double, double s, size_t, double* u, void* data) {
   return 0;
 }
 
-/// Q as relaxation_problem computes it.
+/// Computes Q with the operations of relaxation_problem.
 inline int rate(size_t, size_t, const double* u, double* q, void* data) {
   const double k = rate_of(u, data);
   q[0] = k * (u[0] - u[0]);
@@ -85,7 +85,8 @@ inline int relaxation_time(double, size_t, const double* u, double* result, void
   return 0;
 }
 
-/// An integrator of the model from (2, 0) at t = 0, with every form of the collision except derivatives.
+/// Returns an integrator of the model from (2, 0) at t = 0 with all callbacks for the
+/// collision except derivatives.
 inline integrator of_ode(const char* name, ode& data) {
   auto s = make(name, 2);
   apsis_set_data(s.get(), &data);

@@ -107,7 +107,7 @@ TEST(c_same_bits, of_steps_of_every_kind) {
   }
 }
 
-// The quick start of README.md.
+// The problem is the quick start of README.md.
 TEST(c_same_bits, of_the_model_of_the_paper) {
   ode data{1e-8};
   auto problem = relaxation(data.epsilon);
@@ -183,7 +183,7 @@ TEST(c_same_bits, of_stages_by_newtons_method) {
 
 TEST(c_same_bits, of_newtons_method_within_a_tolerance) {
   general g{1e4};
-  for (const char* name : {"md-imex-6-3", "ark-437"}) {  // with and without second derivatives
+  for (const char* name : {"md-imex-6-3", "ark-437"}) {  // with second derivatives, and without
     apsis::newton_problem<decltype(transport_of_general), general> problem(transport_of_general, g);
     problem.with_tolerances({1e-6, 1e-9});
     const auto& m = apsis::find_method(name);
@@ -213,7 +213,8 @@ TEST(c_same_bits, stages_of_a_step_share_a_derivative) {
     return static_cast<double>(apsis_count(s.get(), APSIS_PRODUCT_EVALUATIONS)) /
            static_cast<double>(apsis_count(s.get(), APSIS_STEPS));
   };
-  // Two columns of the derivative, in most steps once, for six implicit stages.
+  // A step with a tolerance mostly computes the two columns of the derivative once. A step without a
+  // tolerance computes them in each of its six implicit stages.
   EXPECT_LE(derivatives_of(1e-6), 4.0);
   EXPECT_GE(derivatives_of(0.0), 12.0);
 }

@@ -1,4 +1,4 @@
-// Cases that are refused when they are read: the tables of the folder bad_input.
+// Reading refuses the cases of the tables in the folder bad_input.
 #include <support/bad_input.hpp>
 
 #include <apsis/config/case.hpp>

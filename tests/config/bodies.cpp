@@ -1,4 +1,4 @@
-// Tables [[space.body]]: shapes of shapes, units and formulas, documents that read back, and bad input.
+// Tables [[space.body]]: nested shapes, units and formulas, round trips through documents, and bad input.
 #include <apsis/config/body_reader.hpp>
 #include <apsis/config/case.hpp>
 #include <apsis/config/case_json.hpp>
@@ -17,7 +17,7 @@
 namespace bodies_test {
 namespace {
 
-/// A gas in a square of side 4 with these tables of bodies.
+/// Returns a case of a gas in a square of side 4 with these tables of bodies.
 std::string with(const std::string& bodies, const std::string& more = "") {
   return R"([parameters]
 r = 0.7
@@ -62,9 +62,9 @@ TEST(bodies, cut_the_mesh_of_their_case) {
   const apsis::grid mesh = apsis::make_mesh(config);
   ASSERT_NE(mesh.cut(), nullptr);
   EXPECT_EQ(mesh.obstacles(), 1);
-  // The chords of cells are shorter than the arc.
+  // The cells replace the arc by shorter chords, which changes the area by less than 0.02.
   EXPECT_NEAR(gas_volume(mesh), 16.0 - std::numbers::pi * 0.49, 0.02);
-  // The cells are cut once for a case and its copies.
+  // A case and its copies share the cut cells.
   const apsis::case_config copy = config;
   EXPECT_EQ(apsis::make_mesh(copy).cut(), mesh.cut());
 }
@@ -78,7 +78,7 @@ TEST(bodies, follow_parameters_and_overrides) {
 }
 
 TEST(bodies, combine_shapes_of_shapes) {
-  // A ring, open to the right: the difference of two circles and a box.
+  // The shape is a ring that is open to the right: a circle minus a smaller circle and a box.
   const auto config = apsis::parse_case(with("[[space.body]]\nshape = \"difference\"\nshift = [0.1, "
                                              "0]\nshapes = [{ shape = \"circle\", centre = [0, "
                                              "0], radius = 1.5 }, { shape = \"union\", shapes = [{ shape = "

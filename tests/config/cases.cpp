@@ -64,7 +64,7 @@ TEST(cases, overrides_replace_values_of_the_file) {
 TEST(cases, numbers_of_overrides_may_be_fractions) {
   EXPECT_EQ(*load_case("paper/ode", {"time.dt=1/48"}).time.dt, 1.0 / 48.0);
   EXPECT_EQ(load_case("paper/decay", {"model.u0=2.5e1/4"}).model.parameters.at("u0"), 6.25);
-  // Texts stay texts, and formulas are left to the expression parser.
+  // Texts stay texts. The expression parser reads the formulas.
   EXPECT_EQ(load_case("paper/ode", {"title=1/2"}).title, "1/2");
   EXPECT_EQ(load_case("paper/ode", {"model.epsilon=1/2"}).model.epsilon.text, "1/2");
 }
@@ -149,7 +149,7 @@ TEST(cases, each_end_may_have_its_own_boundary) {
     return std::pair{faces[0]->periodic(), faces[1]->periodic()};
   };
   EXPECT_EQ(kinds(parse_case(text, "c.toml")), std::pair(true, true));
-  // As tables, as dotted keys, and on the command line.
+  // The boundaries are given as tables, as dotted keys, and on the command line.
   const case_config c = parse_case(
       text + "[boundary.left]\nkind = \"outflow\"\n[boundary.right]\nkind = \"outflow\"\n", "c.toml");
   EXPECT_EQ(kinds(c), std::pair(false, false));
@@ -173,7 +173,7 @@ TEST(cases, a_list_of_one_name_is_given_without_brackets_and_quotes) {
 }
 
 TEST(schema, a_parameter_name_has_one_type_in_all_models) {
-  // The command line decides whether a value needs quotes before the model is known.
+  // The command line decides whether a value needs quotes before it knows the model.
   for (const model_entry* one : model_entries())
     for (const model_option& text : one->options) {
       EXPECT_NE(std::find(text.choices.begin(), text.choices.end(), text.value), text.choices.end());

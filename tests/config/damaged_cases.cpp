@@ -1,4 +1,4 @@
-// Damaged and oversized cases, which tables of texts do not contain; the others are in bad_input/.
+// Damaged and oversized cases that the tables of bad_input/ cannot contain.
 #include <apsis/config/case.hpp>
 #include <apsis/core/errors.hpp>
 
@@ -55,8 +55,7 @@ TEST(damaged_case, a_file_cut_at_any_byte_is_refused_or_read) {
     else
       EXPECT_THAT(message, StartsWith("c.toml:")) << n;
   }
-  // Only cuts after the last required key leave a valid case, including those within the numbers "0.04" and
-  // "0.1".
+  // A file that is cut after its last required key is a valid case, also within the numbers "0.04" and "0.1".
   EXPECT_GE(read, 2);
   EXPECT_LE(read, 25);
 }
@@ -92,7 +91,7 @@ TEST(damaged_case, large_garbage_is_refused_before_it_is_parsed) {
               StartsWith("c.toml:3:4097: the line is longer than 4096"));
   std::string deep;
   for (int k = 0; k < 2000; ++k) deep += "a.";
-  // A chain of two thousand dotted tables fits a line and must neither overflow the stack nor pass.
+  // Two thousand dotted tables fit into one line. The parser must neither overflow the stack nor accept them.
   EXPECT_THAT(error_of("[" + deep + "b]\n" + deep + "c = 1\n"), StartsWith("c.toml:"));
 }
 

@@ -1,4 +1,4 @@
-// Cases with a conservation law of the user: lists of texts and the automatic speed.
+// Cases with conservation laws given by formulas: lists of texts and the automatic speed.
 #include <apsis/config/case.hpp>
 #include <apsis/config/case_schema.hpp>
 #include <apsis/core/errors.hpp>
@@ -46,7 +46,7 @@ double speed_of(const std::vector<std::string>& overrides) {
 }  // namespace
 
 TEST(law, automatic_speed_is_the_fastest_wave_of_the_data_times_the_margin) {
-  // Four digits, rounded up.
+  // The speed has four digits and is rounded up.
   const double fastest = std::sqrt(9.81 * 4.0);
   EXPECT_NEAR(speed_of({}), 2.0 * fastest, 1e-3 * fastest);
   EXPECT_GE(speed_of({}), 2.0 * fastest);

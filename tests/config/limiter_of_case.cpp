@@ -1,4 +1,4 @@
-// The limiter of cases that do not name one: on where f ≥ 0 can be kept at no cost in steps.
+// The default limiter is on where it keeps f ≥ 0 without shorter steps.
 #include <apsis/config/limiter_of_case.hpp>
 
 #include <apsis/config/case.hpp>
@@ -50,12 +50,12 @@ TEST(default_limiter, is_none_where_it_would_make_steps_shorter) {
 
 TEST(default_limiter, is_none_where_nothing_is_to_be_kept_or_it_cannot_be_kept) {
   EXPECT_EQ(limiter_of("gas/couette", {"space.reconstruction=upwind1"}), limiter_choice::none);
-  EXPECT_EQ(limiter_of("gas/couette", {"time.method=ars-443"}), limiter_choice::none);  // r = 0
-  EXPECT_EQ(limiter_of("gas/couette", {"model.name=shakhov"}), limiter_choice::none);  // its target is signed
+  EXPECT_EQ(limiter_of("gas/couette", {"time.method=ars-443"}), limiter_choice::none);  // SSP coefficient 0
+  EXPECT_EQ(limiter_of("gas/couette", {"model.name=shakhov"}), limiter_choice::none);  // the target is signed
   EXPECT_EQ(limiter_of("gas/couette", {"model.name=shakhov", "model.tails=nonnegative"}),
             limiter_choice::positivity);
   EXPECT_EQ(limiter_of("laws/euler-sod"), limiter_choice::none);  // momentum has both signs
-  EXPECT_EQ(limiter_of("paper/ode"), limiter_choice::none);       // no space
+  EXPECT_EQ(limiter_of("paper/ode"), limiter_choice::none);       // the model has no space
 }
 
 TEST(default_limiter, gives_way_to_the_case) {

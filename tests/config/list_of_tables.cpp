@@ -17,7 +17,7 @@ TEST(list_of_tables, has_keys_with_a_number_from_1_to_1000) {
        {"1", "", ".", ".name", "0.name", "-1.name", "+1.name", "1001.name", "1x.name", "x.name", " 1.name",
         "1 .name", "1.5", "99999999999999999999.name"}) {
     const auto found = apsis::split_key("space.body." + rest, "space.body.");
-    // "1.5" has the key "5", which no table has.
+    // "1.5" splits into the number 1 and the key "5", which a later check refuses.
     EXPECT_EQ(found.has_value(), rest == "1.5") << rest;
   }
 }

@@ -1,5 +1,4 @@
-// time.method = "auto", the default: the choice follows from the case alone, and the case keeps how it was
-// made.
+// time.method = "auto", the default. The choice follows from the case alone, and the case records its reason.
 #include <apsis/config/method_of_case.hpp>
 
 #include <apsis/config/case_explanation.hpp>
@@ -44,7 +43,8 @@ TEST(automatic_method, is_the_default_and_follows_bounds_and_tolerance) {
   EXPECT_EQ(method({"time.cfl=0.5", "time.method=auto"}), "md-imex-8-3-mixed");
   EXPECT_EQ(method({"time.cfl=0.5", "time.tolerance=1e-3"}), "extrapolated-euler-3");
   EXPECT_EQ(method({"time.cfl=0.5", "time.tolerance=1e-6"}), "extrapolated-euler-4");
-  // Bounds are wanted with the limiter, with first-order upwind, and by a step that an SSP coefficient sets.
+  // The program chooses a method with an SSP coefficient if the limiter is on, with first-order upwind, or if
+  // an SSP coefficient sets the step.
   for (const char* bound : {"space.limiter=positivity", "space.reconstruction=upwind1", "time.safety=1"})
     EXPECT_EQ(method({bound == std::string("time.safety=1") ? "title=x" : "time.cfl=0.5", bound,
                       "time.tolerance=1e-3"}),
@@ -60,7 +60,7 @@ TEST(automatic_method, of_a_system_follows_the_steps_relative_to_the_relaxation)
                "c.toml")
         .time.method;
   };
-  // C = 1 + u₁² = 5 at the start.
+  // The rate is C = 1 + u₁² = 5 at the start.
   EXPECT_EQ(method("0.11", ""), "dop853");
   EXPECT_EQ(method("0.09", ""), "extrapolated-euler-8");
   EXPECT_EQ(method("1.0", "startup = \"graded\"\n"), "extrapolated-euler-8");
@@ -69,7 +69,7 @@ TEST(automatic_method, of_a_system_follows_the_steps_relative_to_the_relaxation)
 }
 
 TEST(automatic_method, measures_the_ratio_over_the_domain) {
-  // Δt = 0.5·0.05/10, C = 1.
+  // The step is Δt = 0.5·0.05/10, and C = 1.
   const auto request = apsis::request_of(gas({"time.cfl=0.5"}, "1e-3 + x"));
   ASSERT_TRUE(request.lowest_ratio && request.highest_ratio);
   EXPECT_NEAR(*request.lowest_ratio, 1.25e-3, 2e-5);
@@ -101,17 +101,17 @@ TEST(explanation, marks_what_is_given_what_is_a_default_and_what_is_derived) {
   using origin = apsis::value_origin;
   EXPECT_EQ(value_of(c, "space.cells").origin, origin::given);
   EXPECT_EQ(value_of(c, "space.cells").value, "40");
-  // A default that the case writes down is given.
+  // A value in the case counts as given, also if it equals the default.
   EXPECT_EQ(value_of(c, "space.limiter").origin, origin::given);
   EXPECT_EQ(value_of(c, "space.reconstruction").origin, origin::default_value);
   EXPECT_EQ(value_of(c, "time.cfl").origin, origin::given);
   EXPECT_EQ(value_of(c, "time.method").origin, origin::derived);
   EXPECT_THAT(value_of(c, "time.method").reason, StartsWith("\"auto\": equal steps on a mesh"));
-  EXPECT_EQ(value_of(c, "model.velocity_dimensions").origin, origin::derived);  // of space.cells
+  EXPECT_EQ(value_of(c, "model.velocity_dimensions").origin, origin::derived);  // follows from space.cells
   EXPECT_EQ(value_of(c, "initial.rho").origin, origin::given);
   const std::string text = apsis::explanation_text(c);
   EXPECT_THAT(text, HasSubstr("space.reconstruction = \"weno5-z\""));
-  EXPECT_EQ(text.find("time.dt"), std::string::npos);  // not set
+  EXPECT_EQ(text.find("time.dt"), std::string::npos);  // the case does not set it
 }
 
 TEST(explanation, of_a_gas_derives_epsilon_from_its_table) {

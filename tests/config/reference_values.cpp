@@ -1,4 +1,4 @@
-// The table [output.reference]: values with units and formulas, documents that read back, and bad input.
+// The table [output.reference]: values with units and formulas, round trips through documents, and bad input.
 #include <apsis/config/case.hpp>
 #include <apsis/config/case_json.hpp>
 #include <apsis/config/case_schema.hpp>
@@ -19,7 +19,7 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-/// A case of 19 lines, in the plane or in space, with a body and this table after it.
+/// Returns a case of 19 lines, in the plane or in space, with a body and then this table.
 std::string with(const std::string& table, bool in_space = false, const std::string& before = "") {
   const std::string cells = in_space ? "[8, 8, 8]" : "[8, 8]",
                     domain = in_space ? "[[-2, 2], [-2, 2], [-2, 2]]" : "[[-2, 2], [-2, 2]]";
@@ -92,7 +92,7 @@ TEST(reference_values, have_units_of_a_gas) {
       "[output.reference]\ndensity = 1\nvelocity = [\"500 m/s\", 0]\ntemperature = \"330 K\"\nlength = "
       "\"3 mm\"\ncentre = [\"1 mm\", \"0 mm\"]\n";
   const auto found = read(with(table, false, gas));
-  // v0 = √(RT) with R = 8.314462618/M J/(kg K); tables of M of argon differ in the fourth digit.
+  // v0 = √(RT) with R = 8.314462618/M J/(kg K). Published values of M for argon differ in the fourth digit.
   EXPECT_NEAR(found.velocity[0], 500.0 / std::sqrt(8.314462618 / 0.03995 * 300.0), 1e-3);
   EXPECT_NEAR(found.temperature, 1.1, 1e-14);
   EXPECT_NEAR(found.length, 3.0, 1e-14);

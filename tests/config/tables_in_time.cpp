@@ -1,4 +1,4 @@
-// Values of boundaries from files of a time and a value: numbers, units, round trip, messages.
+// Values of boundaries from files with times and values: numbers, units, round trip, messages.
 #include <apsis/boundary/domain.hpp>
 #include <apsis/config/boundary_reader.hpp>
 #include <apsis/config/case.hpp>
@@ -77,7 +77,7 @@ TEST_F(tables_in_time, belong_to_the_case_with_all_digits) {
       with_gas(fmt::format("[boundary.left]\nT.file = \"{0}\"\nvelocity = {{ file = \"{0}\" }}\n", path)),
       "c.toml");
   std::filesystem::remove(path);
-  // The file is not needed any more, and its numbers survive TOML and JSON.
+  // The case no longer needs the file. All digits survive in TOML and JSON.
   const std::string text = to_toml(config);
   const case_config again = parse_case(text, "again.toml");
   EXPECT_EQ(to_toml(again), text);
@@ -102,7 +102,7 @@ TEST_F(tables_in_time, have_units_and_columns_of_any_name) {
   const auto sides = make_boundaries(config, make_model(config));
   EXPECT_NEAR(sides[0][0]->wall_velocity(t, {})[1], v, 1e-14 * v);
   EXPECT_NEAR(sides[0][0]->wall_velocity(0.5 * t, {})[1], 0.5 * v, 1e-14 * v);
-  // 300 K and 600 K in units of 300 K.
+  // The values are 300 K and 600 K in units of 300 K.
   EXPECT_THAT(config.faces[0].values.at("T").front(), testing::StartsWith("table(t, 0, 1, "));
   EXPECT_TRUE(config.faces[0].values.at("T").front().ends_with(", 2)"))
       << config.faces[0].values.at("T").front();

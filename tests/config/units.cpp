@@ -150,7 +150,7 @@ RC_GTEST_PROP(quantities, text_after_a_number_is_read_or_refused, ()) {
 TEST(gas, units_become_dimensionless_numbers) {
   const case_config c = parse(in_argon);
   ASSERT_TRUE(c.scales.has_value());
-  // Independent of the scales of the program: R = k_B/m of argon.
+  // These scales are independent of the program: R = k_B/m of argon.
   const double m = 66.3e-27, R = 1.380649e-23 / m, speed = std::sqrt(R * 300.0), time = 1e-3 / speed;
   const auto expect = [](double x, double y) { EXPECT_NEAR(x, y, 1e-12 * std::abs(y)); };
   expect(c.space.domain[0][0], -1.0);
@@ -166,7 +166,7 @@ TEST(gas, units_become_dimensionless_numbers) {
   expect(number(c.faces[0].values.at("T").front()), 350.0 / 300.0);
   expect(number(c.faces[0].values.at("velocity").back()), 20.0 / speed);
   EXPECT_EQ(c.faces[1].values.at("T").front(), "1 + 0.1*sin(t)");
-  // The gas sets the model.
+  // The table of the gas sets the parameters of the model.
   const double mu = 2.117e-5 * std::pow(300.0 / 273.0, 0.81);
   expect(number(c.model.epsilon.text), mu * speed / (10.0 * 1e-3));
   EXPECT_EQ(c.model.options.at("collision_rate"), "viscosity");
@@ -190,7 +190,7 @@ TEST(gas, pressure_density_and_number_density_are_equivalent) {
   for (const auto& [key, value] :
        {std::pair<std::string, std::string>{"density", fmt::format("{} kg/m^3", 66.3e-27 * n)},
         {"number_density", fmt::format("{} 1/cm^3", 1e-6 * n)}}) {
-    // On the command line a key replaces those that exclude it.
+    // A key on the command line replaces those that exclude it.
     const case_config other = parse(in_argon, {"gas." + key + "=" + value});
     EXPECT_FALSE(other.gas.pressure.has_value());
     EXPECT_NEAR(other.scales->pressure(), 10.0, 1e-12);
@@ -216,7 +216,7 @@ TEST(gas, of_ones_own_is_described_by_its_values) {
 
 TEST(knudsen, numbers_of_every_definition_give_epsilon) {
   using std::numbers::pi;
-  // Kn/ε from λ/L with μ = ε, p = R T = L = 1, evaluated here on its own.
+  // Kn/ε follows from λ/L with μ = ε and p = R T = L = 1, independently of the program.
   const std::vector<std::pair<std::string, double>> expected = {
       {"viscosity", std::sqrt(pi / 2.0)},
       {"mean-speed", std::sqrt(8.0 / pi)},
@@ -240,18 +240,18 @@ TEST(knudsen, numbers_of_every_definition_give_epsilon) {
               1.0 / (3.0 * std::sqrt(2.0)), 1e-16);
   const case_config varying = parse(no_units, {"model.rarefaction=1 + x"});
   EXPECT_NEAR(make_epsilon(varying, 1).value(1.0), 1.0 / (2.0 * std::sqrt(2.0)), 1e-15);
-  // Without viscosity_exponent the default of the model, hard spheres, holds.
+  // Without viscosity_exponent the model uses its default, that of hard spheres.
   const case_config hard = parse(changed(no_units, "viscosity_exponent = 0.81", "rarefaction = 2"));
   EXPECT_EQ(hard.model.parameters.at("viscosity_exponent"), 0.5);
 }
 
 TEST(knudsen, a_formula_is_converted_by_arithmetic) {
   const case_config c = parse(no_units, {"model.knudsen.value=kn + x", "model.knudsen.mean_free_path=vhs"});
-  // The resolved case has the key as given, and reads back to the same numbers.
+  // The resolved case has the key as the file gives it, and yields the same numbers when read again.
   EXPECT_THAT(to_toml(c), HasSubstr("knudsen.value = \"kn + x\"\nknudsen.mean_free_path = \"vhs\"\n"));
   EXPECT_THAT(to_toml(c), Not(HasSubstr("epsilon = ")));
   EXPECT_EQ(make_epsilon(parse(to_toml(c)), 1).value(0.3), make_epsilon(c, 1).value(0.3));
-  // epsilon replaces it, on the command line and in a program.
+  // epsilon replaces the key, on the command line and in a program.
   EXPECT_EQ(make_epsilon(parse(to_toml(c), {"model.epsilon=0.25"}), 1).value(0.3), 0.25);
   case_config changed_by_program = c;
   changed_by_program.model.epsilon = "0.5";

@@ -20,7 +20,7 @@ using boost::multiprecision::cpp_int;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// x · 2^1074.
+/// Returns x · 2^1074.
 cpp_int scaled(double x) {
   int exponent = 0;
   const double fraction = std::frexp(x, &exponent);
@@ -44,8 +44,8 @@ std::vector<double> random_terms(apsis::random_source& random, int count, double
   return terms;
 }
 
-/// Whether no number is nearer to the integer `exact` than x, all in units of 2^-1074, and of two at the same
-/// distance x is even.
+/// Returns true if x is the double nearest to `exact`, in units of 2^-1074. If two doubles are equally near,
+/// x must be the even one.
 bool is_nearest(double x, const cpp_int& exact) {
   const cpp_int off = abs(scaled(x) - exact);
   for (const double other : {std::nextafter(x, infinity), std::nextafter(x, -infinity)}) {
@@ -82,7 +82,7 @@ TEST(exact_sum, does_not_depend_on_order_or_partition) {
     exact_sum all;
     for (const auto& one : each) all.add(one);
     EXPECT_EQ(all.value(), whole) << parts;
-    // The words of several processes.
+    // Processes add their words.
     exact_sum reduced;
     const auto to = reduced.words();
     for (auto& one : each) {

@@ -13,7 +13,7 @@ TEST(graded_start, divides_the_step_into_steps_whose_times_grow_by_the_ratio) {
     for (const double relaxation_time : {1.2, 4e-3, 4e-9}) {
       const auto steps = apsis::graded_start(0.25, relaxation_time, growth);
       const double longest = growth / 8.0 * relaxation_time;
-      // Powers of two are exact; the times of other ratios are rounded once each.
+      // Times of powers of two are exact. With the ratio 3 each time is rounded once.
       EXPECT_NEAR(std::accumulate(steps.begin(), steps.end(), 0.0), 0.25, growth == 3 ? 1e-15 : 0.0);
       EXPECT_LE(steps.front(), longest);
       double time = steps.front();
@@ -34,7 +34,8 @@ TEST(graded_start, keeps_short_steps_and_steps_without_a_layer) {
 }
 
 TEST(graded_start, ends_for_layers_below_rounding_whatever_the_ratio) {
-  // As many halvings as a double has digits, plus two: 2^−55 = 4^−28 = 64^−10 to within one step.
+  // There are as many halvings as a double has digits, plus two. 2^−55, 4^−28 and 64^−10 agree to
+  // within one step.
   EXPECT_EQ(apsis::graded_start(1.0, 1e-300).size(), 56U);
   EXPECT_EQ(apsis::graded_start(1.0, 1e-300, 4).size(), 29U);
   EXPECT_EQ(apsis::graded_start(1.0, 1e-300, 64).size(), 11U);

@@ -1,4 +1,4 @@
-// Texts that a terminal shows and does not obey.
+// Texts appear on a terminal without commanding it.
 #include <apsis/core/printable.hpp>
 
 #include <string>

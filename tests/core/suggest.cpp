@@ -1,5 +1,4 @@
-// Suggestions for misspelled words: every single typing error finds its word, and distant words
-// are not suggested.
+// A word with a single typing error gets a suggestion, and a distant word gets none.
 #include <apsis/core/suggest.hpp>
 
 #include <algorithm>
@@ -22,7 +21,7 @@ const std::vector<std::string> functions = {"x",     "pi",   "e",    "sin",  "co
 const std::vector<std::string> keys = {"time.dt",     "time.end",       "time.method",  "time.tolerance",
                                        "space.cells", "space.boundary", "velocity.max", "velocity.points"};
 
-/// Damerau–Levenshtein distance by its recursive definition.
+/// Returns the Damerau–Levenshtein distance by its recursive definition.
 std::size_t edit_distance(const std::string& a, const std::string& b) {
   if (a.empty() || b.empty()) return a.size() + b.size();
   if (a.front() == b.front()) return edit_distance(a.substr(1), b.substr(1));

@@ -83,7 +83,7 @@ TEST(text_file, that_cannot_be_written_is_named_with_its_reason_and_a_suggestion
 
 TEST(text_file, of_a_full_disk_is_an_error) {
   const test_folder folder;
-  // A limit of the length of files acts as a full disk.
+  // A limit of the file size acts as a full disk.
   rlimit before{};
   ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &before), 0);
   const auto handler = std::signal(SIGXFSZ, SIG_IGN);

@@ -1,4 +1,4 @@
-// First and second derivatives of design problems against finite differences, and their values against the
+// First and second derivatives of design problems agree with finite differences. Their values agree with the
 // order conditions of the Butcher form, which do not involve Shu–Osher variables.
 #include <apsis/core/random_source.hpp>
 #include <apsis/design/design_problem.hpp>
@@ -19,7 +19,8 @@ namespace {
 
 using measure = design_problem::measure;
 
-/// Away from the poles of stages with d = 0, which are on the imaginary axis.
+/// Demanded angle of A(α)-stability in degrees. The ray avoids the imaginary axis, where stages with d = 0
+/// have poles.
 constexpr double demanded_angle = 60.0;
 
 /// A problem with a random zero pattern, and a point inside its bounds.
@@ -71,8 +72,8 @@ const std::vector<kind_and_order> all = {{method_kind::imex, 1, 2, regime_demand
                                          {method_kind::imex, 3, 6, regime_demand::slow, 2},
                                          {method_kind::imex, 4, 7, regime_demand::none, 2}};
 
-// Central differences with h = 1e-5 of quantities of size 1 with derivatives up to some hundreds: the
-// tolerance 1e-6, relative to the size of the row, covers h² times third derivatives and 1e-16/h.
+// Central differences with h = 1e-5. The quantities have size 1, their derivatives up to some hundreds. The
+// tolerance 1e-6 is relative to the size of the row. It covers h² times third derivatives and 1e-16/h.
 constexpr double h = 1e-5, tolerance = 1e-6;
 
 Eigen::VectorXd draw_vector(Eigen::Index size, random_source& random) {
@@ -81,7 +82,7 @@ Eigen::VectorXd draw_vector(Eigen::Index size, random_source& random) {
   return v;
 }
 
-/// Gradient of Σ λ residual + Σ μ limit + the weighted half squares.
+/// Returns the gradient of Σ λ residual + Σ μ limit + the weighted half squares.
 Eigen::VectorXd gradient_of_sum(design_problem& problem, const Eigen::VectorXd& x,
                                 const design_problem::weights& given) {
   Eigen::VectorXd g = problem.jacobian(x).transpose() * given.equations, part;
@@ -143,7 +144,7 @@ TEST(design_derivatives, agree_with_differences) {
   }
 }
 
-/// The Butcher form in long double, which the formulas of the certificate take.
+/// Returns the Butcher form in long double for the formulas of the certificate.
 butcher_form<long double> butcher_of(const shu_osher_form<double>& m) {
   const auto b = to_butcher(m);
   const auto wide = [](const matrix<double>& from) {
@@ -155,8 +156,8 @@ butcher_form<long double> butcher_of(const shu_osher_form<double>& m) {
   return {wide(b.A_hat), wide(b.A), wide(b.A_dot)};
 }
 
-// The residuals of the band and the stability limits against flux(z) and R(ζ) of the certificate. Both solve
-// triangular systems and differ by rounding errors times the size of the terms.
+// Do residuals of the band and stability limits agree with flux(z) and R(ζ) of the certificate? Both solve
+// triangular systems. They differ by rounding errors times the size of the terms.
 TEST(design_conditions, agree_with_flux_and_stability_function_of_the_certificate) {
   for (std::size_t k = 0; k < all.size(); ++k) {
     if (all[k].kind == method_kind::explicit_only || all[k].steps == 2) continue;
@@ -207,7 +208,7 @@ TEST(design_conditions, agree_with_the_butcher_form) {
       for (Eigen::Index e = 0; e < problem.equations(); ++e)
         if (problem.equation_name(e) == trees[t].name) {
           ++seen;
-          // Both are sums of several hundred products, in different order.
+          // Both values are sums of several hundred products in different order.
           EXPECT_NEAR(residuals(e), missing, 1e-13 * (1.0 + std::abs(missing)));
         }
     }
@@ -228,7 +229,8 @@ TEST(design_conditions, agree_with_the_butcher_form) {
   }
 }
 
-// Of two-step methods: the certificate solves the rows one by one, without nodes. Tolerances as above.
+// The same comparison for two-step methods, with the tolerances above. Their certificate solves the rows one
+// by one, without nodes.
 TEST(design_conditions, agree_with_the_certificate_of_two_step_methods) {
   for (std::size_t k = 0; k < all.size(); ++k) {
     if (all[k].steps == 1) continue;
@@ -252,7 +254,7 @@ TEST(design_conditions, agree_with_the_certificate_of_two_step_methods) {
     double sum = 0.0;
     for (int l = -8; l <= 20; ++l) {  // 8 per decade
       const double z = std::pow(10.0, l / 8.0);
-      double decay = 1.0;  // of a deviation that u^{n-1} and u^n have
+      double decay = 1.0;  // of a deviation that u^{n-1} and u^n share
       {
         const auto initial = initial_weights(m);
         std::vector<double> y(m.stages(), 1.0);
@@ -263,7 +265,7 @@ TEST(design_conditions, agree_with_the_certificate_of_two_step_methods) {
         }
         decay = y.back();
       }
-      // Σ b̂, which is 1 + b only if order 1 is satisfied, as it is not here.
+      // Σ b̂ equals 1 + b only if the method has order 1. These random methods do not.
       const double b = weight_of_previous(m), sum_of_b_hat = weights[leaf] + b;
       const double flux = two_step_at_finite_rate(m, z).flux * (1.0 + b);
       const double residual = (flux - sum_of_b_hat) / z * (1.0 - decay) / -std::expm1(-z);
@@ -288,7 +290,7 @@ TEST(design_conditions, are_fewer_if_abscissae_are_equal) {
   EXPECT_EQ(count_of_trees(method_kind::implicit_only, 5, 9), 17);
 }
 
-/// Returns the pattern of a method of the catalogue.
+/// Returns the zero pattern of a method of the catalogue.
 zero_pattern pattern_of(const shu_osher_form<double>& m, method_kind kind) {
   zero_pattern p = full_pattern(kind, std::vector<char>(m.stages(), 1));
   for (std::size_t i = 0; i < m.stages(); ++i) {
@@ -314,7 +316,7 @@ TEST(design_conditions, hold_for_the_catalogue) {
     design_demands demands;
     demands.order = found.claims.order;
     demands.regime = regime;
-    demands.box = 2.0 + 1e-14;  // two coefficients of md-imex-6-3 are 2 to 15 decimals only
+    demands.box = 2.0 + 1e-14;  // two coefficients of md-imex-6-3 are 2 only up to 15 decimals
     design_problem problem(pattern_of(m, found.kind), demands);
     const auto x = problem.unknowns_of(m);
     EXPECT_LT(problem.residuals(x).lpNorm<Eigen::Infinity>(), 1e-13) << name;

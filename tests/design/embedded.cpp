@@ -1,4 +1,4 @@
-// Search for embedded solutions: nonnegative least squares, methods with and without a solution.
+// Search for embedded solutions: nonnegative least squares, methods with and without such a solution.
 #include <apsis/design/embedded.hpp>
 
 #include "support/catalogue.hpp"
@@ -33,8 +33,8 @@ embedded_certificate certified(const std::string& name, const embedded_row& row)
   return *c.embedded;
 }
 
-/// The first-order conditions, which are sufficient for a convex problem: zero gradient along positive x, and
-/// no descent direction that increases a zero.
+/// Does x satisfy the first-order conditions? They suffice for a convex problem: the gradient vanishes along
+/// positive x, and no descent direction increases a zero.
 TEST(nonnegative_least_squares, satisfies_its_optimality_conditions) {
   check_property("random matrices", [] {
     const auto rows = *rc::gen::inRange<Eigen::Index>(1, 9), cols = *rc::gen::inRange<Eigen::Index>(1, 9);
@@ -50,26 +50,26 @@ TEST(nonnegative_least_squares, satisfies_its_optimality_conditions) {
     for (Eigen::Index j = 0; j < cols; ++j) {
       RC_ASSERT(x(j) >= 0.0);
       RC_ASSERT(gradient(j) <= 1e-9);
-      // Nearly dependent columns give large x, with gradients of the size of its rounding errors.
+      // Nearly dependent columns give large x. The gradients are then as large as the rounding errors of x.
       const bool flat = gradient(j) >= -1e-9 * (1.0 + x.maxCoeff());
       RC_ASSERT(x(j) == 0.0 || flat);
     }
   });
 }
 
-/// Regression: rounding once left the blocking entry with a nonzero last digit, and the iteration ended away
-/// from the minimum.
+/// Regression: a rounding error once left the blocking entry with a nonzero last digit. The iteration then
+/// ended away from the minimum.
 TEST(nonnegative_least_squares, continues_after_a_blocked_step) {
   Eigen::MatrixXd A(2, 6);
   A << -1.0, -1.0, -1.0, -0.13, -1.0, -0.39, -1.0, -1.0, -1.0, -0.44, -1.0, -0.87;
   const Eigen::VectorXd b = Eigen::Vector2d(-0.08, -1.0);
   const Eigen::VectorXd x = nonnegative_least_squares<double>(A, b, 1e-12);
-  // The fourth column alone: (0.13 · 0.08 + 0.44) / (0.13² + 0.44²).
+  // The solution uses the fourth column alone: (0.13 · 0.08 + 0.44) / (0.13² + 0.44²).
   EXPECT_NEAR(x(3), 0.4504 / 0.2105, 1e-14);
   EXPECT_EQ(x.sum(), x(3));
 }
 
-/// The search reproduces the file: the highest useful order, and the same row.
+/// Expects that the search reproduces the file: the highest useful order and the same row.
 void expect_reproduced(const std::string& name) {
   const method& m = find_method(name);
   const auto search = search_for(name);
@@ -84,7 +84,8 @@ void expect_reproduced(const std::string& name) {
   EXPECT_EQ(e.explicit_evaluations, 0);
 }
 
-/// Methods whose embedded solutions were found by the search; those of others are published with them.
+/// Returns the methods whose embedded solutions this search found. Other embedded solutions are published
+/// with their methods.
 std::vector<std::string> searched_methods(int from, int to) {
   return methods_where([&](const method& m) {
     return m.embedded && !m.is_tableau() && m.kind != method_kind::explicit_only && m.claims.order >= from &&
@@ -101,7 +102,7 @@ TEST(SLOW_embedded_solution, of_methods_of_orders_above_3_is_reproduced) {
 }
 
 TEST(embedded_solution, is_a_multiple_of_the_taylor_term_if_possible) {
-  // Implicit methods have two trees of order 3, and the equations leave two of five unknowns free.
+  // Implicit methods have two trees of order 3. The equations leave two of five unknowns free.
   const auto e = certified("imdrk-3-3", *search_for("imdrk-3-3").found);
   EXPECT_EQ(e.order, 2);
   EXPECT_NEAR(e.alignment.convert_to<double>(), 1.0, 1e-30);
@@ -112,7 +113,8 @@ TEST(embedded_solution, is_a_multiple_of_the_taylor_term_if_possible) {
   EXPECT_NEAR((larger.estimate / e.estimate).convert_to<double>(), 15.0, 1e-12);
 }
 
-/// c̃ = Σ p̃_j c_j = 1 is impossible if all stages but the last have c_j < 1: the closest point is far away.
+/// If all stages but the last have c_j < 1, then c̃ = Σ p̃_j c_j = 1 is impossible. The closest point
+/// is far away.
 TEST(embedded_solution, has_a_cost_if_all_earlier_abscissae_are_below_1) {
   for (const char* name : {"md-imex-3-2", "imdrk-3-3", "md-imex-5-2"}) {
     const auto search = search_for(name, 0, embedded_cost::nothing);
@@ -123,14 +125,14 @@ TEST(embedded_solution, has_a_cost_if_all_earlier_abscissae_are_below_1) {
 }
 
 TEST(embedded_solution, costs_nothing_if_abscissae_lie_on_both_sides_of_1) {
-  // imdrk-9-5 has c = 1.42 at a stage.
+  // One stage of imdrk-9-5 has c = 1.42.
   const auto search = search_for("imdrk-9-5", 0, embedded_cost::nothing);
   ASSERT_TRUE(search.found);
   const auto e = certified("imdrk-9-5", *search.found);
   EXPECT_EQ(e.order, 1);
   EXPECT_EQ(e.implicit_solves, 0);
   EXPECT_FALSE(e.relaxes);
-  // In an explicit method T of the stages is available.
+  // In an explicit method T is available at all stages.
   const auto explicit_search = search_for("ssprk-3-3", 0, embedded_cost::nothing);
   ASSERT_TRUE(explicit_search.found);
   EXPECT_EQ(certified("ssprk-3-3", *explicit_search.found).order, 2);
@@ -150,15 +152,15 @@ TEST(embedded_solution, has_slightly_negative_weights_where_no_convex_one_exists
 }
 
 TEST(embedded_solution, does_not_exist_if_only_the_convex_method_itself_has_the_order) {
-  // The row of u^{n+1} satisfies the equations but estimates nothing; `residual` shows the rounding of
-  // its 45 digits.
+  // The row of u^{n+1} satisfies the equations but estimates nothing. `residual` is the rounding error of its
+  // 45 digits.
   for (const char* name : {"imdrk-7-4", "md-imex-16-4-large-r"}) {
     const auto search = search_for(name, 3);
     EXPECT_TRUE(search.attempts[0].convex);
     EXPECT_LT(search.attempts[0].residual, 1e-15) << name;
     EXPECT_LT(search.attempts[0].coverage, 1e-15) << name;
   }
-  // md-imex-6-3 has other solutions, but with little coverage in the limit.
+  // md-imex-6-3 has other solutions, but their coverage in the limit is small.
   const auto search = search_for("md-imex-6-3", 2);
   EXPECT_FALSE(search.found);
   EXPECT_GT(search.attempts[0].coverage, 0.001);

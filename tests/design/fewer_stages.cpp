@@ -1,5 +1,5 @@
-// Removing stages from a method: the smaller method meets the demands, and the residual weight is reported if
-// no stage can be removed.
+// Removing stages from a method. The smaller method satisfies the demands. If no stage can be removed, the
+// residual weight is reported.
 #include <apsis/design/fewer_stages.hpp>
 
 #include <apsis/method/method.hpp>
@@ -22,8 +22,8 @@ design_task task_like(const method& m, int order) {
   return task;
 }
 
-/// Returns the largest |weight − 1/γ| of the trees up to an order, from the Butcher form, independently of
-/// the design code.
+/// Returns the largest |weight − 1/γ| of the trees up to an order. It uses the Butcher form and no code of
+/// the design.
 double order_residual(const shu_osher_form<double>& m, int order) {
   const auto trees = rooted_trees(order, tree_colours::both);
   const auto weights = elementary_weights(to_butcher(m), trees);
@@ -54,7 +54,7 @@ TEST(fewer_stages, keep_order_and_signs) {
   }
 }
 
-// Order 3 without transport needs two stages: both stages of imdrk-2-3 are tried in vain.
+// Order 3 without transport needs two stages, so neither stage of imdrk-2-3 can be removed.
 TEST(fewer_stages, reports_the_residual_weight_if_all_are_needed) {
   const method& m = find_method("imdrk-2-3");
   std::size_t tried = 0;

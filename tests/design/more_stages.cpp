@@ -1,4 +1,4 @@
-// Adding stages to a method: the step stays the same, and a search uses the new stages.
+// Additional stages do not change the step, and a search can use them.
 #include <apsis/design/more_stages.hpp>
 
 #include <apsis/design/search.hpp>
@@ -11,7 +11,7 @@
 namespace apsis::more_stages_test {
 namespace {
 
-// New stages have no weight in the result, so all elementary weights are equal up to the rounding of sums of
+// New stages have no weight in the result. All elementary weights stay equal up to the rounding of sums of
 // numbers of size 1.
 TEST(more_stages, leave_the_step_unchanged) {
   const auto given = find_method("md-imex-8-3").coefficients<double>();
@@ -36,8 +36,8 @@ TEST(more_stages, are_none_if_the_method_has_enough) {
   EXPECT_EQ(with_more_stages(given, 5, random).stages(), 5U);
 }
 
-// Second order with three evaluations, and the fourth evaluation at a new stage: r rises from 2 to at least
-// 2.4, as it does without a new stage (design_search.adds_evaluations_to_a_method).
+// A method of second order with three evaluations gets a fourth one at a new stage. r rises from 2 to at
+// least 2.4, as it does without a new stage (design_search.adds_evaluations_to_a_method).
 TEST(more_stages, can_evaluate_transport) {
   design_task task;
   task.stages = 6;

@@ -1,4 +1,4 @@
-// Methods for mixed regimes: how far the errors of size ε where ε ~ Δt are reduced.
+// Methods for mixed regimes reduce the errors of size ε where ε ~ Δt.
 #include <apsis/design/design_problem.hpp>
 #include <apsis/design/draw.hpp>
 #include <apsis/method/certificate.hpp>
@@ -13,7 +13,7 @@
 namespace apsis::narrow_bands_test {
 namespace {
 
-// Figures of docs/plateaus.md, to their last digit.
+// Are the errors those of docs/plateaus.md, up to the last digit there?
 TEST(narrow_bands, are_as_documented) {
   EXPECT_NEAR(find_certificate("md-imex-8-3-mixed").band.error, 0.0093, 5e-5);
   EXPECT_NEAR(find_certificate("md-imex-8-3-narrow").band.error, 0.00013, 5e-6);
@@ -35,7 +35,7 @@ double layer_of(const char* name) {
   return std::sqrt(2.0 * problem.half_square(design_problem::measure::layer, problem.unknowns_of(form)));
 }
 
-// The errors in layers and of the deviation from equilibrium, which only the objective `mixed` contains.
+// Only the objective `mixed` contains the errors in layers and of the deviation from equilibrium.
 TEST(narrow_bands, come_with_small_errors_in_layers_for_one_method) {
   const double least = layer_of("md-imex-10-3-mixed");
   for (const char* other : {"md-imex-8-3-mixed", "md-imex-8-3-narrow", "md-imex-9-3-narrow"})

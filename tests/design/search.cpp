@@ -1,4 +1,4 @@
-// Methods found from order, stages, box and seed alone, and their certification.
+// The search finds methods from order, stages, box and seed alone, and certifies them.
 #include <apsis/design/search.hpp>
 
 #include <apsis/design/finish.hpp>
@@ -43,7 +43,7 @@ design_progress search_in_team(const design_task& task, int starts, int team = 2
   return found;
 }
 
-/// Certifies the polished method by the certificate, which shares no code with the design.
+/// Checks the polished method with the certificate, which shares no code with the design.
 void expect_certified(const design_task& task, const design_candidate& found) {
   const auto m = to_polished_method(task, found, "designed");
   const auto c = certify(m);
@@ -57,7 +57,7 @@ void expect_certified(const design_task& task, const design_candidate& found) {
     return;
   }
   EXPECT_EQ(c.type, "A");
-  // r is optimal to the tolerance of the optimizer.
+  // r is optimal up to the tolerance of the optimizer.
   EXPECT_NEAR(c.ssp_coefficient.convert_to<double>(), found.r, 1e-6);
 }
 
@@ -65,7 +65,7 @@ double angle_of(const design_task& task, const design_candidate& found) {
   return certify(to_polished_method(task, found, "designed")).stability.angle;
 }
 
-// The upper bound for second order is r = s − 2 with s − 1 evaluations; the tolerance of Ipopt is 1e-9.
+// The upper bound of second order with s − 1 evaluations is r = s − 2. Ipopt has the tolerance 1e-9.
 TEST(design_search, finds_the_best_second_order_methods) {
   for (const auto& [stages, best] : {std::pair<std::size_t, double>{3, 1.0}, {6, 4.0}}) {
     auto task = imex_task(2, stages, 2.0);
@@ -123,7 +123,7 @@ TEST(design_search, finds_an_implicit_method_of_order_five_with_nine_stages) {
   expect_certified(task, *found);
 }
 
-// About one start in 160 satisfies the 72 conditions (r = 1.463 at start 554); the others end at
+// About one start in 160 satisfies the 72 conditions (r = 1.463 at start 554). The other starts end at
 // residuals of 1e-3.
 TEST(SLOW_design_search, finds_imex_methods_of_order_four) {
   auto task = imex_task(4, 16, 2.0);
@@ -164,7 +164,7 @@ TEST(design_search, has_a_smaller_error_at_a_smaller_r) {
   const auto found = search_in_team(task, 60);
   ASSERT_TRUE(found.best);
   EXPECT_GE(found.best->r, 0.5);
-  // 0.28 is known for r = 0.5; the method of the paper has 4.3.
+  // The smallest known error at r = 0.5 is 0.28. The method of the paper has 4.3.
   EXPECT_LT(found.best->error, 0.29);
   expect_certified(task, *found.best);
 }
@@ -191,8 +191,8 @@ TEST(design_search, stops_on_request) {
   EXPECT_LT(found.starts, 10);
 }
 
-// Stages with d = 0 have poles at ±i/√|ḋ|, like the first stage of a third-order method with transport.
-// Moving them farther away reduces r.
+// Stages with d = 0 have poles at ±i/√|ḋ|. An example is the first stage of a third-order method with
+// transport. Larger poles reduce r.
 TEST(design_demands, keep_poles_away_from_zero) {
   auto task = imex_task(3, 6, 2.0);
   task.transports = 3;
@@ -227,7 +227,7 @@ TEST(design_demands, exclude_methods_that_violate_them) {
   EXPECT_LT(lean.feasible, free.feasible);
 }
 
-// One evaluation more than the initial method, at a different stage in each start: r rises from 2 to 1 + √2.
+// Each start adds one evaluation to the initial method, at a different stage. r rises from 2 to 1 + √2.
 TEST(design_search, adds_evaluations_to_a_method) {
   auto task = imex_task(2, 5, 2.0);
   task.from = find_method("md-imex-5-2").coefficients<double>();
@@ -244,8 +244,8 @@ TEST(design_search, adds_evaluations_to_a_method) {
   EXPECT_LT(same.best->r, 2.4);
 }
 
-// Angle constraints: a method is found if one exists, and its R satisfies the certificate, which samples
-// other points; if none exists, the search comes close (docs/design.md: A-stability at order three).
+// Angle constraints. If a method exists, the search finds one. Its R satisfies the certificate, which samples
+// other points. If none exists, the search reports a residual (docs/design.md: A-stability at order three).
 TEST(design_search, finds_wide_angles) {
   auto task = implicit_task(3, 3);
   const auto free = search_in_team(task, 20);
@@ -263,7 +263,7 @@ TEST(design_search, finds_wide_angles) {
   EXPECT_GT(none.best_residual, 1e-3);
 }
 
-// md-imex-8-3 with exact O(ε) terms for ε ≪ Δt: its error for ε ~ Δt can be reduced by a third at the same r.
+// md-imex-8-3 has exact O(ε) terms for ε ≪ Δt. Its error for ε ~ Δt can be reduced by a third at the same r.
 TEST(design_search, makes_the_band_small) {
   auto task = imex_task(3, 8, 2.0);
   task.from = find_method("md-imex-8-3").coefficients<double>();

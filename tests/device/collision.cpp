@@ -17,15 +17,15 @@ using apsis::stage_solution;
 using apsis::velocity_grid;
 
 struct variant {
-  std::vector<int> points;  ///< of every direction
+  std::vector<int> points;  ///< velocities in every direction
   double max;
   bool by_viscosity;
   equilibrium_choice choice;
-  std::vector<std::string> set = {};  ///< of every direction; even velocities without one
-  int degrees = 0;                    ///< of freedom; 0: as many as directions
-  double exponent = 0.5;              ///< of the viscosity
+  std::vector<std::string> set = {};  ///< kind of velocities in every direction; empty: even velocities
+  int degrees = 0;                    ///< degrees of freedom; 0: as many as directions
+  double exponent = 0.5;              ///< viscosity exponent
   std::string model = "bgk";
-  std::string tails = {};  ///< of the model, if it has some
+  std::string tails = {};  ///< option of the model, if it has one
 
   std::string label() const {
     std::string text = model + " " + tails + (by_viscosity ? " viscosity" : " constant");
@@ -46,9 +46,10 @@ std::unique_ptr<apsis::model> gas(const variant& of) {
   return apsis::find_model(of.model).make(config);
 }
 
-/// Two beams of changing density, velocity and temperature, with components of all directions; some cells are
-/// cold, nearly empty, or near the ends of the velocities, where the equilibrium is not a formula. The energy
-/// of degrees of freedom beside the velocities is usual, tiny, or more than equal velocities would have.
+/// Returns rows of two beams whose density, velocity and temperature change from cell to cell, with
+/// components in all directions. Some cells are cold, nearly empty, or near the ends of the velocities,
+/// where no formula gives the equilibrium. Internal energy is usual, absent, or larger than equal
+/// velocities would allow.
 field beams(const apsis::model& equation, int cells) {
   field u(cells, equation.components());
   const apsis::gas& molecules = equation.as_gas()->molecules();
@@ -78,13 +79,13 @@ const std::vector<variant> variants = {
     {{150}, 15.0, true, equilibrium_choice::formula},
     {{21}, 5.0, false, equilibrium_choice::formula},
     {{700}, 12.0, false, equilibrium_choice::automatic},
-    // Less and more lines than a chain has, and columns before, at and behind the end of an octet.
+    // Fewer and more lines than a chain has. The columns end before, at and behind the end of an octet.
     {{40, 37}, 9.0, true, equilibrium_choice::automatic},
     {{13, 24}, 5.0, false, equilibrium_choice::formula},
     {{70, 5}, 5.0, true, equilibrium_choice::formula},
     {{9, 7, 10}, 5.0, true, equilibrium_choice::formula},
     {{24, 21, 26}, 8.0, false, equilibrium_choice::automatic},
-    // Equilibria by Newton's method, on even and other velocities.
+    // Newton's method computes the equilibria, with even and other velocities.
     {{40}, 9.0, true, equilibrium_choice::discrete},
     {{22, 25}, 9.0, false, equilibrium_choice::discrete},
     {{16, 18, 17}, 9.0, false, equilibrium_choice::discrete},
@@ -92,7 +93,7 @@ const std::vector<variant> variants = {
     {{30}, 9.0, false, equilibrium_choice::formula, {"graded"}},
     {{20, 24}, 9.0, true, equilibrium_choice::automatic, {"graded"}},
     {{20, 24, 18}, 9.0, false, equilibrium_choice::automatic, {"graded", "uniform", "graded"}},
-    // Degrees of freedom beside the velocities, and gases whose viscosity is not that of hard spheres.
+    // Gases with additional degrees of freedom, and with other viscosities than hard spheres.
     {{45}, 9.0, true, equilibrium_choice::automatic, {}, 3, 0.81},
     {{40}, 9.0, true, equilibrium_choice::discrete, {}, 5, 1.0},
     {{30}, 9.0, true, equilibrium_choice::automatic, {"graded"}, 3, 0.0},
@@ -100,7 +101,7 @@ const std::vector<variant> variants = {
     {{22, 25}, 9.0, false, equilibrium_choice::discrete, {}, 3},
     {{20, 24}, 9.0, true, equilibrium_choice::automatic, {"graded"}, 5, 1.4},
     {{24, 21, 26}, 8.0, true, equilibrium_choice::automatic, {}, 5, 0.66},
-    // Targets with a heat flux.
+    // The targets have a heat flux.
     {{45}, 9.0, true, equilibrium_choice::automatic, {}, 3, 0.81, "shakhov", "signed"},
     {{40}, 9.0, false, equilibrium_choice::discrete, {}, 3, 0.5, "shakhov", "nonnegative"},
     {{30}, 9.0, true, equilibrium_choice::automatic, {"graded"}, 3, 0.5, "shakhov", "signed"},
@@ -110,7 +111,7 @@ const std::vector<variant> variants = {
     {{24, 21, 26}, 9.0, true, equilibrium_choice::automatic, {}, 3, 0.5, "shakhov", "signed"},
     {{16, 18, 17}, 9.0, true, equilibrium_choice::discrete, {}, 3, 0.5, "shakhov", "nonnegative"},
     {{14, 12, 12}, 6.0, true, equilibrium_choice::automatic, {"graded"}, 3, 0.5, "shakhov", "signed"},
-    // Targets with a stress.
+    // The targets have a stress.
     {{45}, 9.0, true, equilibrium_choice::automatic, {}, 3, 0.81, "es-bgk", "signed"},
     {{30}, 9.0, true, equilibrium_choice::automatic, {"graded"}, 3, 0.5, "es-bgk", "nonnegative"},
     {{40, 37}, 9.0, true, equilibrium_choice::automatic, {}, 3, 0.5, "es-bgk", "nonnegative"},
@@ -144,7 +145,7 @@ TEST(device_collision, has_the_bits_of_the_host_in_every_order_of_lanes) {
   }
 }
 
-/// How many of some cells the kernel leaves to the host.
+/// Returns the number of cells that the kernel leaves to the host.
 long left_to_host(const apsis::model& equation, const field& u, double a = 0.1) {
   const auto& on = tested_device();
   apsis::device_collision there(*on, equation, std::vector<double>(static_cast<std::size_t>(u.cells()), 0.1),
@@ -155,7 +156,7 @@ long left_to_host(const apsis::model& equation, const field& u, double a = 0.1) 
   return there.solved_on_host();
 }
 
-/// Newton's method from a Gaussian finds the others.
+/// Newton's method from a Gaussian succeeds in all other cells.
 TEST(device_collision, leaves_no_cells_to_the_host_but_those_far_from_a_gaussian) {
   constexpr int cells = 29;
   for (const variant& of : {variant{{80}, 16.0, false, equilibrium_choice::automatic},
@@ -183,15 +184,14 @@ TEST(device_collision, leaves_no_cells_to_the_host_but_those_far_from_a_gaussian
   }
 }
 
-/// The target of a gas that is not far from equilibrium is found on the device. Tails that would make a
-/// solution negative are the work of the host; the ellipsoidal target has some in stages with a derivative
-/// only.
+/// If a gas is not far from equilibrium, the device finds its target. The host cuts tails that would make a
+/// solution negative. The ellipsoidal target has such tails only in stages with a derivative.
 class device_targets : public testing::TestWithParam<std::string> {};
 INSTANTIATE_TEST_SUITE_P(models, device_targets, testing::Values("shakhov", "es-bgk"));
 
 TEST_P(device_targets, are_found_on_the_device) {
   constexpr int cells = 19;
-  long published = 0, with_cuts = 0;  // cells left to the host far from equilibrium
+  long published = 0, with_cuts = 0;  // numbers of cells left to the host far from equilibrium
   for (const std::vector<int>& points : {std::vector<int>{40}, {26, 24}, {20, 18, 22}}) {
     variant of{points, 9.0, true, equilibrium_choice::automatic, {}, 3, 0.81, GetParam(), "signed"};
     const auto equation = gas(of);
@@ -222,7 +222,7 @@ TEST_P(device_targets, are_found_on_the_device) {
   }
 }
 
-/// A block has the cells of two ranges only if it mixes them up.
+/// A block of lanes has cells of both ranges only if it confuses them.
 TEST(device_collision, leaves_cells_outside_of_the_gas_as_they_are) {
   const auto equation = gas({{13, 24}, 5.0, false, equilibrium_choice::formula});
   constexpr int cells = 21;
@@ -265,7 +265,7 @@ TEST(device_collision, rates_and_times_are_those_of_the_host) {
   }
 }
 
-/// The host names the cell of a row without equilibrium.
+/// The host names the cell whose row has no equilibrium.
 TEST(device_collision, fails_like_the_host_where_there_is_no_equilibrium) {
   const auto equation = gas(variants[0]);
   field u = beams(*equation, 5);

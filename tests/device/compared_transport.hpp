@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <array>
 
-/// The numbers and rates that differ in evaluations with several targets, on the host and on a device, for
+/// Counts the numbers and rates that differ between host and device, in evaluations with several targets and
 /// steps of two lengths.
 inline bit_differences differences_of_transport(const apsis::grid& mesh, const apsis::field& u,
                                                 apsis::upwind_transport& host, apsis::device_transport& there,

@@ -17,21 +17,21 @@
 #include <gtest/gtest.h>
 #include <support/tested_device.hpp>
 
-/// A flow on a mesh of some dimensions, whose operators a test makes on the host and on a device.
+/// A flow whose operators a test makes on the host and on a device.
 struct device_case {
-  std::string label;                                                ///< for messages
-  std::unique_ptr<apsis::model> equation;                           ///< of the gas
-  apsis::grid mesh;                                                 ///< its cells
-  std::vector<apsis::domain::faces> sides = {};                     ///< of each direction
-  std::vector<std::shared_ptr<const apsis::boundary>> solids = {};  ///< of each box
+  std::string label;                                                ///< names the case in messages
+  std::unique_ptr<apsis::model> equation;                           ///< model of the gas
+  apsis::grid mesh;                                                 ///< mesh
+  std::vector<apsis::domain::faces> sides = {};                     ///< boundaries of each direction
+  std::vector<std::shared_ptr<const apsis::boundary>> solids = {};  ///< boundaries of each solid box
 
-  /// A domain of its own for each operator: both fill its ghost rows.
+  /// Returns a new domain. Each operator needs its own, because it fills the ghost rows.
   std::shared_ptr<apsis::domain> space() const {
     return std::make_shared<apsis::domain>(apsis::phase_space(mesh, equation->velocities()), sides, solids);
   }
 };
 
-/// Rows near a Maxwellian; with `jumps` also zeros and very small numbers.
+/// Returns rows near a Maxwellian, with `jumps` also zeros and very small numbers.
 inline apsis::field varied_rows(const apsis::grid& mesh, const apsis::model& equation, bool jumps) {
   const int components = equation.components();
   apsis::field u(mesh.size(), components);
@@ -54,10 +54,10 @@ inline apsis::field varied_rows(const apsis::grid& mesh, const apsis::model& equ
   return u;
 }
 
-/// Numbers that have other bits on a device than on the host. It equals its count.
+/// Counts the numbers whose bits differ between device and host. It compares like its count.
 struct bit_differences {
   int count = 0;
-  std::string first = {};  ///< the first one: its place, and both numbers
+  std::string first = {};  ///< place and both numbers of the first difference
 
   bool operator==(int expected) const { return count == expected; }
   bit_differences& operator+=(const bit_differences& more) {
@@ -65,7 +65,7 @@ struct bit_differences {
     count += more.count;
     return *this;
   }
-  /// Compares two numbers, and describes the first pair that differs with a place.
+  /// Compares two numbers. The first pair that differs is recorded with its place.
   template <class Place>
   void compare(double host, double device, const Place& place) {
     if (std::memcmp(&host, &device, sizeof host) == 0) return;
@@ -76,7 +76,7 @@ struct bit_differences {
   }
 };
 
-/// The numbers with other bits in a field of the host and a copy from a device, in the cells of the gas.
+/// Compares a field of the host with a copy from a device, in the cells of the gas.
 inline bit_differences different_numbers(const apsis::grid& mesh, const apsis::field& host,
                                          const apsis::field& copy) {
   auto cells = mesh.fluid();

@@ -11,7 +11,7 @@ namespace device_ceilings_test {
 
 using kernel = apsis::kernels::multiply_adds;
 
-/// None of the work is left out: the sums are those of the host.
+/// The device does all the work: its sums are those of the host.
 TEST(device_ceilings, multiply_adds_have_the_bits_of_the_host) {
   constexpr int blocks = 3, lanes = 32;
   for (const auto& on : tested_devices()) {
@@ -25,7 +25,7 @@ TEST(device_ceilings, multiply_adds_have_the_bits_of_the_host) {
   }
 }
 
-/// A processor that adds and multiplies less often than 1e5 times per second, or 1e16 times, does not exist.
+/// No processor does fewer than 1e5 or more than 1e16 multiply–adds per second.
 TEST(device_ceilings, are_those_of_a_processor) {
   EXPECT_THAT(apsis::multiply_adds_per_second(*tested_device()),
               testing::AllOf(testing::Gt(1e5), testing::Lt(1e16)));

@@ -10,7 +10,8 @@
 namespace every_kernel_test {
 namespace {
 
-/// After the whole suite on one device (tests/device/check.sh), which is one process.
+/// Checks after the whole suite that every kernel ran. The suite must run on one device in
+/// one process (tests/device/check.sh).
 class kernels_of_the_suite : public testing::Environment {
  public:
   void SetUp() override { whole_ = std::getenv("APSIS_DEVICE") != nullptr && GTEST_FLAG_GET(filter) == "*"; }

@@ -15,8 +15,8 @@ using apsis::target;
 using limits = apsis::limited_reconstruction::limits;
 
 struct variant {
-  std::vector<int> points;  ///< of every direction of the velocities
-  int degrees;              ///< of freedom
+  std::vector<int> points;  ///< velocities in every direction
+  int degrees;              ///< degrees of freedom
   std::string scheme;
   limits limited;
 
@@ -35,14 +35,14 @@ std::unique_ptr<apsis::model> gas(const variant& of, const std::vector<std::stri
   return apsis::find_model("bgk").make(config);
 }
 
-/// A periodic line of cells.
+/// Returns a periodic line of cells.
 std::shared_ptr<apsis::domain> line(const grid& mesh, const apsis::model& equation) {
   const auto side = apsis::make_boundary("periodic");
   const std::vector<apsis::domain::faces> sides = {{side, side}};
   return std::make_shared<apsis::domain>(apsis::phase_space(mesh, equation.velocities()), sides);
 }
 
-/// Of either sign, and zero in some directions and cells.
+/// Returns an acceleration of either sign, zero in some directions and cells.
 apsis::acceleration changing(const apsis::model& equation) {
   apsis::acceleration of;
   const std::size_t directions = equation.lattice().points.size();
@@ -82,7 +82,7 @@ TEST(device_force, has_the_bits_of_the_host_in_every_order_of_lanes) {
   }
 }
 
-/// A force changes the state, so that the comparison above is one of more than sweeps.
+/// The force changes the state, so the comparison above covers more than sweeps.
 TEST(device_force, gives_momentum) {
   const variant of{{21}, 1, "weno5-z", limits::nothing};
   const auto equation = gas(of);
@@ -109,7 +109,7 @@ TEST(device_force, gives_momentum) {
   for (int cell = 0; cell < mesh.size(); ++cell) {
     std::array<double, 3> omega{};
     equation->as_gas()->molecules().moments(row.row(cell), 0, 1, omega.data());
-    // ρa to the rounding of sums, as the ends of the velocities are 10 thermal speeds away.
+    // The momentum is ρa up to the rounding of sums, because the velocities end 10 thermal speeds away.
     EXPECT_NEAR(omega[1], 0.25 * of_row[0], 1e-14);
   }
 }

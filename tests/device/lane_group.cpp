@@ -1,4 +1,4 @@
-// Sums and questions that several groups of lanes take together, one after the other.
+// Several groups of lanes form sums and answer questions, one after the other.
 #include <apsis/device/internal/lane_group.hpp>
 
 #include <apsis/device/lane_team.hpp>
@@ -18,8 +18,8 @@ using group = apsis::kernels::lane_group<team_lane>;
 
 constexpr int lanes = 32, groups = lanes / 8, questions = 3 * groups;
 
-/// A lane that is ahead asks the next question while others still read the last answer. Of two questions, a
-/// single group affirms the first, and no group the second.
+/// A fast lane asks the next question while others still read the last answer. The questions alternate: one
+/// group affirms the first, no group the second.
 TEST(lane_group, answers_of_a_block_are_those_of_one_question) {
   for (const lane_order order : {lane_order::forward, lane_order::backward, lane_order::random}) {
     lane_team team(lanes, lanes, order);
@@ -36,7 +36,8 @@ TEST(lane_group, answers_of_a_block_are_those_of_one_question) {
   }
 }
 
-/// The same of sums: those of a group are 8 k and a number of the group.
+/// A fast lane begins the next sum while others still read the last one. The sum of a group is 8 k plus a
+/// number of the group.
 TEST(lane_group, totals_are_those_of_one_sum) {
   for (const lane_order order : {lane_order::forward, lane_order::backward, lane_order::random}) {
     lane_team team(lanes, lanes, order);

@@ -20,8 +20,8 @@ using apsis::team_lane;
 
 constexpr lane_order orders[] = {lane_order::forward, lane_order::backward, lane_order::random};
 
-/// Each lane passes its number to the next one, as often as there are lanes; without the waiting in between,
-/// what a lane receives depends on the order.
+/// Each lane passes its number to the next one, as often as there are lanes. Without waiting in between, the
+/// received numbers depend on the order.
 std::vector<double> passed_around(lane_order order, bool waits) {
   constexpr int lanes = 7;
   lane_team team(lanes, lanes, order);
@@ -92,7 +92,7 @@ TEST(team_device, unwritten_memory_is_not_a_number) {
   EXPECT_THAT(seen, testing::Each(testing::IsNan()));
 }
 
-/// A sum with a term that was never copied to the device.
+/// One term of a sum is not copied to the device.
 TEST(team_device, a_missing_copy_leaves_no_number_right) {
   const auto on = apsis::make_team_device(lane_order::forward);
   const std::vector<double> ones(4, 1.0);

@@ -36,7 +36,7 @@ apsis::problem_builder builder_of(const apsis::model& equation, bool between_wal
   return builder;
 }
 
-/// Three steps of an integrator.
+/// Takes three steps of an integrator.
 void take_steps(const apsis::time_integrator& of, apsis::semidiscrete_problem& problem, field& u) {
   if (of.starter().kind == apsis::method_kind::explicit_only) problem.treat_collision_explicitly();
   const double r = of.ssp_coefficient > 0.0 ? of.ssp_coefficient : 1.0;
@@ -50,7 +50,7 @@ void take_steps(const apsis::time_integrator& of, apsis::semidiscrete_problem& p
   }
 }
 
-/// The numbers that differ after steps on the host and on a device.
+/// Counts the numbers that differ after steps on the host and on a device.
 bit_differences differences(const apsis::time_integrator& steps, bool between_walls) {
   const auto equation = gas(between_walls);
   const auto builder = builder_of(*equation, between_walls);

@@ -12,9 +12,9 @@ using apsis::field;
 using apsis::grid;
 
 struct variant {
-  std::vector<int> points;            ///< of every direction
-  std::vector<std::string> set = {};  ///< of every direction; even velocities without one
-  int degrees = 0;                    ///< of freedom; 0: as many as directions
+  std::vector<int> points;            ///< velocities in every direction
+  std::vector<std::string> set = {};  ///< kind of velocities in every direction; empty: even velocities
+  int degrees = 0;                    ///< degrees of freedom; 0: as many as directions
 };
 
 std::unique_ptr<apsis::model> gas(const variant& of, const std::string& name = "bgk") {
@@ -25,7 +25,7 @@ std::unique_ptr<apsis::model> gas(const variant& of, const std::string& name = "
   return apsis::find_model(name).make(config);
 }
 
-/// Rows with zeros of either sign, negative and very small numbers, and numbers that are not finite.
+/// Returns rows with zeros of either sign, negative and very small numbers, and numbers that are not finite.
 field odd_rows(const grid& mesh, const apsis::model& equation) {
   field u = varied_rows(mesh, equation, true);
   const double infinity = std::numeric_limits<double>::infinity();
@@ -43,7 +43,8 @@ field odd_rows(const grid& mesh, const apsis::model& equation) {
 }
 
 TEST(device_row_checks, have_the_bits_of_the_host) {
-  // On a line fewer than eight velocities beyond whole octets, and more than a chain of additions.
+  // On a line the velocities leave up to seven beyond whole octets. Some lines are longer than a
+  // chain of additions.
   for (const variant& of : {variant{{21}},
                             {{40}},
                             {{150}},

@@ -22,7 +22,7 @@ std::unique_ptr<apsis::model> gas(const std::string& name, int dimensions, int p
   return apsis::find_model(name).make(config);
 }
 
-/// A boundary of a kind with usual values, functions of time where `moving`.
+/// Returns a boundary of a kind with usual values. Its values change in time if `moving`.
 std::shared_ptr<const apsis::boundary> end_of(const apsis::boundary_entry& kind, const apsis::model& equation,
                                               bool moving) {
   apsis::face_quantities values;
@@ -39,9 +39,10 @@ std::shared_ptr<const apsis::boundary> end_of(const apsis::boundary_entry& kind,
   return apsis::make_boundary(kind.name, equation, values);
 }
 
-/// A gas in 1 to 3 dimensions, periodic or with one kind of boundary at all faces and a box in it.
+/// Returns a gas in 1 to 3 dimensions. It is periodic or has one kind of boundary at all faces, with or
+/// without a box in it.
 device_case flow(int dimensions, const apsis::boundary_entry& kind, bool with_box) {
-  // More than a piece of a sweep on a line.
+  // On a line there are more cells than one piece of a sweep has.
   std::array<int, 3> cells = {dimensions == 1 ? 45 : 9, dimensions > 1 ? 7 : 1, dimensions > 2 ? 5 : 1};
   device_case made{kind.name + " in " + std::to_string(dimensions),
                    gas("bgk", dimensions,
@@ -58,7 +59,7 @@ device_case flow(int dimensions, const apsis::boundary_entry& kind, bool with_bo
   return made;
 }
 
-/// The numbers and rates that differ in two evaluations with several targets, on the host and on a device.
+/// Counts the numbers and rates that differ between host and device in two evaluations with several targets.
 bit_differences differences(const device_case& of, const std::string& scheme, limits limited,
                             apsis::device& on) {
   const apsis::limited_reconstruction edges{apsis::find_reconstruction(scheme).make(), limited};
@@ -90,7 +91,7 @@ TEST(device_transport, has_the_bits_of_the_host_with_every_scheme_and_order_of_l
 
 TEST(device_transport, has_the_bits_of_the_host_with_every_boundary_in_one_to_three_dimensions) {
   for (const auto* kind : apsis::boundary_entries()) {
-    if (kind->name == "axis") continue;  // of axisymmetric flow alone, which is refused
+    if (kind->name == "axis") continue;  // needs axisymmetric flow, which the device refuses
     const bool in_space = kind->name == "diffuse" || kind->name == "outflow";  // tests in space take long
     for (int dimensions = 1; dimensions <= (in_space ? 3 : 2); ++dimensions)
       for (const bool with_box : {false, true}) {
@@ -115,7 +116,7 @@ TEST(device_transport, combines_states_like_the_host) {
   const field u = varied_rows(of.mesh, *of.equation, true);
   field sent(of.mesh.size(), components, on->memory());
   sent.copy_rows(u);
-  // More terms than a launch has, and the sum as the first of them.
+  // The largest sum has more terms than one launch. The result is the first term of its own sum.
   for (const std::size_t terms : {1ul, 3ul, 11ul})
     for (const double first : {1.0, 0.7}) {
       field sum = u, on_device = sent, back(of.mesh.size(), components);

@@ -1,8 +1,12 @@
-// A library with the functions of the CUDA driver that Apsis calls. Its device is memory of the host, and its
-// kernels are those of the host, run by teams of lanes. The variable FAKE_DEVICE makes it fail: "old" for a
-// device of compute capability 6.1, "old-driver", "small" for a device with 1 MB, "lost" for one that fails
-// after ten launches, "wrong" for one with a wrong last bit in the first number of every result. There are
-// three devices with "three".
+// A library with the functions of the CUDA driver that Apsis calls. Its device is memory of the host. Its
+// kernels are those of the host, run by teams of lanes. The variable FAKE_DEVICE selects a failure or a
+// number of devices:
+// - "old": a device of compute capability 6.1
+// - "old-driver": a driver that refuses the code
+// - "small": a device with 1 MB
+// - "lost": a device that fails after ten launches
+// - "wrong": a device with a wrong last bit in the first number of every result
+// - "three": three devices
 #include <apsis/device/internal/kernel_table.hpp>
 #include <apsis/device/lane_team.hpp>
 
@@ -95,7 +99,7 @@ int cuFuncSetAttribute(void*, int, int) {
 }
 int cuMemAlloc_v2(std::uint64_t* memory, std::size_t bytes) {
   if (used + bytes > size()) return 2;
-  // The size stands before the numbers.
+  // The size is stored before the numbers.
   constexpr std::size_t head = 64;
   void* made = std::aligned_alloc(head, (bytes + 2 * head - 1) / head * head);
   std::memset(made, 0xff, bytes + head);

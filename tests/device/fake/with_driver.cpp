@@ -1,5 +1,5 @@
-// The backend of a driver, with a library in its place (driver.cpp): runs have the bits of the host, and each
-// way to fail has one message.
+// Tests the backend of the driver with the library of driver.cpp in its place. Runs have the bits of the
+// host, and each failure has one message.
 #include <apsis/config/case.hpp>
 #include <apsis/core/errors.hpp>
 #include <apsis/device/find_device.hpp>
@@ -20,7 +20,7 @@ using testing::HasSubstr;
 
 namespace {
 
-/// Makes the driver behave in a way while it lives.
+/// Makes the driver fail in one way during its lifetime.
 class failing {
  public:
   explicit failing(const char* way) { setenv("FAKE_DEVICE", way, 1); }

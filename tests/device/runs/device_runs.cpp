@@ -22,7 +22,7 @@ using testing::HasSubstr;
 
 namespace {
 
-/// A few steps of a gas on a line between walls or in a periodic domain.
+/// Returns a short run of a gas on a line, between walls or in a periodic domain.
 std::string small_gas(bool between_walls, const std::string& time) {
   std::string text =
       "[model]\nname = \"bgk\"\nepsilon = \"0.001 + 0.1*x\"\n"
@@ -36,7 +36,7 @@ std::string small_gas(bool between_walls, const std::string& time) {
   return text;
 }
 
-/// A few steps of a gas between walls, the upper one moving, and openings, with a solid box in it.
+/// A short run of a gas with a solid box, between walls and open ends. The upper wall moves.
 constexpr const char* flow_in_a_plane = R"case(
 [model]
 name = "bgk"
@@ -74,7 +74,8 @@ method = "md-imex-8-3-mixed"
 safety = 1
 end = 0.004
 )case";
-/// The same in space, with as many velocities as a quick test allows, all of whose equilibria are formulas.
+/// The same flow in space. It has as many velocities as a quick test allows. Formulas give
+/// all its equilibria.
 constexpr const char* flow_in_space = R"case(
 [model]
 name = "bgk"
@@ -113,7 +114,8 @@ safety = 1
 end = 0.004
 )case";
 
-/// The end of a run and its history; stops after `steps`, and continues a checkpoint if there is one.
+/// Returns the final state of a run and its history. It stops after `steps`, and continues a checkpoint if
+/// there is one.
 outcome run(const std::string& text, bool on_device, const std::string& folder = "", long steps = -1,
             std::optional<std::string> restart = {}) {
   session_options how;
@@ -141,9 +143,9 @@ TEST(device_runs, have_the_bits_of_the_host) {
     }
 }
 
-/// Seven numbers of a cell for its checks, two for the change of a step, and one for each solve that may have
-/// been left to the host: far less than the state, which has 100 numbers of a cell. The velocities are so
-/// many that no solve is left.
+/// A step copies seven numbers of a cell for its checks and two for its change. It copies one more for each
+/// solve that the host may have to repeat. The state has 100 numbers of a cell. With so many velocities no
+/// solve is left to the host.
 TEST(device_runs, a_step_does_not_copy_the_state_to_the_host) {
   constexpr int cells = 60, velocities = 100, steps = 5;
   std::string text = small_gas(false, "method = \"md-imex-6-3\"\nsafety = 1\nend = 0.1\nsteady = 1e-9\n");
@@ -165,7 +167,7 @@ TEST(device_runs, a_step_does_not_copy_the_state_to_the_host) {
   EXPECT_LT(static_cast<double>(last - first), 0.25 * steps * cells * velocities);
 }
 
-/// Molecules with degrees of freedom beside the velocities, of the models that have a kernel.
+/// Returns flows of molecules with internal degrees of freedom, for all models that have a kernel.
 std::vector<std::string> flows_of_argon() {
   std::vector<std::string> all;
   for (const std::string model :

@@ -1,4 +1,4 @@
-// Available memory, from files of /proc and /sys in the format of the kernel.
+// Available memory, read from files of /proc and /sys in the format of the kernel.
 #include <apsis/exec/memory.hpp>
 
 #include <cmath>

@@ -25,7 +25,7 @@ namespace thread_team_test {
 
 namespace {
 
-/// Sets the number of threads for a test and restores it afterwards.
+/// Sets the number of threads for a test, and resets it to 1 afterwards.
 struct with_threads {
   explicit with_threads(int n) { apsis::set_threads(n); }
   ~with_threads() { apsis::set_threads(1); }
@@ -71,7 +71,7 @@ TEST(thread_team, rethrows_the_exception_of_the_smallest_index_and_remains_usabl
 }
 
 TEST(thread_team, caller_takes_over_the_jobs_of_idle_workers) {
-  // A worker is blocked in its job until all other jobs are done, which the other threads must take over.
+  // A job that a worker runs ends only when all other jobs are done. The other thread must take them over.
   const with_threads two(2);
   constexpr int n = 64;
   std::mutex mutex;

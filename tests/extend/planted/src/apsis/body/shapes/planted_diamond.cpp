@@ -1,4 +1,4 @@
-// A square on its corner: all that a shape needs is in this file.
+// A square on its corner. This file has everything that a shape needs.
 #include <apsis/body/shape_registry.hpp>
 
 #include <cmath>

@@ -5,7 +5,7 @@
 namespace apsis {
 namespace {
 
-/// Inflow of the constant 0.25 in every component that moves inwards; the others leave.
+/// Every component that moves inwards enters with the constant value 0.25. The others leave.
 class planted_wall final : public boundary {
  public:
   void fill(const face& where, double, const pencil_end& rows) const override {

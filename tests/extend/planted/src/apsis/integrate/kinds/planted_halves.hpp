@@ -23,7 +23,7 @@ class planted_halves {
   stepper<P> half_;
 };
 
-/// Entry of stepper_kinds.
+/// The entry of stepper_kinds.
 struct planted_halves_steps {
   static constexpr const char* kind = "planted-halves";  ///< integrator_kind_entry::name
   /// Returns use(march).

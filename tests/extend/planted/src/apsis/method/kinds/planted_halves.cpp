@@ -1,4 +1,4 @@
-// A kind of integrator: each step is two steps of half its length by implicit-explicit Euler.
+// A kind of integrator: a step is two steps of half its length by implicit-explicit Euler.
 #include <apsis/method/certificate.hpp>
 #include <apsis/method/integrator_kind_registry.hpp>
 

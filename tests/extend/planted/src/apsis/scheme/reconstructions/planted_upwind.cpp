@@ -6,8 +6,8 @@
 namespace apsis {
 namespace {
 
-/// Both edges equal the value of the cell: with upwind fluxes, the first-order upwind scheme, monotone and
-/// entropy-decaying up to CFL 1.
+/// Both edges equal the value of the cell. With upwind fluxes this is the first-order upwind scheme, which is
+/// monotone and does not increase entropy up to CFL 1.
 class planted_upwind final : public reconstruction {
  public:
   int ghost_width() const override { return 1; }

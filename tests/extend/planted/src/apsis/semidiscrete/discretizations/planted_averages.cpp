@@ -4,7 +4,7 @@
 namespace apsis {
 namespace {
 
-/// Cell averages that collide as they are, each on its own: of second order in space, since an average
+/// Cell averages collide like point values. The scheme is of second order in space, because an average
 /// differs from the value at the centre by Δx² u''/24.
 class averages_as_they_are final : public discretization {
  public:

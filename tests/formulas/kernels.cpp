@@ -1,5 +1,5 @@
-// Formulas of all families on a double, as kernels of a graphics processor would use them: compiled to
-// assembly only (test_formulas.py), without any library.
+// Kernels of a graphics processor with formulas of all families on a double. test_formulas.py only compiles
+// them to assembly, without any library.
 #include <apsis/boundary/formulas/continuation.hpp>
 #include <apsis/model/formulas/arithmetic.hpp>
 #include <apsis/model/formulas/correlated.hpp>
@@ -47,7 +47,7 @@ double outflow_edge(const double* u) {
 
 }  // namespace
 
-/// One of eight lanes, whose sums are its own numbers.
+/// One of eight lanes. Its sums are its own numbers.
 struct one_of_eight {
   using number = double;
   int place;

@@ -1,4 +1,4 @@
-// Reads any bytes as a case file, which yields a case or an apsis::error. The text of a case reads back to
+// Reads any bytes as a case file. The result is a case or an apsis::error. The text of a case reads back to
 // the same case.
 #include <apsis/config/case.hpp>
 #include <apsis/config/case_schema.hpp>
@@ -14,7 +14,7 @@
 namespace {
 
 std::optional<apsis::case_config> read(std::string_view text) {
-  // The first line of the input is also an override, so that both readers are fuzzed.
+  // The first line of the input is also an override, so the fuzzer tests both readers.
   const std::string line(text.substr(0, text.find('\n')));
   try {
     return line.rfind("#!", 0) == 0 ? apsis::parse_case(text, "input", {line.substr(2)})

@@ -1,4 +1,4 @@
-// Reads any bytes as a method file, which yields a method with coefficients in double or an apsis::error.
+// Reads any bytes as a method file. The result is an apsis::error or a method with coefficients in double.
 #include <apsis/core/errors.hpp>
 #include <apsis/method/method.hpp>
 

@@ -1,4 +1,4 @@
-// The best method of second order with three stages: its SSP coefficient is s − 2 = 1.
+// The best second-order method with three stages has the SSP coefficient s − 2 = 1.
 #include <apsis/design/search.hpp>
 
 #include <cmath>

@@ -1,5 +1,4 @@
-// The largest step of upwind advection with which the total variation does not grow: the promise of the
-// method, 1.
+// The total variation of upwind advection does not grow in steps up to r = 1 of the method.
 #include <apsis/verify/adversaries.hpp>
 #include <apsis/verify/strong_stability.hpp>
 

@@ -1,4 +1,4 @@
-// A case that comes with the library, changed: density decays to its mean and the mass stays what it was.
+// A modified built-in case. The density decays to its mean and the mass stays constant.
 #include <apsis/config/case.hpp>
 #include <apsis/run/simulation.hpp>
 

@@ -1,4 +1,4 @@
-// Integrators of every kind behind one interface: the numbers of integrate(), restarts, and what they need.
+// Integrators of every kind behind one interface: the numbers of integrate(), restarts, and requirements.
 #include <apsis/integrate/any_stepper.hpp>
 
 #include <apsis/integrate/relaxation_problem.hpp>
@@ -22,7 +22,7 @@ using state = std::vector<real>;
 constexpr long steps = 24;
 constexpr real dt = real(1) / steps;
 
-/// One name of each kind, and of each equation of methods of one step.
+/// One name for each kind, and for each equation of one-step methods.
 const std::vector<std::string> of_each_kind = {
     "md-imex-8-3-mixed", "ark-436",    "dop853",     "exponential-2",
     "imex-bdf-1",        "imex-bdf-4", "imex-bdf-5", "two-step-8-3-narrow"};
@@ -89,7 +89,7 @@ TEST(any_stepper, offers_steps_by_tolerance_where_steps_are_independent) {
   auto problem = ode_model::as_relaxation<state>(0.3L);
   for (const auto& name : of_each_kind) {
     const auto& m = apsis::find_integrator(name);
-    // The stepper of exact collisions is that of another problem.
+    // The stepper of exact collisions belongs to a wrapped problem.
     const bool same_problem = m.one_step() != nullptr && !m.needs.exact_collision;
     EXPECT_EQ(apsis::make_stepper(m, problem)->one_step() != nullptr, same_problem) << name;
   }

@@ -1,4 +1,4 @@
-// Tolerances of single unknowns: in the norm, in the step control, and as the end of Newton's iterations.
+// Tolerances of single unknowns in the norm, in the step control, and at the end of Newton's iterations.
 #include <apsis/integrate/component_tolerances.hpp>
 
 #include <apsis/integrate/error_control.hpp>
@@ -66,7 +66,7 @@ TEST(component_tolerances, refuse_what_is_no_tolerance) {
   });
 }
 
-/// Two unknowns that do not see each other, one with the rate −1 and one with −100.
+/// Two independent unknowns, one with the rate −1 and one with −100.
 constexpr auto apart = [](const auto& u, auto& out) {
   out[0] = -1.0 * u[0];
   out[1] = -100.0 * (u[1] - 1.0);
@@ -98,7 +98,7 @@ TEST(component_tolerances, an_unknown_with_a_wide_tolerance_costs_no_steps) {
 }
 
 TEST(component_tolerances, the_first_step_changes_what_has_a_tolerance) {
-  // Below atol the fast layer of the second unknown is not resolved: the first step is one of the rate 1.
+  // The fast layer of the second unknown is below its atol. The first step then follows from the rate 1.
   newton_problem problem(no_transport{}, apart);
   const apsis::error_target<double> target{1.0, 3};
   const row u{1, 2};
@@ -110,7 +110,7 @@ TEST(component_tolerances, the_first_step_changes_what_has_a_tolerance) {
 }
 
 TEST(component_tolerances, the_first_step_does_not_depend_on_the_length_of_the_interval) {
-  // Robertson's reaction: the change of u_1 over a long time is as large as the tolerance lets it count.
+  // Robertson's reaction. Over a long time u_1 changes by as much as its tolerance allows.
   const auto g = [](const auto& u, auto& out) {
     out[0] = -0.04 * u[0] + 1e4 * u[1] * u[2];
     out[2] = 3e7 * u[1] * u[1];
@@ -127,8 +127,9 @@ TEST(component_tolerances, the_first_step_does_not_depend_on_the_length_of_the_i
 }
 
 TEST(newton_problem, ends_stage_solves_within_the_tolerance) {
-  // u' = −u³ at stages v = u + a G(v) of a cubic: without tolerances the root to rounding, with them an error
-  // that is far below the tolerance, as Newton's method is quadratic, and fewer matrices.
+  // u' = −u³, whose stages v = u + a G(v) are cubic equations. Without tolerances the result is the root up
+  // to rounding. With them the error is far below the tolerance, because Newton's method converges
+  // quadratically, and fewer matrices are needed.
   const auto cubic = [](const auto& u, auto& out) { out[0] = -1.0 * u[0] * u[0] * u[0]; };
   newton_problem exact(no_transport{}, cubic), early(no_transport{}, cubic);
   early.with_tolerances({1e-4, 1e-4});
@@ -141,7 +142,7 @@ TEST(newton_problem, ends_stage_solves_within_the_tolerance) {
     EXPECT_NEAR(w[0], v[0], 1e-3 * 1e-4) << a;
     saved += exact.report().factorizations - early.report().factorizations;
   }
-  EXPECT_GE(saved, 4);  // one of each stage at least
+  EXPECT_GE(saved, 4);  // at least one for each stage
 }
 
 TEST(newton_problem, conserves_sums_however_wide_the_tolerance) {
@@ -165,8 +166,8 @@ TEST(newton_problem, conserves_sums_however_wide_the_tolerance) {
 }
 
 TEST(newton_problem, a_stage_far_below_its_tolerance_is_solved) {
-  // Unknowns that have decayed to 1e-40 beside one of size 1e-20 of a stiff pair: iterations that ask for the
-  // rounding of each unknown wander among rounding errors of the large one.
+  // Two unknowns have decayed to 1e-40, beside one of size 1e-20 of a stiff pair. Iterations that resolve the
+  // rounding of each unknown would wander among rounding errors of the large one.
   const auto pair = [](const auto& y, auto& f) {
     const auto a = 7.89e-10 * y[0], b = 1.1e7 * y[0] * y[2], c = 1.13e9 * y[1] * y[2], d = 1.13e3 * y[3];
     f[0] = -1.0 * a - b;

@@ -1,4 +1,4 @@
-// Dense output: its order, its bounds, its ends.
+// Dense output: its order, its bounds, and its values at both ends of a step.
 #include <apsis/integrate/evolution.hpp>
 
 #include <algorithm>
@@ -18,7 +18,7 @@ namespace evolution_test {
 
 namespace {
 
-/// The largest difference of dense output at several places of every step to a reference.
+/// Returns the largest difference between dense output at several points of every step and a reference.
 template <class Reference>
 double dense_error(const std::string& name, double epsilon, long steps, const Reference& reference) {
   auto problem = ode_model::as_relaxation<state>(epsilon);
@@ -35,8 +35,8 @@ double dense_error(const std::string& name, double epsilon, long steps, const Re
   return largest;
 }
 
-/// The model at t by 2048 steps of order 4, whose errors are below 1e-13 for ε = 1; t is a multiple of
-/// 1/1024.
+/// Returns the solution of the model at t, a multiple of 1/1024, for ε = 1. The errors of 2048 steps of order
+/// 4 are below 1e-13.
 state reference_at(double t) {
   static const std::vector<state> all = [] {
     auto problem = ode_model::as_relaxation<state>(1.0);
@@ -60,7 +60,7 @@ TEST(dense_output, has_the_order_of_the_method) {
                                     {"exponential-2", 2}}) {
     const double coarse = dense_error(name, 1.0, 128, reference_at),
                  fine = dense_error(name, 1.0, 256, reference_at);
-    // md-imex-6-3 tends to its order from below: 2.53, 2.75 and 2.87 with 64, 128 and 256 steps.
+    // The order of md-imex-6-3 grows to 3: 2.53, 2.75 and 2.87 with 64, 128 and 256 steps.
     EXPECT_NEAR(std::log2(coarse / fine), order, 0.2) << name;
   }
 }
@@ -76,7 +76,8 @@ TEST(dense_output, meets_the_solution_at_both_ends_of_a_step) {
       one.advance(0.25, [&](long, double t, double length, const state& u) {
         EXPECT_EQ(one.at(t), u);
         EXPECT_EQ(one.at(one.begin_of_step()), before);
-        // A step as long as the last one: the same numbers, if the difference of times has its length.
+        // Dense output at the end repeats the step. It has the same numbers if the difference of times is
+        // exactly the length of the step.
         if (t - one.begin_of_step() == length) {
           const state almost = one.at(std::nextafter(t, 0.0));
           EXPECT_LT(difference(almost, u), 1e-13);
@@ -88,7 +89,8 @@ TEST(dense_output, meets_the_solution_at_both_ends_of_a_step) {
     }
 }
 
-// A caller who keeps the begins of steps has dense output of the whole interval, also after it.
+// A caller can store the beginnings of steps. Dense output is then available in the whole interval, also
+// after its end.
 TEST(dense_output, is_known_later_from_kept_begins_of_steps) {
   auto problem = ode_model::as_relaxation<state>(0.01);
   for (const char* name : {"md-imex-6-3", "dop853"}) {
@@ -128,7 +130,7 @@ TEST(dense_output, does_not_disturb_the_steps) {
   }
 }
 
-// Polynomials through the steps would leave [0, 1]; a step does not.
+// Polynomials through the steps would leave [0, 1], but a step does not.
 TEST(dense_output, preserves_bounds_as_steps_do) {
   constexpr int cells = 40;
   auto advection = apsis::relaxation_problem(

@@ -38,8 +38,8 @@ const auto distance = [](const auto& u, const auto& v) {
   return sum;
 };
 
-/// The ODE model of the paper with u2(0) = `rest`, or u' = −10u² for methods without transport
-/// (as in method_orders.cpp).
+/// Calls use(march, u) with the ODE model of the paper and u2(0) = `rest`. Methods without transport get u' =
+/// −10u² (as in method_orders.cpp).
 template <class Use>
 auto with_problem(const std::string& name, real epsilon, real rest, const Use& use) {
   const apsis::method& m = apsis::find_method(name);
@@ -54,8 +54,8 @@ auto with_problem(const std::string& name, real epsilon, real rest, const Use& u
   return use(march, state{2, rest});
 }
 
-/// In equilibrium Q vanishes, and with it all elementary differentials of the ODE model that a method of
-/// order 1 may not resolve.
+/// In equilibrium Q vanishes. All elementary differentials of the ODE model that a method of order 1 may not
+/// resolve then vanish too.
 const real consistent = std::sin(real(2)), inconsistent = 0;
 
 /// Returns ‖u^{n+1} − ũ‖ after one step.
@@ -79,13 +79,13 @@ double error_carried_on(const std::string& name, long steps) {
 
 class every_embedded_row : public ::testing::TestWithParam<std::string> {};
 
-/// If the leading error term is small, only short steps make the next one less than a tenth of it: 0.15
-/// in the slope, 0.16 for md-imex-9-3-large-r.
+/// If the leading error term is small, the next one is a tenth of it, unless steps are very short. This
+/// changes the slope by 0.15, and by 0.16 for md-imex-9-3-large-r.
 constexpr double tolerance = 0.17;
 
 TEST_P(every_embedded_row, has_its_certified_order) {
   const int q = apsis::find_certificate(GetParam()).embedded->order;
-  // Errors above those of the reference, 3e-16.
+  // With these steps the errors stay above that of the reference, 3e-16.
   const long steps = q > 4 ? 64 : q > 3 ? 256 : apsis::find_method(GetParam()).is_tableau() ? 1024 : 4096;
   EXPECT_NEAR(std::log2(error_carried_on(GetParam(), steps) / error_carried_on(GetParam(), 2 * steps)), q,
               tolerance);
@@ -93,16 +93,16 @@ TEST_P(every_embedded_row, has_its_certified_order) {
 
 TEST_P(every_embedded_row, estimates_a_term_of_order_q_plus_1) {
   const int q = apsis::find_certificate(GetParam()).embedded->order;
-  // Not real(1)/(q > 3 ? 128 : 1024): clang 19.1 subtracts exponents for it, in the wrong bits of a long
-  // double.
+  // The expression is not real(1)/(q > 3 ? 128 : 1024). clang 19.1 would subtract exponents for it, in the
+  // wrong bits of a long double.
   const real dt = q > 3 ? real(1) / 128 : real(1) / 1024;
   const auto slope = [&](real epsilon, real rest) {
     return std::log2(estimate(GetParam(), epsilon, rest, dt) / estimate(GetParam(), epsilon, rest, dt / 2));
   };
   EXPECT_NEAR(slope(1, inconsistent), q + 1, tolerance);
-  // In the limit ũ is on the equilibrium manifold like u^{n+1}, and only the trees of T alone remain. Terms
-  // of size ε/Δt, which data out of equilibrium leave, are 1e-19, far below the smallest estimate, 1e-14.
-  // That of a tableau is no stage.
+  // In the limit ũ lies on the equilibrium manifold, like u^{n+1}, and only the trees of T remain. Data out
+  // of equilibrium leave terms of size ε/Δt = 1e-19, far below the smallest estimate, 1e-14. The ũ of a
+  // tableau is not a stage and is excluded.
   const apsis::method& m = apsis::find_method(GetParam());
   if (m.kind == method_kind::imex && !m.is_tableau()) {
     EXPECT_NEAR(slope(1e-22L, consistent), q + 1, tolerance);
@@ -201,7 +201,7 @@ struct controlled {
   long steps, rejected;
 };
 
-/// The ODE model from data out of equilibrium, whose layer of width ε requires short initial steps.
+/// Solves the ODE model from data out of equilibrium. The layer of width ε requires short initial steps.
 controlled solve_to(const std::string& name, real tol, real epsilon, real longest) {
   const apsis::method& m = apsis::find_method(name);
   const auto exact = reference::radau(epsilon, 1);
@@ -225,13 +225,13 @@ controlled solve_to(const std::string& name, real tol, real epsilon, real longes
 TEST(step_control, reduces_the_error_with_the_tolerance) {
   const auto coarse = solve_to("md-imex-8-3-accurate", 1e-5L, 1e-2L, 1),
              fine = solve_to("md-imex-8-3-accurate", 1e-8L, 1e-2L, 1);
-  // For a method of order p with an estimate of order q + 1 and errors per step below tol, the error at the
-  // end is about tol^{(p+1)/(q+1)} times the number of steps, tol^{−1/(q+1)}, that is tol^{p/(q+1)}:
-  // proportional to the tolerance for p = 3 and q = 2. A tenth of that is allowed for the resolution of ε/C,
-  // which ends between the two tolerances.
+  // A method has order p, its estimate order q + 1, and errors per step are below tol. About tol^{−1/(q+1)}
+  // steps with errors tol^{(p+1)/(q+1)} give tol^{p/(q+1)} at the end. This is proportional to the
+  // tolerance for p = 3 and q = 2. The bound is ten times larger, because the resolution of ε/C ends
+  // between the two tolerances.
   EXPECT_LT(fine.error, 1e-2 * coarse.error);
   EXPECT_LT(fine.error, 1e-6);
-  // The number of steps scales with tol^{-1/(q+1)} = 10.
+  // The number of steps grows by the factor 1000^{1/(q+1)} = 10.
   EXPECT_GT(fine.steps, 4 * coarse.steps);
   EXPECT_LT(fine.steps, 25 * coarse.steps);
   EXPECT_LT(coarse.rejected, coarse.steps / 4);  // the first step is not far too long
@@ -239,8 +239,8 @@ TEST(step_control, reduces_the_error_with_the_tolerance) {
 }
 
 TEST(step_control, does_not_resolve_the_relaxation_beyond_the_tolerance) {
-  // ε = 1e-4 is far above the tolerance, and after the layer irrelevant for methods with and without plateau.
-  // With the unweighted estimate ‖u^{n+1} − ũ‖, md-imex-3-2 takes 9400 steps here.
+  // ε = 1e-4 is far above the tolerance. After the layer it does not matter for methods with or without
+  // plateau. With the unweighted estimate ‖u^{n+1} − ũ‖, md-imex-3-2 would take 9400 steps here.
   const real tol = 3e-6L;
   for (const char* name : {"md-imex-8-3", "md-imex-3-2"}) {
     const long steps = solve_to(name, tol, 1e-4L, 1).steps;
@@ -255,7 +255,7 @@ TEST(step_control, never_exceeds_the_limit_of_the_step_rule) {
 }
 
 TEST(error_estimate, is_multiplied_by_the_weight_but_for_the_part_that_relaxes) {
-  // u₂ relaxes to 0 without changing u₁, within ε ≪ Δt.
+  // u₂ relaxes to 0 within ε ≪ Δt, without changing u₁.
   auto problem = apsis::make_relaxation_problem<std::vector<double>>(
       apsis::no_transport{}, [](const auto& u) { return u[0]; }, [](double w, auto& out) { out = {w, 0.0}; },
       [](double) { return 1.0; }, 1e-9);
@@ -269,7 +269,8 @@ TEST(error_estimate, is_multiplied_by_the_weight_but_for_the_part_that_relaxes) 
   };
   for (const double weight : {1.0, 7.5}) {
     EXPECT_NEAR(of(weight, along), weight * 0.01, 1e-14);  // the rounding of 2.01
-    // W w/(1 + w) with w = 1/(10 W), and 1/(1 + z) of v is 1e-9.
+    // The expected value is W w/(1 + w) times 0.01 with w = 1/(10 W). The part of v after a relaxation, 1/(1
+    // + z), is 1e-9.
     EXPECT_NEAR(of(weight, off), 0.01 * 0.1 / (1.0 + 0.1 / weight), 1e-9);
   }
 }
@@ -290,7 +291,7 @@ TEST(step_control, rejects_nan_errors_and_invalid_tolerances) {
 }
 
 TEST(step_control, settles_where_the_error_is_close_to_the_tolerance) {
-  // err = Δt³: the longest acceptable step is tol^{1/3}.
+  // With err = Δt³ the longest acceptable step is tol^{1/3}.
   step_controller<double> control(1e-6, 2);
   double dt = 1.0;
   for (int n = 0; n < 200; ++n) {
@@ -301,8 +302,8 @@ TEST(step_control, settles_where_the_error_is_close_to_the_tolerance) {
 }
 
 TEST(step_control, follows_the_trend_of_errors_that_grow) {
-  // Acceptable steps become shorter by 15 % from one to the next: 0.9 of the last one would be too long
-  // again.
+  // Each acceptable step is 15 % shorter than the one before. A step of 0.9 times the last length would be
+  // too long again.
   step_controller<double> control(1e-6, 2);
   double longest = 1.0, dt = 0.9;
   for (int accepted = 0; accepted < 40;) {
@@ -327,7 +328,7 @@ TEST(step_control, throws_if_no_step_is_short_enough) {
   EXPECT_EQ(u, ode_model::initial_state<state>());
 }
 
-/// u' = −u with u ≥ 0 required of every stage, which steps beyond r violate.
+/// u' = −u, where every stage requires u ≥ 0. Steps beyond r violate this.
 auto nonnegative_decay(bool possible) {
   apsis::relaxation_problem problem(
       [](double, const std::vector<double>& u, std::vector<double>& T) { T = {-u[0]}; },

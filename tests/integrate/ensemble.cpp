@@ -1,5 +1,5 @@
-// Many systems side by side in lanes: their derivatives, linear systems and steps against those of one
-// system.
+// Many systems side by side in lanes. Their derivatives, linear systems and steps agree with those
+// of single systems.
 #include <apsis/integrate/ensemble.hpp>
 
 #include <apsis/integrate/newton_problem.hpp>
@@ -27,7 +27,7 @@ using random_input::uniform;
 using numbers = std::vector<double>;
 using tolerances = apsis::component_tolerances<double>;
 
-/// Robertson's reaction with three rates as parameters.
+/// Robertson's reaction, with its three rates as parameters.
 constexpr auto robertson = [](double, auto y, auto k, auto f) {
   f[0] = k[1] * y[1] * y[2] - k[0] * y[0];
   f[2] = k[2] * y[1] * y[1];
@@ -35,7 +35,7 @@ constexpr auto robertson = [](double, auto y, auto k, auto f) {
 };
 constexpr std::array<double, 3> rates = {0.04, 1e4, 3e7};
 
-/// The same for one system, by automatic derivatives of another kind and Newton's method to rounding.
+/// Solves a single system, with automatic derivatives of another kind, and Newton's method up to rounding.
 numbers robertson_alone(const numbers& k, double t1, double tolerance) {
   apsis::newton_problem problem(apsis::no_transport{}, [&k](const auto& y, auto& f) {
     f[0] = k[1] * y[1] * y[2] - k[0] * y[0];
@@ -111,7 +111,7 @@ TEST(lane_matrix, solves_what_eigen_solves_in_every_lane) {
     for (std::size_t k = 0; k < lanes::count; ++k)
       for (int i = 0; i < static_cast<int>(n); ++i) {
         right[k][i] = uniform(-1, 1);
-        // Zero diagonals need row exchanges, which differ from lane to lane.
+        // Zero diagonals need row exchanges. These differ from lane to lane.
         for (int j = 0; j < static_cast<int>(n); ++j) all[k](i, j) = i == j ? 0.0 : uniform(-1, 1);
       }
     apsis::lane_matrix<n> matrix;
@@ -129,7 +129,8 @@ TEST(lane_matrix, solves_what_eigen_solves_in_every_lane) {
     matrix.factorize();
     matrix.solve(r);
     for (std::size_t k = 0; k < lanes::count; ++k) {
-      // Backward stability: the residual is of the size of rounding of the solution, whatever the condition.
+      // The solver is backward stable: the residual is as small as the rounding of the solution,
+      // whatever the condition.
       Eigen::Vector<double, n> x;
       for (std::size_t i = 0; i < n; ++i) x[static_cast<int>(i)] = r[i][k];
       EXPECT_LT((all[k] * x - right[k]).norm(), 1e-13 * (1 + x.norm()));
@@ -162,17 +163,17 @@ TEST(ensemble, every_system_is_as_accurate_as_its_tolerance_asks) {
                                     1e4, 1e-9));
   for (const double tolerance : {1e-4, 1e-6, 1e-8})
     for (const char* method : {"extrapolated-euler-3", "extrapolated-euler-5", "ark-436", "ars-443"}) {
-      // Methods of order 3 take some 10^4 steps to 1e-8.
+      // With the tolerance 1e-8, methods of order 3 would take some 10^4 steps.
       if (tolerance < 1e-7 && std::string(method) != "extrapolated-euler-5") continue;
       robertson_ensemble ensemble(21);
       ensemble.advance(1e4, tolerance, method);
       for (std::size_t c = 0; c < exact.size(); ++c) {
         const double* u = &ensemble.u[3 * compared[c]];
-        // A digit less than the tolerance of a step: errors of steps add up.
+        // Errors of steps add up to at most ten times the tolerance of a step.
         for (std::size_t i = 0; i < 3; ++i)
           EXPECT_NEAR(u[i], exact[c][i], 10 * tolerance * exact[c][i])
               << method << " " << compared[c] << " " << i;
-        EXPECT_NEAR(u[0] + u[1] + u[2], 1.0, 1e-11) << method;  // G conserves it, and so do iterates
+        EXPECT_NEAR(u[0] + u[1] + u[2], 1.0, 1e-11) << method;  // G and the iterates conserve the sum
       }
     }
 }
@@ -213,7 +214,7 @@ TEST(ensemble, a_last_group_with_fewer_systems_is_complete) {
 }
 
 TEST(ensemble, takes_an_explicit_part_and_time) {
-  // u' = −k (u − cos t) − sin t: T = −sin t, Q = −k (u − cos t), with u = cos t.
+  // u' = −k (u − cos t) − sin t is split into T = −sin t and Q = −k (u − cos t). The solution is u = cos t.
   const auto f = [](double t, auto, auto, auto out) { out[0] = -std::sin(t); };
   const auto g = [](double t, auto u, auto k, auto out) { out[0] = k[0] * (std::cos(t) - u[0]); };
   numbers u(11, 1.0), k;
@@ -236,7 +237,7 @@ TEST(ensemble, names_the_system_that_fails) {
     EXPECT_LT(failure.site().cell, 16);
     EXPECT_NEAR(failure.site().t, 0.5, 1e-3);
   }
-  EXPECT_NEAR(u[0], 0.1 / 0.9, 1e-5);  // groups before it are at the end
+  EXPECT_NEAR(u[0], 0.1 / 0.9, 1e-5);  // groups before the failed one have reached the end
   EXPECT_EQ(u[11], 2.0);
   EXPECT_EQ(u[15], 0.1);
 }

@@ -1,4 +1,4 @@
-// Events: their order, directions and ends, and the search for a change of sign.
+// Events: their order, directions and ends. Also the search for a change of sign.
 #include <apsis/integrate/evolution.hpp>
 
 #include <algorithm>
@@ -20,7 +20,7 @@ namespace {
 
 constexpr double pi = 3.14159265358979323846;
 
-/// Events of components: g_k = u_k − level_k.
+/// Returns events of components, g_k = u_k − level_k.
 oscillation::functions crossings(std::vector<double> levels, std::vector<int> directions,
                                  std::vector<bool> ends) {
   const std::size_t count = levels.size();
@@ -55,7 +55,7 @@ TEST(events, are_found_with_the_order_of_the_method) {
 TEST(events, come_in_order_with_their_directions_and_continue_after_an_end) {
   auto problem = oscillator();
   oscillation one(apsis::find_integrator("dop853"), problem, rule::fixed(0.5));
-  // u1 falls through 0.1 at acos 0.1, rises through it at 2π − acos 0.1; u2 falls through −0.5 at π/6.
+  // u1 falls through 0.1 at acos 0.1 and rises through it at 2π − acos 0.1. u2 falls through −0.5 at π/6.
   std::vector<std::pair<std::size_t, double>> seen;
   one.set_events(crossings({0.1, -0.5}, {-1, 0}, {false, true}),
                  [&](std::size_t k, double t, const state& u) {
@@ -101,7 +101,7 @@ TEST(events, end_a_step_before_later_events_of_the_same_step) {
   EXPECT_NEAR(lengths[1], 0.1, 1e-13);
 }
 
-// A zero at the start is no event, nor is one that an event left behind.
+// A zero at the start does not count as an event, nor does the event at which the last integration ended.
 TEST(events, at_the_start_are_left_before_they_count) {
   auto problem = oscillator();
   oscillation one(apsis::find_integrator("dop853"), problem, rule::fixed(0.25));

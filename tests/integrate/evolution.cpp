@@ -1,4 +1,4 @@
-// Integration in intervals, by integrators of every kind: the bits of integrate(), what survives its end,
+// Integration in intervals by integrators of every kind: the bits of integrate(), state between intervals,
 // stop times.
 #include <apsis/integrate/evolution.hpp>
 
@@ -118,7 +118,7 @@ TEST(evolution, names_the_step_since_the_start_where_one_fails) {
   EXPECT_LT(one.t(), 0.6);
   const double reached = one.t();
   breaks_at = 2.0;
-  EXPECT_EQ(one.advance(reached + 1.0), end::reached);  // from the last accepted step
+  EXPECT_EQ(one.advance(reached + 1.0), end::reached);  // continues from the last accepted step
   EXPECT_EQ(one.t(), reached + 1.0);
 }
 
@@ -182,7 +182,7 @@ TEST(evolution, accepts_a_method_that_is_not_registered) {
 }
 
 TEST(stop_times, end_steps_exactly_and_keep_the_order_of_discontinuous_data) {
-  // u' = 1 for t < 1/3 and −1 after it, by steps that do not divide 1/3.
+  // u' = 1 for t < 1/3 and −1 afterwards. The steps do not divide 1/3.
   auto problem =
       apsis::relaxation_problem([](double t, const state&, state& out) { out = {t < 1.0 / 3 ? 1.0 : -1.0}; },
                                 [](const state& u) { return u; }, [](const state& w, state& e) { e = w; },

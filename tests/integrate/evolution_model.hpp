@@ -11,7 +11,7 @@
 
 #include <integrate/ode_model.hpp>
 
-/// Evolutions of the ODE model and of an oscillator, for their tests.
+/// Evolutions of the ODE model and of an oscillator for tests.
 namespace evolution_test {
 
 using state = std::vector<double>;
@@ -33,7 +33,7 @@ inline evolution::tolerance within(double tolerance) {
   return {tolerance, difference};
 }
 
-/// u1' = u2, u2' = −u1, from (1, 0): u = (cos t, −sin t), as transport alone.
+/// u1' = u2, u2' = −u1 from (1, 0) as transport alone. The solution is u = (cos t, −sin t).
 inline auto oscillator() {
   return apsis::relaxation_problem([](double, const state& u, state& out) { out = {u[1], -u[0]}; },
                                    [](const state& u) { return u; }, [](const state& w, state& e) { e = w; },

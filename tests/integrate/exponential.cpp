@@ -1,5 +1,5 @@
-// Exponential methods through the stepper: exact relaxation, observed order, the limit ε → 0 and
-// positivity at the step bound.
+// Exponential methods in the stepper: exact relaxation, observed order, the limit ε → 0, positivity up to the
+// step bound.
 #include <apsis/integrate/exact_collisions.hpp>
 #include <apsis/integrate/integrate.hpp>
 #include <apsis/integrate/relaxation_problem.hpp>
@@ -22,7 +22,7 @@ namespace exponential_test {
 
 namespace {
 
-/// u(1) of a problem after equal steps.
+/// Returns u(1) of a problem after equal steps.
 template <class Problem, class State = typename Problem::state>
 State solve(Problem problem, State u, long steps) {
   using real = typename Problem::real;
@@ -45,7 +45,7 @@ TEST(exponential, flow_weights_are_exact_in_the_limits) {
   }
   EXPECT_EQ(apsis::flow_weights(1.0, 1.0, infinity).of_u, 1.0);
   EXPECT_TRUE(std::isnan(apsis::flow_weights(1.0, std::nan(""), 1.0).of_u));
-  // The smaller weight is accurate however small it is: 1 − e^{−z} = z up to z²/2.
+  // The smaller weight is accurate at any size: 1 − e^{−z} = z up to z²/2.
   EXPECT_DOUBLE_EQ(apsis::flow_weights(1e-20, 1.0, 1.0).of_e, 1e-20);
   EXPECT_DOUBLE_EQ(apsis::flow_weights(700.0, 1.0, 1.0).of_u, std::exp(-700.0));
 }
@@ -81,7 +81,7 @@ TEST(exponential, relaxation_without_transport_is_exact_for_any_step) {
         [](double w, auto& out) { out = {w, std::sin(w)}; }, [](double w) { return 1 + w * w; }, epsilon);
     const auto u = solve(problem, std::vector<double>{2, 0}, 3);
     EXPECT_EQ(u[0], 2.0);
-    // Rounding errors of twelve combinations, relative to E.
+    // The tolerance covers the rounding errors of twelve combinations, relative to E.
     EXPECT_NEAR(u[1], -std::sin(2.0) * std::expm1(-5 / epsilon), 1e-15);
   }
 }
@@ -93,12 +93,12 @@ TEST(exponential, observed_order_is_two) {
     const auto u = solve(ode_model::as_relaxation<state>(1.0L), state{2, 0}, 128L << i);
     error[i] = static_cast<double>(std::abs(u[0] - exact[0]) + std::abs(u[1] - exact[1]));
   }
-  // The second error term is a hundredth of the first at these steps.
+  // At these steps the second error term is a hundredth of the first.
   EXPECT_NEAR(std::log2(error[0] / error[1]), 2.0, 0.05);
 }
 
-// The first exact collision takes the data to equilibrium before T is evaluated: asymptotic preservation for
-// any data.
+// The first exact collision takes the data to equilibrium before T is evaluated. The method therefore
+// preserves the asymptotic limit for any data.
 TEST(exponential, has_its_order_in_the_limit_from_data_out_of_equilibrium) {
   const auto exact = reference::limit(1);
   for (const long double epsilon : {0.0L, 1e-17L}) {
@@ -107,7 +107,7 @@ TEST(exponential, has_its_order_in_the_limit_from_data_out_of_equilibrium) {
       const auto u = solve(ode_model::as_relaxation<state>(epsilon), state{2, 0}, 128L << i);
       moment[i] = static_cast<double>(std::abs(u[0] - exact[0]));
       rest[i] = static_cast<double>(std::abs(u[1] - exact[1]));
-      // The result is in equilibrium: the last operation is an exact collision.
+      // The last operation is an exact collision, so the result is in equilibrium.
       EXPECT_NEAR(static_cast<double>(u[1] - std::sin(u[0])), 0.0, 1e-18);
     }
     EXPECT_NEAR(std::log2(moment[0] / moment[1]), 2.0, 0.05);
@@ -115,8 +115,8 @@ TEST(exponential, has_its_order_in_the_limit_from_data_out_of_equilibrium) {
   }
 }
 
-/// Smallest value after ten steps of Δt = courant Δx: upwind advection of a single full cell, and relaxation
-/// towards the mean.
+/// Returns the smallest value after ten steps of Δt = courant Δx. A single full cell is advected upwind and
+/// relaxes towards the mean.
 double smallest_value(double courant, double epsilon) {
   constexpr std::size_t cells = 32;
   auto problem = apsis::make_relaxation_problem<std::vector<double>>(
@@ -141,7 +141,8 @@ double smallest_value(double courant, double epsilon) {
 TEST(exponential, values_stay_nonnegative_up_to_the_step_bound_and_not_above) {
   for (double epsilon = 1e-8; epsilon < 1e9; epsilon *= 10)
     EXPECT_GE(smallest_value(1.0, epsilon), 0.0) << epsilon;
-  // Without collision the neighbour of the full cell receives ν(1 − ν), half of it in each stage.
+  // Without collision the neighbour of the full cell receives ν(1 − ν), half of it in each stage. This is
+  // negative for ν > 1.
   EXPECT_LT(smallest_value(1.05, 1e6), -0.04);
   EXPECT_LT(smallest_value(1.001, 1e9), -5e-4);
 }

@@ -1,5 +1,5 @@
-// Extrapolated implicit–explicit Euler steps (family extrapolated-euler-S) through the stepper: closed forms
-// of a step for linear T and Q, observed orders, and the embedded solution as an error estimate.
+// Extrapolated implicit–explicit Euler steps (family extrapolated-euler-S) in the stepper: closed forms of
+// steps for linear T and Q, observed orders, and the embedded solution as an error estimate.
 #include <apsis/integrate/error_control.hpp>
 #include <apsis/integrate/integrate.hpp>
 #include <apsis/integrate/relaxation_problem.hpp>
@@ -25,13 +25,13 @@ const apsis::method& columns(int s) {
   return apsis::find_method("extrapolated-euler-" + std::to_string(s));
 }
 
-/// (−1)^{s−n} n^s/(n! (s−n)!), the weight of n substeps.
+/// Returns the weight of n substeps, (−1)^{s−n} n^s/(n! (s−n)!).
 real weight(int n, int s) {
   return std::pow(real(n), real(s)) / (std::tgamma(real(n + 1)) * std::tgamma(real(s - n + 1))) *
          ((s - n) % 2 == 0 ? 1 : -1);
 }
 
-/// u1' = λ u1, u2' = −u2/ε with one step of length 1.
+/// Returns the result of one step of length 1 for u1' = λ u1, u2' = −u2/ε.
 state one_step(int s, real lambda, real epsilon) {
   auto problem = apsis::make_relaxation_problem<state>(
       [lambda](real, const state& u, state& out) { out = {lambda * u[0], real(0)}; },
@@ -55,14 +55,15 @@ TEST(extrapolated_euler, steps_of_linear_problems_have_closed_forms) {
         factor += std::abs(weight(n, s));
       }
       const auto u = one_step(s, -z, 1 / z);
-      // Rounding of the coefficients and of up to 36 substeps, amplified by the weights.
+      // The tolerance covers the rounding of the coefficients and of up to 36 substeps, amplified
+      // by the weights.
       const real rounding = 100 * std::numeric_limits<real>::epsilon();
       EXPECT_LE(std::abs(u[0] - transport), rounding * size) << s << " " << z;
       EXPECT_LE(std::abs(u[1] - collision), rounding * factor) << s << " " << z;
     }
 }
 
-/// Kaps' problem with ε = 1, whose solution from (1, 1) is u1 = e^{−t}, u2 = u1².
+/// Returns the error for Kaps' problem with ε = 1, whose solution from (1, 1) is u1 = e^{−t}, u2 = u1².
 real error_of(int s, long steps) {
   auto problem = apsis::make_relaxation_problem<state>(
       [](real, const state& u, state& out) { out = {u[1] - u[0] - u[0] * u[0], -2 * u[1]}; },
@@ -85,15 +86,15 @@ TEST(extrapolated_euler, has_the_observed_order_of_its_certificate) {
     EXPECT_EQ(c.implicit_solves, s * (s + 1) / 2);
     EXPECT_EQ(c.type, "ARS");
     EXPECT_EQ(c.ssp_coefficient, 0);
-    // The second error term is a tenth of the first at these steps, and rounding errors a thousandth.
+    // At these steps the second error term is a tenth of the first, and rounding errors are a thousandth.
     const long steps = s < 6 ? 32 : 16;
     EXPECT_NEAR(static_cast<double>(std::log2(error_of(s, steps) / error_of(s, 2 * steps))), s, 0.15) << s;
   }
 }
 
-// T(u^n) of the first substep is evaluated off equilibrium. The error, proportional to Δt/n, is the first of
-// the terms that extrapolation removes, so that no initial layer needs to be resolved, unlike with other
-// methods of type ARS.
+// T(u^n) of the first substep is evaluated off equilibrium. Its error is proportional to Δt/n, the
+// first of the terms that extrapolation removes. Unlike other methods of type ARS, these need no
+// resolved initial layer.
 TEST(extrapolated_euler, has_its_order_in_the_limit_from_data_out_of_equilibrium) {
   const auto exact = reference::limit(1);
   for (int s = 2; s <= 6; ++s) {
@@ -108,7 +109,7 @@ TEST(extrapolated_euler, has_its_order_in_the_limit_from_data_out_of_equilibrium
       moment[k] = std::abs(u[0] - exact[0]);
       rest[k] = std::abs(u[1] - exact[1]);
     }
-    // The second error term is a tenth of the first at these steps; ε is below every error.
+    // At these steps the second error term is a tenth of the first, and ε is below every error.
     EXPECT_NEAR(static_cast<double>(std::log2(moment[0] / moment[1])), s, 0.2) << s;
     EXPECT_NEAR(static_cast<double>(std::log2(rest[0] / rest[1])), s, 0.2) << s;
   }
@@ -136,7 +137,7 @@ TEST(extrapolated_euler, steps_to_a_tolerance_reach_it_where_layers_are_resolved
                                       return std::hypot(a[0] - b[0], a[1] - b[1]) / std::hypot(a[0], a[1]);
                                     });
       const auto exact = reference::radau(epsilon, 1);
-      // A handful of steps, each with an estimate below the tolerance, of a contracting problem.
+      // There are a handful of steps, each with an estimate below the tolerance. The problem is contracting.
       EXPECT_LT(
           std::abs(u[0] - static_cast<double>(exact[0])) + std::abs(u[1] - static_cast<double>(exact[1])),
           30 * tolerance)

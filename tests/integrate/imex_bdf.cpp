@@ -1,4 +1,4 @@
-// IMEX-BDF through integrate(): coefficients, observed orders, the limit ε → 0 and refusals.
+// IMEX-BDF in integrate(): coefficients, observed orders, the limit ε → 0 and refusals.
 #include <apsis/integrate/kinds/imex_bdf.hpp>
 
 #include <apsis/integrate/relaxation_problem.hpp>
@@ -23,7 +23,7 @@ apsis::step_rule<real> equal(long steps) {
   return apsis::step_rule<real>::fixed(real(1) / static_cast<real>(steps));
 }
 
-/// u(1) of the ODE model.
+/// Returns u(1) of the ODE model.
 state solve_ode_model(int k, real epsilon, apsis::step_rule<real> rule) {
   auto problem = ode_model::as_relaxation<state>(epsilon);
   apsis::imex_bdf march(k, problem);
@@ -33,7 +33,8 @@ state solve_ode_model(int k, real epsilon, apsis::step_rule<real> rule) {
 }
 
 TEST(imex_bdf, coefficients_are_the_published_ones) {
-  // Numerators and the denominator: those of BDF (Hairer, Wanner, section V.1), and b_k/binomials for T.
+  // The numerators and the denominator are those of BDF (Hairer, Wanner, section V.1). The weights of T are
+  // b_k times binomial coefficients.
   const std::vector<std::vector<real>> a = {
       {1}, {4, -1}, {18, -9, 2}, {48, -36, 16, -3}, {300, -300, 200, -75, 12}};
   const std::vector<std::vector<real>> c = {
@@ -43,7 +44,7 @@ TEST(imex_bdf, coefficients_are_the_published_ones) {
     const auto m = apsis::imex_bdf_coefficients<real>(k);
     const auto at = static_cast<std::size_t>(k - 1);
     ASSERT_EQ(m.steps(), k);
-    // A handful of roundings.
+    // The tolerance covers a handful of roundings.
     const real rounding = 20 * std::numeric_limits<real>::epsilon();
     EXPECT_NEAR(static_cast<double>(m.b * denominator[at] / b[at] - 1), 0, static_cast<double>(rounding));
     for (std::size_t i = 0; i <= at; ++i) {
@@ -55,7 +56,7 @@ TEST(imex_bdf, coefficients_are_the_published_ones) {
   }
 }
 
-/// Kaps' problem with ε = 1, whose solution from (1, 1) is u1 = e^{−t}, u2 = u1².
+/// Returns the error for Kaps' problem with ε = 1, whose solution from (1, 1) is u1 = e^{−t}, u2 = u1².
 real error_of(int k, long steps) {
   auto problem = apsis::make_relaxation_problem<state>(
       [](real, const state& u, state& out) { out = {u[1] - u[0] - u[0] * u[0], -2 * u[1]}; },
@@ -68,15 +69,16 @@ real error_of(int k, long steps) {
 }
 
 TEST(imex_bdf, observed_order_is_the_number_of_steps) {
-  // The second error term is a tenth of the first at these steps.
+  // At these steps the second error term is a tenth of the first.
   for (int k = 1; k <= 5; ++k)
     EXPECT_NEAR(static_cast<double>(std::log2(error_of(k, 128) / error_of(k, 256))), k, 0.15) << k;
 }
 
-// T(u⁰) off equilibrium is not used by the formula, and extrapolation removes its effect on the first steps.
+// The formula does not use T(u⁰) off equilibrium. Extrapolation removes the effect of T(u⁰) on
+// the first steps.
 TEST(imex_bdf, has_its_order_in_the_limit_from_data_out_of_equilibrium) {
   const auto exact = reference::limit(1);
-  // A list: clang-19 -O1 converts 128L << i to a long double that is NaN.
+  // The steps are a list, because clang-19 -O1 converts 128L << i to a long double that is NaN.
   constexpr long steps[] = {128, 256};
   for (int k = 2; k <= 5; ++k) {
     real moment[2], rest[2];
@@ -85,20 +87,20 @@ TEST(imex_bdf, has_its_order_in_the_limit_from_data_out_of_equilibrium) {
       moment[i] = std::abs(u[0] - exact[0]);
       rest[i] = std::abs(u[1] - exact[1]);
     }
-    // The second error term is a tenth of the first at these steps; ε is below every error.
+    // At these steps the second error term is a tenth of the first, and ε is below every error.
     EXPECT_NEAR(static_cast<double>(std::log2(moment[0] / moment[1])), k, 0.2) << k;
     EXPECT_NEAR(static_cast<double>(std::log2(rest[0] / rest[1])), k, 0.2) << k;
   }
 }
 
-// The values that enter the first formula are one full step apart, whatever steps replace the first one.
+// The values in the first formula are one full step apart, whatever steps replace the first one.
 TEST(imex_bdf, graded_start_resolves_a_layer_within_the_first_step) {
   for (const real epsilon : {1e-4L, 1e-5L, 1e-6L})
     for (int k = 2; k <= 4; ++k) {
       const auto exact = reference::radau(epsilon, 1);
       const auto u = solve_ode_model(k, epsilon, equal(512).with(apsis::startup::graded));
-      // Forty times Δt^k, and a thousandth of the effect ε of an unresolved layer. A value out of place
-      // leaves Δt.
+      // The bound is forty times Δt^k plus a thousandth of the effect ε of an unresolved layer. A value at a
+      // wrong time would give an error of Δt.
       const real bound = 40 * std::pow(1 / 512.0L, static_cast<real>(k)) + 1e-3L * epsilon;
       EXPECT_LT(std::abs(u[0] - exact[0]) + std::abs(u[1] - exact[1]), bound) << epsilon << " " << k;
     }
@@ -117,8 +119,8 @@ TEST(imex_bdf, integrates_polynomials_of_its_degree_exactly) {
       // The explicit rule of order 1 is exact for a constant T.
       EXPECT_LE(std::abs(u[0] - 1), 1e-17L);
     } else {
-      // Sums of a hundred numbers up to 1, amplified by coefficients up to 5 and start values of weights up
-      // to 300.
+      // The result is a sum of a hundred numbers up to 1. Coefficients up to 5 and start values with weights
+      // up to 300 amplify its rounding errors.
       EXPECT_LE(std::abs(u[0] - 1), 1e-15L) << k;
     }
   }

@@ -1,5 +1,5 @@
-// O(ε) terms predicted from coefficients against the production stepper on a linear problem whose slow
-// manifold is known: u' = v, v' = (a u − v)/ε. Its slow eigenvalue is a − ε a² + O(ε²), with right
+// Do O(ε) terms predicted from coefficients agree with the production stepper? The slow manifold of the
+// linear problem u' = v, v' = (a u − v)/ε is known. Its slow eigenvalue is a − ε a² + O(ε²), with right
 // eigenvector (1, a − ε a²) and left eigenvector (1, ε) up to O(ε²).
 #include <apsis/method/intermediate_regime.hpp>
 
@@ -34,8 +34,9 @@ std::array<state, 2> columns_of_step(const std::string& name, real slope, real e
   return columns;
 }
 
-/// Returns the maximum of (|Δu| + |Δv|)/(ε²/Δt + εΔt + Δt^p) at t = 1 for u' = v, v' = −(u + v)/ε from u = 1,
-/// over Δt = 1/16 … 1/4096 and ε from Δt/3 to 3·10⁻⁸ Δt; initially v = 0, or v on the slow manifold.
+/// Returns the maximum of (|Δu| + |Δv|)/(ε²/Δt + εΔt + Δt^p) at t = 1 for u' = v, v' = −(u + v)/ε from u
+/// = 1. The maximum is over Δt = 1/16 … 1/4096 and ε from Δt/3 to 3·10⁻⁸ Δt. Initially v = 0, or v is on
+/// the slow manifold.
 real remainder_constant(const std::string& name, bool on_the_manifold) {
   const int order = apsis::find_method(name).claims.order;
   real largest = 0;
@@ -71,7 +72,7 @@ slow_mode measure(const std::string& name, real epsilon, real dt) {
   const auto [x, y] = columns_of_step(name, a, epsilon, dt);
   const real trace = x[0] + y[1], determinant = x[0] * y[1] - y[0] * x[1];
   const real slow = trace / 2 + std::sqrt(trace * trace / 4 - determinant), fast = determinant / slow;
-  // (M − fast) maps onto the right eigenvector of the slow mode, (M − fast)ᵀ onto the left one.
+  // The matrix M − fast maps onto the right eigenvector of the slow mode, its transpose onto the left one.
   return {std::log(slow) / dt, x[1] / (x[0] - fast), y[0] / (x[0] - fast)};
 }
 
@@ -103,7 +104,7 @@ TEST(intermediate, remainders_have_the_documented_constants) {
     const char* name;
     double on_manifold, off_manifold;
   };
-  // docs/plateaus.md, to the two digits printed there.
+  // The constants are those of docs/plateaus.md, up to the two digits printed there.
   for (const row& r : {row{"md-imex-5-2", 0.72, 1.8}, row{"md-imex-plateau-free-12-2", 2.0, 2.0},
                        row{"md-imex-6-2-mixed", 0.95, 5.3}, row{"md-imex-8-3-mixed", 3.0, 9.6},
                        row{"md-imex-8-3", 5.6, 12.3}, row{"md-imex-6-3", 2154, 960}}) {

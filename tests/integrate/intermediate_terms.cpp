@@ -1,7 +1,8 @@
-// Terms of size εΔt, and those of the band ε ~ Δt, predicted from coefficients (docs/plateaus.md) against the
-// production stepper in 60 digits. One step of u1' = s(u1) u2, u2' = k(u1) + C(u1)(E(u1) − u2)/ε from u1 = 0,
-// with linear s, k, C and quadratic E, so that every elementary differential is a product of slopes:
-//   f = sE, g = E'f − k, Ψ = s/C;  f' = s'E + E', g'f = (E''E + E'f' − k')E, E''(f, f) = E''E², Ψ' = s' − C'.
+// Do terms of size εΔt and those of the band ε ~ Δt agree with one step of the production stepper in 60
+// digits? The coefficients predict these terms (docs/plateaus.md).
+// The problem is u1' = s(u1) u2, u2' = k(u1) + C(u1)(E(u1) − u2)/ε from u1 = 0. With linear s, k, C and
+// quadratic E every elementary differential is a product of slopes:
+// f = sE, g = E'f − k, Ψ = s/C;  f' = s'E + E', g'f = (E''E + E'f' − k')E, E''(f, f) = E''E², Ψ' = s' − C'.
 #include "support/catalogue.hpp"
 
 #include <apsis/integrate/problem.hpp>
@@ -25,8 +26,8 @@ namespace {
 using real = apsis::mp_real;
 using state = std::array<real, 2>;
 
-/// u1' = T1(u), u2' = T2(u) + C(u1)(E(u1) − u2)/ε in 60 digits (the ready-made problems support
-/// built-in types only).
+/// u1' = T1(u), u2' = T2(u) + C(u1)(E(u1) − u2)/ε in 60 digits. The problems of the library support built-in
+/// types only.
 struct exact_problem {
   using real = apsis::mp_real;
   using state = std::array<real, 2>;
@@ -73,7 +74,7 @@ state stepped(const apsis::method& m, const slopes& p, const real& epsilon, cons
   return u;
 }
 
-/// Also in 60 digits, because rounding errors of g are divided by Δt.
+/// The differentials also have 60 digits, because rounding errors of g are divided by Δt.
 struct differentials {
   real E = 1.25, f1, g, gf, eff, psi1;
   explicit differentials(const slopes& p)
@@ -89,7 +90,7 @@ void expect_close(const real& measured, const real& predicted, const std::string
       << what << ": " << measured.str(12) << " instead of " << predicted.str(12);
 }
 
-// Each problem has other nonzero differentials: the second one only g'f, the third only those
+// Each problem has other nonzero differentials. The second one has only g'f, the third only those
 // of linear problems.
 const std::vector<slopes> problems = {{0.3, 0.7, 0.4, 0.9, 0.2, 0.5},  {0.0, 0.0, 0.0, 0.0, 0.6, 1.1},
                                       {0.0, 0.8, 0.0, 0.0, 0.0, 0.0},  {0.0, 0.5, 0.0, 1.3, 0.1, 0.0},
@@ -99,14 +100,15 @@ class intermediate_terms : public testing::TestWithParam<std::string> {
  protected:
   const apsis::method& m = apsis::find_method(GetParam());
   apsis::intermediate_regime<real> terms = apsis::analyse_intermediate_regime(m.coefficients<real>());
-  // The neglected terms have relative sizes ε/Δt² = 6e-12, more where a stage relaxes slowly, and Δt = 4e-10.
+  // The neglected terms have the relative sizes Δt = 4e-10 and ε/Δt² = 6e-12. The latter is larger where a
+  // stage relaxes slowly.
   const real epsilon = real("1e-30"), dt = real("4e-10");
 };
 
 TEST_P(intermediate_terms, of_size_epsilon_dt_agree_with_one_step) {
   for (const auto& p : problems) {
     const differentials of(p);
-    // Data with the deviation left by the previous step, at t − Δt; matters for ARS methods only.
+    // The data have the deviation that the previous step leaves at t − Δt. This matters for ARS methods only.
     const real slope = terms.last_slope - terms.last, curvature = terms.last_curvature - terms.last_slope;
     const real y = terms.last * of.g + dt * (slope * of.gf + curvature * of.eff);
     const state with = stepped(m, p, epsilon, dt, of.E - epsilon * y);
@@ -134,13 +136,14 @@ TEST_P(intermediate_terms, of_the_layer_agree_with_one_step) {
   }
 }
 
-/// u' = v, v' = (a u − v)/ε with ε = Δt/z: logarithm of the slow eigenvalue of one step over Δt, and the
-/// second component of its eigenvector.
+/// u' = v, v' = (a u − v)/ε with ε = Δt/z. Do the logarithm of the slow eigenvalue of one step over Δt and
+/// the second component of its eigenvector agree?
 TEST_P(intermediate_terms, of_the_band_agree_with_the_hydrodynamic_mode) {
   const auto butcher = apsis::to_butcher(m.coefficients<real>());
   for (const char* z : {"0.01", "0.5", "3", "70", "1e4"}) {
     const auto at = apsis::at_finite_rate(butcher, real(z));
-    // The eigenvalue is 1 + aΔt + a²(Δt²/2 − flux Δt ε) + O(a³): second differences in a at a = 0.
+    // The eigenvalue is 1 + aΔt + a²(Δt²/2 − flux Δt ε) + O(a³). Second differences in a at a = 0
+    // give the flux.
     const real step = 1, eps = step / real(z), a = real("1e-18");
     exact_problem problem = {[](const state& u) { return state{u[1], real(0)}; },
                              [a](const real& w) { return real(a * w); }, [](const real&) { return real(1); },
@@ -164,8 +167,9 @@ TEST_P(intermediate_terms, of_the_band_agree_with_the_hydrodynamic_mode) {
 INSTANTIATE_TEST_SUITE_P(catalogue, intermediate_terms,
                          testing::ValuesIn(methods_with_an_intermediate_regime()), test_name);
 
-/// For transport nonlinear in u, the integral over the layer is nonlinear in D₀: u1' = u2², E = cos u1.
-/// Methods with layer = 1 reproduce its linear part, −2ED₀ instead of −2ED₀ + D₀²/2, times ε/C.
+/// The problem is u1' = u2² with E = cos u1. Because its transport is nonlinear in u, the integral over
+/// the layer is nonlinear in D₀. It is ε/C times −2ED₀ + D₀²/2. Methods with layer = 1 reproduce the
+/// linear part −2ED₀.
 TEST(layer, of_nonlinear_transport_is_reproduced_in_its_linear_part) {
   const real epsilon = real("1e-20"), dt = real("1e-9"), E = cos(real("0.3")), C = 1.25, D0 = 0.5;
   exact_problem problem = {[](const state& u) { return state{u[1] * u[1], real(0)}; },

@@ -1,6 +1,6 @@
-// Observed order of every method of the catalogue through the stepper: far from the limit ε → 0,
-// and in the limit, where it must agree with the certificate for the given initial data. New
-// methods are tested automatically.
+// The stepper shows the order of every method of the catalogue, far from the limit ε → 0 and in
+// the limit. There it must agree with the certificate for the given initial data. The tests
+// include new methods automatically.
 #include "support/catalogue.hpp"
 
 #include <apsis/integrate/exact_collisions.hpp>
@@ -42,7 +42,8 @@ state solve(const std::string& method, real epsilon, long steps, state u) {
   return u;
 }
 
-/// u' = −10u² from u(0) = 1/10, exact 1/(10 + 10t): slow enough to observe the order.
+/// Returns the error for u' = −10u² from u(0) = 1/10. The solution 1/(10 + 10t) is slow enough to
+/// observe the order.
 double decay_error(const std::string& method, long steps) {
   const auto g = [](const auto& u, auto& out) { out[0] = -10 * u[0] * u[0]; };
   auto problem = apsis::make_newton_problem<state>(apsis::no_transport{}, g);
@@ -58,8 +59,8 @@ double ode_error(const std::string& method, long steps) {
   return static_cast<double>(std::abs(u[0] - exact[0]) + std::abs(u[1] - exact[1]));
 }
 
-/// Observed orders of the conserved and of the relaxing component of the ODE model for ε ≪ Δt. The plateau, a
-/// few tenths of ε = 1e-14, is below a hundredth of every error.
+/// Observed orders of the conserved and of the relaxing component of the ODE model for ε ≪ Δt. The plateau is
+/// a few tenths of ε = 1e-14, below a hundredth of every error.
 struct limit_orders {
   double moment, rest;
 };
@@ -77,7 +78,8 @@ limit_orders in_the_limit(const std::string& method, real initial_rest) {
 
 const real consistent = std::sin(real(2)), inconsistent = 0;
 
-/// For the steps used here, the second error term is below a tenth of the first: 0.15 in the slope.
+/// With these steps the second error term is below a tenth of the first. This changes the slope by
+/// up to 0.15.
 constexpr double tolerance = 0.15;
 
 class every_method : public ::testing::TestWithParam<std::string> {};
@@ -85,8 +87,9 @@ class every_method : public ::testing::TestWithParam<std::string> {};
 TEST_P(every_method, has_its_certified_order) {
   const certificate& c = apsis::find_certificate(GetParam());
   const auto error = c.kind == method_kind::implicit_only ? decay_error : ode_error;
-  // If the leading error term is small, it dominates only for shorter steps; errors of fourth order would
-  // then be as small as that of the reference, and so would those of eighth order with more than 48 steps.
+  // If the leading error term is small, it dominates only in shorter steps. Shorter steps would make
+  // errors of fourth order as small as that of the reference. The same holds for eighth order with more
+  // than 48 steps.
   const long steps = c.order == 3 ? 256 : c.order < 8 ? 128 : 24;
   EXPECT_NEAR(std::log2(error(GetParam(), steps) / error(GetParam(), 2 * steps)), c.order, tolerance);
 }
@@ -103,7 +106,7 @@ TEST_P(every_method_with_limit, has_its_certified_order_in_the_limit) {
   if (c.type == "A") {
     EXPECT_NEAR(far_from_it.moment, c.order, tolerance);
   }
-  // T(u^n) of the first step uses data off the limit manifold.
+  // The first step uses T(u^n) off the limit manifold.
   if (c.type == "ARS") {
     EXPECT_NEAR(far_from_it.moment, 1, tolerance);
   }
@@ -131,16 +134,16 @@ const auto members =
 INSTANTIATE_TEST_SUITE_P(families, every_method, members, test_name);
 INSTANTIATE_TEST_SUITE_P(families, every_method_with_limit, members, test_name);
 
-// Methods that are not globally stiffly accurate (docs/methods.md): u^{n+1} is not projected, and its
-// deviation from equilibrium depends on the weights b A⁻¹ of the stages.
+// These methods are not globally stiffly accurate (docs/methods.md). u^{n+1} is not projected. Its deviation
+// from equilibrium depends on the weights b A⁻¹ of the stages.
 TEST(comparators, without_gsa_lose_order_outside_the_moments) {
   EXPECT_NEAR(in_the_limit("ssp2-222", inconsistent).rest, 1, tolerance);
   EXPECT_NEAR(in_the_limit("ssp3-433", inconsistent).rest, 1, tolerance);
   EXPECT_NEAR(in_the_limit("ssp2-332", inconsistent).rest, 2, tolerance);  // b is the last row of A
 }
 
-// The update u^{n+1} deviates from equilibrium by O(Δt³), and T(u^{n+1}) of the next step takes this into the
-// moments, where methods of lower order have a larger error.
+// The update u^{n+1} deviates from equilibrium by O(Δt³). T(u^{n+1}) of the next step carries this into the
+// moments. In methods of lower order a larger error hides it.
 TEST(comparators, of_fifth_order_may_lose_one_order_in_the_limit) {
   for (const std::string name : {"ark-548", "ark-548-2"}) {
     const auto exact = reference::limit(1);

@@ -1,4 +1,4 @@
-// Automatic derivatives against derivatives by hand, and the guarded Newton method on stages that are easy,
+// Automatic derivatives agree with derivatives by hand. Guarded Newton is tested on stages that are easy,
 // stiff, singular, without a root, or not finite.
 #include <apsis/integrate/newton_problem.hpp>
 
@@ -34,7 +34,7 @@ using row = std::vector<double>;
 constexpr auto square_decay = [](const auto& u, auto& out) { out[0] = -10 * u[0] * u[0]; };
 
 TEST(autodiff, derivatives_of_a_coupled_field_agree_with_those_by_hand) {
-  // G = (sin(x) y, x² + e^y): G' and G'' written out; Ġ = G'G and Ġ'w = G''[G, w] + G'G'w follow.
+  // G = (sin(x) y, x² + e^y). From G' and G'' follow Ġ = G'G and Ġ'w = G''[G, w] + G'G'w.
   const auto g = [](const auto& u, auto& out) {
     using std::exp, std::sin;
     out[0] = sin(u[0]) * u[1];
@@ -77,7 +77,7 @@ TEST(newton_problem, solves_the_cubic_of_square_decay_to_round_off_for_any_step)
     problem.solve_collision(0, a, b, state);
     const long double v = state[0];
     RC_ASSERT(v > 0 && v <= u);
-    // Every term is positive, so the sum is relatively well conditioned in v.
+    // Every term is positive, so the sum is well conditioned in v.
     RC_ASSERT(std::abs(v + 10 * a * v * v - 200 * b * v * v * v - u) <= 8 * 2.3e-16L * u);
   });
 }
@@ -132,7 +132,7 @@ TEST(newton_problem, krylov_and_dense_agree) {
     };
     with(linear_solver::dense).solve_collision(0, 3.0, -4.0, dense);
     with(linear_solver::krylov).solve_collision(0, 3.0, -4.0, krylov);
-    // Both are solved to round-off; the condition of this stage is below 100.
+    // Both solutions are exact up to rounding errors. The condition of this stage is below 100.
     for (std::size_t i = 0; i < n; ++i) EXPECT_NEAR(dense[i], krylov[i], 1e-13) << n << " " << i;
   }
 }
@@ -160,7 +160,7 @@ TEST(newton_problem, errata_4_singular_stage_of_a_rotation_is_reported) {
       problem.solve_collision(0, 0.0, b, u);
       return u;
     };
-    // I − b G'² = (1 − |b| w²) I: with ḋ = −1 this is Δt λ = ±i.
+    // I − b G'² = (1 − |b| w²) I. For ḋ = −1 this means Δt λ = ±i.
     bad_input::expect_refused({
         {[&] { solve(-(1 + 1e-15) / (w * w)); }, {"singular"}, 3},
     });
@@ -168,7 +168,7 @@ TEST(newton_problem, errata_4_singular_stage_of_a_rotation_is_reported) {
     const row near = solve(-(1 + 1e-6) / (w * w));
     EXPECT_NEAR(near[0], -1e6, 1e-3);
     EXPECT_NEAR(near[1], -2e6, 2e-3);
-    // With a first-derivative term the stage is regular: v = b G'² v cancels, which leaves a G v = −u.
+    // With a first-derivative term the stage is regular. In v the terms v and b G'² v cancel, so a G v = −u.
     row u{1, 2};
     problem.solve_collision(0, 0.5, -1 / (w * w), u);
     EXPECT_NEAR(u[0], 2 / (0.5 * w), 1e-14);
@@ -198,7 +198,7 @@ TEST(newton_problem, does_not_mistake_stiffness_or_units_for_singularity) {
 }
 
 TEST(newton_problem, iterates_never_leave_the_admissible_set) {
-  // √u is undefined below 0, so G would also detect an inadmissible iterate.
+  // √u is undefined below 0, so G itself detects an inadmissible iterate.
   double smallest = 1;
   const auto g = [&smallest](const auto& u, auto& out) {
     using std::sqrt;
@@ -233,8 +233,8 @@ TEST(newton_problem, throws_without_an_admissible_root_and_keeps_the_state) {
   });
 }
 
-// Extrapolation subtracts results of different substeps: none of its stages is negative, and yet its steps
-// are.
+// Extrapolation subtracts results of different substeps. A step can be negative although none of
+// its stages is.
 TEST(newton_problem, steps_to_a_tolerance_stay_admissible_with_every_method) {
   for (const bool guarded : {false, true}) {
     apsis::newton_problem problem(apsis::no_transport{}, [](const auto& u, auto& g) {
@@ -315,7 +315,7 @@ TEST(newton_problem, throws_at_the_iteration_limit) {
 
 namespace {
 
-/// Integrates with imdrk-9-5 to relative and absolute tolerances of 1e-6.
+/// Integrates with imdrk-9-5, with relative and absolute tolerances of 1e-6.
 template <class G>
 apsis::integration_result<double> solve_stiff(const G& g, std::vector<double>& u, double end,
                                               long& rejected) {
@@ -338,9 +338,9 @@ apsis::integration_result<double> solve_stiff(const G& g, std::vector<double>& u
 }  // namespace
 
 TEST(newton_problem, follows_a_slow_manifold_in_steps_far_beyond_the_relaxation_time) {
-  // Van der Pol's equation in Liénard time, ε = 1e-6: a full Newton step leaves the manifold with a residual
-  // of (Δt/ε)² times its square. With backtracking on the residual alone, Newton's method crept along the
-  // manifold, failed after 200 iterations, and the integration took 6300 steps.
+  // Van der Pol's equation in Liénard time with ε = 1e-6. A full Newton step leaves the manifold; the new
+  // residual is (Δt/ε)² times the square of the old one. With backtracking on the residual alone, Newton's
+  // method crept along the manifold and failed after 200 iterations. The integration took 6300 steps.
   std::vector<double> u{2.0, -0.66};
   long rejected = 0;
   const auto done = solve_stiff(
@@ -357,8 +357,8 @@ TEST(newton_problem, follows_a_slow_manifold_in_steps_far_beyond_the_relaxation_
 }
 
 TEST(SLOW_newton_problem, reaches_the_end_of_robertson_s_problem) {
-  // Steps grow over sixteen decades; residuals of the last stages are rounding errors of numbers near 1e5. A
-  // Newton method with an absolute tolerance below these would never end.
+  // Steps grow over sixteen decades. The residuals of the last stages are rounding errors of numbers near
+  // 1e5. A Newton method with a smaller absolute tolerance would never end.
   std::vector<double> u{1.0, 0.0, 0.0};
   long rejected = 0;
   const auto done = solve_stiff(

@@ -24,7 +24,7 @@ inline constexpr auto transport = [](auto, const auto& u, auto& out) {
   out[1] = 0;
 };
 
-/// Q(u)/ε for any scalar type; the reference solvers add the transport.
+/// Returns Q(u)/ε for any scalar type. The reference solvers add the transport.
 template <class Real>
 auto collision(Real epsilon) {
   return [epsilon](const auto& u, auto& out) {

@@ -6,10 +6,10 @@
 
 #include <rapidcheck.h>
 
-/// Random numbers inside a property, which shrink towards `low`.
+/// Random numbers in a property. They shrink towards `low`.
 namespace random_input {
 
-/// Returns an integer in [low, high), drawn from the whole range in every case; RapidCheck itself starts
+/// Returns an integer in [low, high), always drawn from the whole range. RapidCheck itself starts
 /// with small ones.
 inline int integer(int low, int high) {
   return *rc::gen::resize(rc::kNominalSize, rc::gen::inRange(low, high));

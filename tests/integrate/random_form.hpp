@@ -6,8 +6,8 @@
 
 namespace random_input {
 
-/// Returns a form of up to seven stages with a random zero pattern, including off-diagonal Q
-/// (inside a property).
+/// Returns a form of up to seven stages with a random zero pattern, including off-diagonal Q. Callable only
+/// inside a property.
 inline apsis::shu_osher_form<double> form(std::size_t fewest_stages) {
   const auto s = *rc::gen::inRange<std::size_t>(fewest_stages, 8);
   const auto number = [] { return *rc::gen::inRange(0, 3) == 0 ? *rc::gen::inRange(1, 1000) * 1e-3 : 0.0; };

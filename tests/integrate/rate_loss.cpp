@@ -1,4 +1,4 @@
-// Estimates of what a method loses of the terms of size ε, against true errors of runs.
+// Estimates of the terms of size ε that a method loses, against true errors of runs.
 #include <apsis/integrate/rate_loss.hpp>
 
 #include "support/catalogue.hpp"
@@ -27,13 +27,13 @@ const auto distance = [](const state& u, const state& v) {
   return std::hypot(u[0] - v[0], u[1] - v[1]) / std::hypot(u[0], u[1]);
 };
 
-/// Absolute, as in Python.
+/// The absolute difference, as in Python.
 const auto largest_difference = [](const state& u, const state& v) {
   return std::max(std::abs(u[0] - v[0]), std::abs(u[1] - v[1]));
 };
 
 struct outcome {
-  double estimate,  ///< of the relative error at t = 1 by the terms of size ε
+  double estimate,  ///< estimate of the relative error at t = 1 in the terms of size ε
       error;        ///< relative error at t = 1
 };
 
@@ -41,7 +41,7 @@ state start_of(bool near_equilibrium) {
   return near_equilibrium ? state{2.0, std::sin(2.0)} : ode_model::initial_state<state>();
 }
 
-/// Returns the solution at t = 1 by a method without plateau of order 8, which resolves the layer.
+/// Returns the solution at t = 1 by a method of order 8 without plateau. Its steps resolve the layer.
 const state& exact_solution(double epsilon, bool near_equilibrium) {
   static std::map<std::pair<double, bool>, state> known;
   const auto [found, is_new] = known.try_emplace({epsilon, near_equilibrium}, start_of(near_equilibrium));
@@ -53,7 +53,7 @@ const state& exact_solution(double epsilon, bool near_equilibrium) {
   return found->second;
 }
 
-/// Runs the ODE model of the paper, from equilibrium or not, with an estimate at each of eight times.
+/// Runs the ODE model of the paper, from equilibrium or not, and estimates the loss at eight times.
 outcome run(const apsis::method& m, double epsilon, double dt, bool near_equilibrium) {
   auto problem = ode_model::as_relaxation<state>(epsilon);
   apsis::stepper march(m, problem);
@@ -77,8 +77,8 @@ std::vector<std::string> imex_methods() {
 }  // namespace
 
 TEST(rate_loss, of_methods_with_a_plateau_is_their_error) {
-  // With Δt = 1/256 the errors Δt^p are small, and the terms of size ε dominate. The estimate adds norms;
-  // errors by the layer and by the flux may cancel, so that data out of equilibrium have a larger factor.
+  // With Δt = 1/256 the errors Δt^p are small, and the terms of size ε dominate. The estimate adds norms, but
+  // errors in the layer and in the flux may cancel. Data out of equilibrium therefore have a larger factor.
   for (const char* name :
        {"md-imex-3-2", "md-imex-6-3", "hsz-a-3-2", "md-imex-16-4-efficient", "md-imex-14-4-accurate"})
     for (const double epsilon : {1e-3, 3e-4, 1e-4})
@@ -90,8 +90,8 @@ TEST(rate_loss, of_methods_with_a_plateau_is_their_error) {
 }
 
 TEST(rate_loss, never_cries_wolf_for_any_method_and_ratio) {
-  // Where the estimate would warn, the error is real: at least a tenth of it, or a thirtieth where the errors
-  // of the layer and of the flux cancel.
+  // Where the estimate would warn, the error is at least a tenth of it. It is at least a thirtieth where
+  // errors in the layer and in the flux may cancel.
   int warned = 0, quiet = 0;
   for (const auto& name : imex_methods())
     for (const double epsilon : {1.0, 1e-1, 1e-2, 1e-3, 1e-4, 1e-6, 1e-9})
@@ -119,7 +119,7 @@ TEST(rate_loss, of_methods_with_the_right_terms_is_small_at_every_ratio) {
 }
 
 TEST(rate_loss, of_a_deviation_that_stiff_transport_sustains_is_the_error) {
-  // y' = −100 y + (100 atan t + 1/(1 + t²)), the first term as a collision, so that T/C is of the size of y.
+  // y' = −100 y + (100 atan t + 1/(1 + t²)). The first term is a collision, so T/C is as large as y.
   auto problem = apsis::make_relaxation_problem<state>(
       [](double, const state& u, state& out) {
         out = {1.0, 100.0 * std::atan(u[0]) + 1.0 / (1.0 + u[0] * u[0])};
@@ -140,7 +140,7 @@ TEST(rate_loss, of_a_deviation_that_stiff_transport_sustains_is_the_error) {
   EXPECT_NEAR(unfit->result / unfit->deviation, error, 0.15 * error);
   EXPECT_TRUE(apsis::judge_loss(*unfit, 0.0, 5.0, {}).large);
   EXPECT_LT(fit->result, 0.05 * unfit->result);
-  // From y(0) = 0 the state says nothing of its size; the deviation that follows does.
+  // At y(0) = 0 the state does not show the size of the solution. The deviation that follows does.
   const state zero{0.0, 0.0};
   const auto start = apsis::compute_rate_loss(
       problem, 0.0, zero, 0.1, *apsis::compute_rate_response("md-imex-6-3"), largest_difference, false);
@@ -171,16 +171,16 @@ TEST(verdict, is_by_the_error_or_by_the_part_of_all_changes) {
   const apsis::rate_loss<double> slow{.rate = 1e-4, .diffusion = 1e-4, .change = 1e-4},
       fast{.rate = 1e-4, .diffusion = 1e-4, .change = 1e-2}, none{},
       fit{.rate = 1e-4, .diffusion = 1e-2, .change = 1e-4}, wrong_stress{.result = 2e-3, .deviation = 1e-2};
-  EXPECT_TRUE(apsis::judge_loss(slow, 0.0, 1.0, {}).large);    // 1e-4 of the state, but all that happens
+  EXPECT_TRUE(apsis::judge_loss(slow, 0.0, 1.0, {}).large);    // 1e-4 of the state, but all of the change
   EXPECT_FALSE(apsis::judge_loss(slow, 0.0, 0.01, {}).large);  // 1e-6 of the state
   EXPECT_FALSE(apsis::judge_loss(fast, 0.0, 1.0, {}).large);
   EXPECT_TRUE(apsis::judge_loss(fast, 0.0, 20.0, {}).large);
-  EXPECT_FALSE(apsis::judge_loss(fast, 0.0, 20.0, 1e-3).large);  // of 30 tolerances
+  EXPECT_FALSE(apsis::judge_loss(fast, 0.0, 20.0, 1e-3).large);  // 30 tolerances
   EXPECT_FALSE(apsis::judge_loss(none, 0.0, 1e9, {}).large);
   EXPECT_FALSE(apsis::judge_loss(fit, 0.0, 1e9, {}).large);  // viscosity is right to 1 %
   EXPECT_TRUE(apsis::judge_loss(wrong_stress, 0.0, 1.0, {}).large);
-  EXPECT_TRUE(apsis::judge_loss(none, 2e-3, 1.0, {}).large);  // lost before
-  // Until the moments have changed by their own size.
+  EXPECT_TRUE(apsis::judge_loss(none, 2e-3, 1.0, {}).large);  // the loss of earlier steps
+  // The moments have not yet changed by their own size.
   EXPECT_NEAR(apsis::judge_loss(fast, 0.0, 1e9, {}).expected, 1e-2, 1e-12);
   EXPECT_EQ(apsis::judge_loss(slow, 0.0, 1e9, {}).expected, 1.0);
   EXPECT_THAT(apsis::describe_loss("m", {.rate = 1.63, .diffusion = 1.0}, 0.0, 0.1, 2.0, 0.01),

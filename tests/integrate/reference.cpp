@@ -1,4 +1,4 @@
-// Verification of the reference solutions that errors are measured against.
+// The reference solutions, from which errors are measured, are accurate.
 #include <integrate/reference.hpp>
 
 #include <apsis/integrate/extrapolation.hpp>
@@ -29,8 +29,8 @@ TEST(reference, distance_to_the_exact_limit_solution_is_proportional_to_epsilon)
     const auto u = reference::radau(epsilon, 1);
     return std::abs(u[0] - limit[0]) + std::abs(u[1] - limit[1]);
   };
-  // The next term of the expansion is smaller by a factor O(ε), hence 1e-3 for ε ≤ 1e-6; the error of the
-  // reference, 1e-16 · 1e10, is far below it.
+  // The next term of the expansion is smaller by a factor O(ε), so the tolerance is 1e-3 for ε ≤ 1e-6. The
+  // error of the reference, 1e-16 · 1e10, is far below it.
   EXPECT_NEAR(static_cast<double>(distance(1e-6L) / distance(1e-8L)), 100, 0.1);
   EXPECT_NEAR(static_cast<double>(distance(1e-8L) / distance(1e-10L)), 100, 0.1);
 }
@@ -70,8 +70,8 @@ TEST(extrapolation, error_decreases_with_the_tolerance) {
       const auto error = [&](long double tolerance) {
         return distance(extrapolated(epsilon, {tolerance, 0, order}), {radau[0], radau[1]});
       };
-      // The tolerance per step bounds the error up to the number of steps; estimates are pessimistic,
-      // often by far.
+      // The tolerance of a step, times the number of steps, bounds the error. Estimates are often
+      // far too pessimistic.
       EXPECT_LT(error(1e-6L), 1e-5L) << epsilon << " " << order;
       EXPECT_LT(error(1e-10L), 1e-9L) << epsilon << " " << order;
     }

@@ -37,7 +37,7 @@ void require(int flag, const char* what) {
   if (flag < 0) throw std::runtime_error(what);
 }
 
-/// Integrates y to t_end; right-hand side and Jacobian get `data`.
+/// Integrates y to t_end. The right-hand side and the Jacobian receive `data`.
 std::vector<double> integrate(int formula, CVRhsFn f, CVLsJacFn jacobian, void* data,
                               std::vector<double> start, double relative, const std::vector<double>& absolute,
                               double t_end) {

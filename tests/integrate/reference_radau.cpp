@@ -30,7 +30,7 @@ struct model {
   }
 };
 
-/// Coefficients of Radau IIA with three stages (Hairer & Wanner, Solving ODEs II, table IV.5.6).
+/// Returns the coefficients of Radau IIA with three stages (Hairer & Wanner, Solving ODEs II, table IV.5.6).
 matrix3 radau_matrix() {
   const long double s = std::sqrt(6.0L);
   matrix3 a;
@@ -40,7 +40,7 @@ matrix3 radau_matrix() {
   return a;
 }
 
-/// Takes one step, solving for the increments z_i = u_i − u; returns false if Newton's method
+/// Takes one step by solving for the increments z_i = u_i − u. Returns false if Newton's method
 /// does not converge.
 bool radau_step(const model& f, long double h, vector2& u) {
   static const matrix3 a = radau_matrix();

@@ -32,8 +32,7 @@ using row = std::vector<double>;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double rounding = std::numeric_limits<double>::epsilon();
 
-/// The collision operator of the Broadwell model in the form of kinetic theory, f = (f+, f0, f-), without
-/// E and C.
+/// The collision operator of the Broadwell model in kinetic form, f = (f+, f0, f-), without E and C.
 constexpr auto broadwell_collision = [](const auto& f, auto& out) {
   const auto gain = f[1] * f[1] - f[0] * f[2];
   out[0] = gain;
@@ -45,8 +44,8 @@ struct broadwell_moments {
   double rho, m;
 };
 
-/// The Broadwell model as relaxation: C = ρ, E = ((ρ+m)², ρ²−m², (ρ−m)²)/(4ρ) (paper, C16); a vacuum is
-/// its own equilibrium.
+/// The Broadwell model as relaxation: C = ρ, E = ((ρ+m)², ρ²−m², (ρ−m)²)/(4ρ) (paper, C16). A vacuum is its
+/// own equilibrium.
 auto broadwell(double epsilon) {
   return apsis::relaxation_problem(
       apsis::no_transport{},
@@ -100,7 +99,7 @@ TEST(claims, C14_broadwell_is_a_relaxation_with_rate_rho) {
     problem.add_collision(0, f, {&to, 1});
     broadwell_collision(f, expected);
     const double rho = f[0] + 2 * f[1] + f[2];
-    // C(E − f) cancels terms of size ρ².
+    // In C(E − f) terms of size ρ² cancel.
     const double tolerance = 16 * rounding * rho * rho;
     for (std::size_t k = 0; k < 3; ++k) RC_ASSERT(std::abs(q[k] - expected[k]) <= tolerance);
     RC_ASSERT(std::abs(q[0] + 2 * q[1] + q[2]) <= tolerance);
@@ -141,7 +140,7 @@ TEST(claims, C14_property_5_for_broadwell_by_automatic_differentiation) {
     const row f{uniform(0, 2), uniform(0, 2), uniform(0, 2)};
     const double q = f[1] * f[1] - f[0] * f[2];
     RC_PRE(std::abs(q) > 1e-3);
-    // Q̇ is a sum of three terms, each at most 4e3 times larger than |Q| by the line above.
+    // Q̇ is a sum of three terms. By the line above each is at most 4e3 times as large as |Q|.
     RC_ASSERT(property_5_defect(broadwell_collision, f[0] + 2 * f[1] + f[2], f) <= 3 * 4e3 * rounding);
   });
 }
@@ -185,7 +184,8 @@ TEST(claims, C14_property_5_for_bgk_by_automatic_differentiation) {
           0.4 * std::exp(-(v - shift) * (v - shift) / 2) + 0.2 * std::exp(-(v + 1) * (v + 1));
     }
     const double rho = std::accumulate(f.begin(), f.end(), 0.0) * dv;
-    // The midpoint rule reproduces the moments of these Maxwellians to about 1e-13, the size of E' Q.
+    // The midpoint rule reproduces the moments of these Maxwellians to about 1e-13. This is the relative size
+    // of E' Q.
     EXPECT_LT(property_5_defect(collision, rho, f), 1e-11) << shift;
   }
 }
@@ -198,7 +198,7 @@ TEST(claims, C15_backward_euler_is_positive_for_every_step_including_zero_data) 
     broadwell(1.0).solve_collision(0, lambda, 0.0, v);
     const double rho = f[0] + 2 * f[1] + f[2];
     for (const double x : v) RC_ASSERT(x >= 0.0);
-    // v − f = λ Q(v) holds in extended precision, up to rounding of terms of size ρ and λρ².
+    // v − f = λ Q(v) holds in extended precision, up to the rounding of terms of size ρ and λρ².
     const long double gain = static_cast<long double>(v[1]) * v[1] - static_cast<long double>(v[0]) * v[2];
     const std::array<long double, 3> sign{1, -1, 1};
     for (std::size_t k = 0; k < 3; ++k)
@@ -227,7 +227,8 @@ TEST(relaxation_problem, closed_form_agrees_with_newton) {
     row closed = u, solved = u;
     ode_model::as_relaxation(epsilon).solve_collision(0, a, b, closed);
     ode_model::as_newton(epsilon).solve_collision(0, a, b, solved);
-    // In the last Newton iterate, terms of up to 1e4 × the result cancel, relative to the stiff term.
+    // In the last Newton iterate terms cancel that are up to 1e4 times as large as the result, relative to
+    // the stiff term.
     for (std::size_t k = 0; k < 2; ++k) RC_ASSERT(std::abs(closed[k] - solved[k]) <= 1e-13);
   });
 }
@@ -243,7 +244,8 @@ TEST(relaxation_problem, at_epsilon_zero_implicit_stages_are_the_equilibrium_and
 
 namespace {
 
-/// Asserts that acc ← acc + α u + β (T + Q) is the same with one call as with one for T and one for Q.
+/// Asserts that one call for T + Q gives the same acc ← acc + α u + β (T + Q) as one call for T and
+/// one for Q.
 template <class Problem>
 void expect_sum_of_both(Problem problem, const row& u, double alpha, double beta, bool fresh) {
   row joint{0.5, -0.25}, in_turn = joint;
@@ -252,7 +254,7 @@ void expect_sum_of_both(Problem problem, const row& u, double alpha, double beta
   problem.add_transport_and_collision(0, u, {&together, 1});
   problem.add_transport(0, u, {&first, 1});
   problem.add_collision(0, u, {&second, 1});
-  // Rounding errors of the largest term, Q ≤ 10 (3 + 3)/ε.
+  // The tolerance covers rounding errors of the largest term, Q ≤ 10 (3 + 3)/ε.
   for (std::size_t k = 0; k < 2; ++k)
     RC_ASSERT(std::abs(joint[k] - in_turn[k]) <= 4 * rounding * (10 + 60 * std::abs(beta) / 0.01));
 }
@@ -325,7 +327,7 @@ TEST(accumulate, evaluates_at_most_once_and_only_if_a_target_needs_it) {
 
 namespace {
 
-/// u' = (u[1], 0) + (E(w) − u)/1, w = `moments`(u).
+/// u' = (u[1], 0) + (E(w) − u)/1 with w = `moments`(u) = u[0]. E has the moment `kept_share` w.
 auto two_numbers(double kept_share) {
   return apsis::relaxation_problem(
       [](double, const std::vector<double>& u, std::vector<double>& T) { T = {u[1], 0.0}; },
@@ -357,7 +359,7 @@ TEST(relaxation_problem, rejects_an_equilibrium_with_wrong_moments) {
       complaint_of_step(two_numbers(1.001), "md-imex-3-2"),
       "the equilibrium does not have the given moments (R E(w) differs from w by 0.001 of the largest); "
       "correct the equilibrium or the moments");
-  // Moments given as a range are compared one by one.
+  // A range of moments is compared one by one.
   const apsis::relaxation_problem ranged(
       [](double, const std::vector<double>&, std::vector<double>& T) { T = {0.0, 0.0}; },
       [](const std::vector<double>& u) { return std::array{u[0] + u[1], u[0] - u[1]}; },

@@ -16,7 +16,7 @@ namespace {
 using apsis::schedule;
 using apsis::shu_osher_form;
 
-/// u' = λ_T u + λ_Q u that counts all calls and fails on demand.
+/// u' = λ_T u + λ_Q u. The problem counts all calls and fails on demand.
 class counted {
  public:
   using state = std::vector<double>;
@@ -44,8 +44,8 @@ class counted {
   double forward_euler_step(double, const state&) const { return 1.0; }
 };
 
-/// Takes the same step by the Butcher form, without a schedule: (I − z_T Â − z_Q A − z_Q² Ȧ) U = e
-/// by forward substitution.
+/// Takes the same step in Butcher form without a schedule. It solves (I − z_T Â − z_Q A − z_Q² Ȧ) U = e by
+/// forward substitution.
 double direct(const shu_osher_form<double>& m, double zt, double zq) {
   const auto b = apsis::to_butcher(m);
   std::vector<double> u(m.stages());
@@ -75,8 +75,9 @@ TEST(schedule, of_the_papers_methods_needs_three_and_six_buffers) {
 }
 
 TEST(schedule, of_explicit_methods_needs_the_known_registers_plus_one_or_two) {
-  // Ketcheson (2008): two registers if T(u) is added to u in place. add_transport reads u while it writes
-  // elsewhere, which takes one more. u^n is kept in case a step fails; only (10,4) would overwrite it.
+  // Two registers suffice if T(u) is added to u in place (Ketcheson, 2008). add_transport writes elsewhere
+  // while it reads u, so it needs one more. A failed step must leave u^n. Only (10,4) would overwrite u^n, so
+  // it needs another one.
   struct counted_in_place {
     const char* name;
     int registers;
@@ -86,7 +87,7 @@ TEST(schedule, of_explicit_methods_needs_the_known_registers_plus_one_or_two) {
                         counted_in_place{"ssprk-4-3", 2, true}, counted_in_place{"ssprk-10-4", 2, false}}) {
     const schedule plan(apsis::find_method(m.name).coefficients<double>());
     EXPECT_EQ(plan.buffers(), m.registers + 1 + (m.keeps_u_n ? 0 : 1)) << m.name;
-    // Buffer 0 holds u^n and must not be written during a step.
+    // Buffer 0 stores u^n, so a step must not write it.
     for (const auto& instruction : plan.instructions())
       for (const auto& to : instruction.to) EXPECT_NE(to.buffer, 0) << m.name << " writes stage " << to.stage;
   }
@@ -116,8 +117,8 @@ TEST(schedule, of_every_method_reproduces_its_stability_function) {
       p.transport = *rc::gen::inRange(-2000, 2000) * 1e-3;
       p.collision = -std::pow(10.0, *rc::gen::inRange(-3, 5));
       const double expected = direct(form, p.transport, p.collision);
-      // A dozen products; partial sums are up to 10³ times the result for DIRK methods, and of size z where
-      // an IMEX method evaluates Q.
+      // There are a dozen products. In DIRK methods partial sums are up to 10³ times the result. Where an
+      // IMEX method evaluates Q they have size z.
       const bool evaluates = m.kind == apsis::method_kind::imex && schedule(form).collision_evaluations() > 0;
       const double rounding = 1e-12 + (evaluates ? 2e-15 * std::abs(p.collision) : 0.0);
       RC_ASSERT(std::abs(stepped(form, p) - expected) <= rounding * (1.0 + std::abs(expected)));
@@ -131,7 +132,7 @@ TEST(schedule, of_any_zero_pattern_reproduces_its_stability_function) {
     counted p;
     p.transport = *rc::gen::inRange(-1000, 1000) * 1e-3;
     p.collision = -*rc::gen::inRange(1, 1000) * 1e-3;
-    // For stages with ḋ, an off-diagonal Q is evaluated; for others it is recovered from the stage.
+    // Stages with ḋ evaluate an off-diagonal Q. Other stages recover it from their solution.
     const double expected = direct(form, p.transport, p.collision);
     RC_ASSERT(std::abs(stepped(form, p) - expected) <= 1e-11 * (1.0 + std::abs(expected)));
     RC_ASSERT(schedule(form).buffers() <= static_cast<int>(form.stages()) + 1);
@@ -140,7 +141,7 @@ TEST(schedule, of_any_zero_pattern_reproduces_its_stability_function) {
 
 namespace {
 
-/// A problem that evaluates T and Q together.
+/// A problem that evaluates T and Q in one call.
 class joint : public counted {
  public:
   int joints = 0;

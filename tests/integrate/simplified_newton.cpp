@@ -1,5 +1,4 @@
-// Stages of a step that share a derivative: what they cost, how accurate they are, and that a step depends on
-// its beginning alone.
+// Stages of a step share a derivative: cost and accuracy. A step depends on its beginning alone.
 #include <apsis/integrate/evolution.hpp>
 #include <apsis/integrate/newton_problem.hpp>
 
@@ -25,7 +24,7 @@ using random_input::magnitude;
 using random_input::uniform;
 using row = std::vector<double>;
 
-/// Robertson's reactions; counts evaluations for values and for derivatives.
+/// Robertson's reactions. The object counts evaluations of values and of derivatives.
 struct robertson {
   long* values;
   long* products;
@@ -43,7 +42,7 @@ struct robertson {
 const component_tolerances<double> tolerances({1e-6}, {1e-10, 1e-14, 1e-10});
 
 TEST(simplified_newton, a_step_takes_one_derivative_and_one_matrix_for_each_coefficient) {
-  // Twenty-one stages of an affine G with six coefficients, dt/1 to dt/6.
+  // The step has twenty-one stages with six coefficients, dt/1 to dt/6. G is affine.
   long values = 0, products = 0;
   const auto affine = [&](const auto& u, auto& out) {
     ++(std::is_same_v<std::decay_t<decltype(out[0])>, double> ? values : products);
@@ -57,9 +56,10 @@ TEST(simplified_newton, a_step_takes_one_derivative_and_one_matrix_for_each_coef
   row u{1, 1};
   march.attempt(0.0, 0.1, u);
   EXPECT_EQ(products, 2);
-  // Two corrections find the contraction, and every other stage needs one: the value before each.
+  // The first two corrections measure the contraction. Every other stage needs one correction, after one
+  // evaluation of G.
   EXPECT_LE(values, 2 * 21);
-  // The next attempt from the same beginning needs no new derivative, a step from another one does.
+  // Another attempt from the same beginning needs no new derivative, but a step from another one does.
   march.attempt(0.0, 0.05, u);
   EXPECT_EQ(products, 2);
   const auto second = march.attempt(0.0, 0.05, u).result;
@@ -100,8 +100,8 @@ TEST(simplified_newton, stages_are_roots_to_a_hundredth_of_the_tolerance) {
     kept.solve_collision(a, a, 0.0, w);
     kept.end_step();
     exact.solve_collision(a, a, 0.0, v);
-    // The share is a thousandth, and the estimate may be wrong by some factor: of 20 000 stages like these
-    // 0.1 % differ by more than a share.
+    // The share is a thousandth, and the estimate of the error may be wrong by some factor. In 0.1 % of 20
+    // 000 such stages the difference exceeds the share.
     for (std::size_t i = 0; i < 3; ++i)
       RC_ASSERT(std::abs(v[i] - w[i]) <= 1e-2 * (1e-6 * std::abs(v[i]) + tolerances.absolute(i)));
   });
@@ -117,14 +117,14 @@ TEST(simplified_newton, conserves_sums) {
                            apsis::step_tolerance<row, double>{1.0, wide});
     march.start(0, {1, 0, 0});
     march.advance(1e6);
-    // Rounding of some hundred steps, and Σ|w| = 300 of extrapolation.
+    // The tolerance covers the rounding of some hundred steps and the factor Σ|w| = 300 of extrapolation.
     EXPECT_NEAR(march.u()[0] + march.u()[1] + march.u()[2], 1, 1e-12) << name;
     EXPECT_GT(march.steps(), 10) << name;
   }
 }
 
 TEST(simplified_newton, a_step_depends_on_its_beginning_alone) {
-  // Steps of a run, taken again by a problem that has solved nothing before, and in another order.
+  // A new problem repeats the steps of a run in another order. It has solved nothing before.
   for (const bool sparse : {false, true})
     for (const std::string name : {"extrapolated-euler-5", "ark-436", "dirk-4-3"}) {
       long values = 0, products = 0;
@@ -198,7 +198,7 @@ TEST(simplified_newton, full_band_and_sparse_matrices_solve_the_same_systems) {
       problem.solve_collision(a, a, 0.0, v);
       problem.end_step();
       RC_ASSERT(products == static_cast<long>(pattern != nullptr ? pattern->groups().size() : n));
-      // Gaussian elimination is backward stable: the residual is some roundings of its terms.
+      // Gaussian elimination is backward stable, so the residual is some roundings of its terms.
       for (std::size_t i = 0; i < n; ++i) {
         double rest = v[i] - 1 - a, terms = std::abs(v[i]) + 1 + a;
         for (std::size_t j = 0; j < n; ++j) {
@@ -212,7 +212,7 @@ TEST(simplified_newton, full_band_and_sparse_matrices_solve_the_same_systems) {
 }
 
 TEST(simplified_newton, iterates_stay_in_the_admissible_set) {
-  // √u has no value below 0, where a full correction leads.
+  // √u has no value below 0. A full correction would lead there.
   std::set<double> seen;
   const auto roots = [&](const auto& u, auto& out) {
     using std::sqrt;
@@ -226,13 +226,13 @@ TEST(simplified_newton, iterates_stay_in_the_admissible_set) {
   problem.solve_collision(0.1, 0.1, 0.0, u);
   problem.end_step();
   EXPECT_GE(*seen.begin(), 0);
-  // v + 10 √v = 1/2
+  // The stage is v + 10 √v = 1/2.
   EXPECT_NEAR(std::sqrt(u[0]), std::sqrt(25.5) - 5, 1e-8);
 }
 
 TEST(simplified_newton, hands_what_it_cannot_solve_to_the_guarded_method) {
-  // From u = 10 the corrections of e^u with the derivative at −10 overshoot, and so do those at later
-  // iterates.
+  // From u = 10 the corrections of e^u with the derivative at −10 overshoot. Those at later iterates
+  // overshoot too.
   const auto explosive = [](const auto& u, auto& out) {
     using std::exp;
     out[0] = -1.0 * exp(u[0]);
@@ -274,8 +274,8 @@ TEST(simplified_newton, stages_outside_of_a_step_do_not_depend_on_steps) {
 }
 
 TEST(simplified_newton, takes_the_derivative_at_the_time_of_the_beginning) {
-  // u' = −(1 + t)² u: with the derivative at another time, the first step of a run would depend on what the
-  // problem did before. The solution is exp(−((1 + t)³ − 1)/3).
+  // u' = −(1 + t)² u. With the derivative at another time, the first step of a run would depend on earlier
+  // calls. The solution is exp(−((1 + t)³ − 1)/3).
   const auto decay = [](const auto& t, const auto& u, auto& out) {
     out[0] = -1.0 * (1.0 + t) * (1.0 + t) * u[0];
   };

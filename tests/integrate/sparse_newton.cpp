@@ -1,4 +1,4 @@
-// Sparse derivatives: groups of columns, and stages against those of dense systems.
+// Sparse derivatives: groups of columns. Sparse and dense systems have the same stages.
 #include <apsis/integrate/difference_derivatives.hpp>
 #include <apsis/integrate/error_control.hpp>
 #include <apsis/integrate/newton_problem.hpp>
@@ -26,7 +26,7 @@ using random_input::one_in;
 using random_input::uniform;
 using row = std::vector<double>;
 
-/// Every column is in one group, and columns of a group share no row.
+/// Requires that every column is in one group and that columns of a group share no row.
 void require_valid_groups(const sparsity_pattern& pattern) {
   std::size_t columns = 0;
   std::set<std::size_t> all;
@@ -93,7 +93,8 @@ TEST(sparsity_pattern, refuses_places_outside) {
   });
 }
 
-/// Diffusion with a cubic reaction on a ring, whose last unknown also sees the first: no band.
+/// Diffusion with a cubic reaction on a ring. The last unknown depends on the first, so the pattern is
+/// not a band.
 struct ring {
   double spread, fast;
   template <class U, class V>
@@ -116,8 +117,7 @@ TEST(sparse_newton, solves_the_stages_of_dense_systems) {
   check_property("random stage of a ring of 3 to 30 unknowns", [] {
     const auto n = static_cast<std::size_t>(uniform(3, 31));
     const double a = magnitude(-4, 0) * 0.5, b = one_in(3) ? 0.0 : -a * a * uniform(0.1, 1);
-    // Any diffusion, and a reaction that changes little of the derivative of the stage, so that there is a
-    // root.
+    // The diffusion is arbitrary. The reaction changes the derivative of the stage little, so a root exists.
     const double spread = magnitude(-2, 3);
     const ring g{spread, uniform(0.01, 0.1) / (a * (1 + 72 * a * spread))};
     newton_problem dense(no_transport{}, g), sparse(no_transport{}, g);
@@ -127,13 +127,13 @@ TEST(sparse_newton, solves_the_stages_of_dense_systems) {
     row v = u, w = u;
     dense.solve_collision(0, a, b, v);
     sparse.solve_collision(0, a, b, w);
-    // Both are roots to rounding, which Δt λ ≤ 5e3 multiplies.
+    // Both solutions are roots up to rounding errors. Δt λ ≤ 5e3 multiplies these errors.
     for (std::size_t i = 0; i < n; ++i) RC_ASSERT(std::abs(v[i] - w[i]) <= 1e-11);
   });
 }
 
 TEST(sparse_newton, keeps_slow_directions_of_stiff_systems) {
-  // The mean of a ring without reaction is conserved, and differences decay 1e12 times as fast as the step.
+  // A ring without reaction conserves its mean. Differences decay 1e12 times as fast as the step.
   const std::size_t n = 40;
   for (const double b : {0.0, -0.125}) {
     newton_problem problem(no_transport{}, ring{1e12, 0.0});
@@ -143,7 +143,7 @@ TEST(sparse_newton, keeps_slow_directions_of_stiff_systems) {
     for (std::size_t i = 0; i < n; ++i) mean += u[i] = 1 + std::sin(static_cast<double>(i * i));
     mean /= static_cast<double>(n);
     problem.solve_collision(0, 0.5, b, u);
-    // Δt λ times rounding, 1e12 · 1e-16 · √n.
+    // The tolerance is Δt λ times rounding, 1e12 · 1e-16 · √n.
     for (const double x : u) EXPECT_NEAR(x, mean, 1e-3) << b;
     double after = 0;
     for (const double x : u) after += x / static_cast<double>(n);
@@ -152,7 +152,7 @@ TEST(sparse_newton, keeps_slow_directions_of_stiff_systems) {
 }
 
 TEST(sparse_newton, refuses_singular_stages) {
-  // u' = (u₁, −u₀) has the eigenvalues ±i: with a = 0 and b = −1 the stage is singular.
+  // u' = (u₁, −u₀) has the eigenvalues ±i, so the stage with a = 0 and b = −1 is singular.
   newton_problem problem(no_transport{}, [](const auto& u, auto& out) {
     out[0] = u[1];
     out[1] = -1.0 * u[0];
@@ -163,7 +163,8 @@ TEST(sparse_newton, refuses_singular_stages) {
       {{[&] { problem.solve_collision(0, 0, -1, u); }, {"singular to working precision"}, 3}});
 }
 
-/// For doubles only, as code of others may be: unknowns of sizes 1 and 1e-6 side by side, and time.
+/// A right-hand side for doubles only, like existing code of users. Its unknowns have sizes 1 and 1e-6, and
+/// it depends on time.
 void reaction(double t, std::span<const double> u, std::span<double> out) {
   for (std::size_t i = 0; i < u.size(); i += 2) {
     const double next = i + 2 < u.size() ? u[i + 2] : 1 + 0.1 * std::sin(t);
@@ -192,7 +193,7 @@ TEST(difference_derivatives, agree_with_derivatives_by_hand) {
 }
 
 TEST(difference_derivatives, solve_stiff_systems_by_one_difference_for_each_group) {
-  // Ten pairs with the rate 1e6: against automatic derivatives of the same formula, with the same tolerance.
+  // Ten pairs with the rate 1e6. A difference approximates the derivatives of each group.
   const std::size_t n = 20;
   long calls = 0;
   const auto counted = [&calls](double t, std::span<const double> u, std::span<double> out) {
@@ -209,12 +210,12 @@ TEST(difference_derivatives, solve_stiff_systems_by_one_difference_for_each_grou
   for (std::size_t i = 0; i < n; i += 2) u[i] = 1, u[i + 1] = 1e-6;
   const auto done = apsis::integrate_to_tolerance(march, u, 0.0, 1.0, apsis::step_rule<double>::unlimited(),
                                                   control, tolerances);
-  // The slow manifold u₁ = 1e-6 u₀², up to rates of size 1/1e6; and the last pair, whose sum moves with its
-  // own equation: y' (1 + 2e-6 y) = 1 + 0.1 sin t − y with y(0) = 1, to 1e-6.
+  // The solution is near the slow manifold u₁ = 1e-6 u₀², up to rates of size 1/1e6. The sum of the last pair
+  // follows its own equation, up to 1e-6: y' (1 + 2e-6 y) = 1 + 0.1 sin t − y with y(0) = 1.
   for (std::size_t i = 0; i < n; i += 2) EXPECT_NEAR(u[i + 1] * 1e6, u[i] * u[i], 1e-5);
   EXPECT_NEAR(u[n - 2], 1 + 0.05 * (std::sin(1.0) - std::cos(1.0) + std::exp(-1.0)), 1e-5);
-  // 10 solves of a step with some iterations, each of four groups with two differences: far below two
-  // differences for each of 20 unknowns.
+  // A step has 10 solves with some iterations. Each of four groups needs two differences. This is far below
+  // two differences for each of 20 unknowns.
   EXPECT_LT(calls / done.steps, 10 * 3 * (2 * 4 + 4));
 }
 
@@ -230,8 +231,8 @@ TEST(sparse_newton, a_copy_of_a_problem_has_factorizations_of_its_own) {
 }
 
 TEST(sparse_newton, takes_thousands_of_unknowns) {
-  // 2000 unknowns: a dense system of (v, k) would take 6e10 operations, and there are hundreds. The heat
-  // equation on a ring decays its first mode by exp(−λ), λ = 4 spread sin²(π/n).
+  // A dense system of (v, k) with 2000 unknowns would take 6e10 operations, and there are hundreds. The heat
+  // equation on a ring reduces its first mode by exp(−λ) with λ = 4 spread sin²(π/n).
   const std::size_t n = 2000;
   const double wave = 2 * std::acos(-1.0) / static_cast<double>(n), spread = 1 / (wave * wave);
   newton_problem problem(no_transport{}, ring{spread, 0.0});

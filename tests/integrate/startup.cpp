@@ -1,4 +1,4 @@
-// Graded start in the time loop: the first step, and no other, is divided into steps that double.
+// Graded start in the time loop. Only the first step is divided, into steps that double.
 #include "ode_model.hpp"
 #include "random.hpp"
 #include "support/property.hpp"
@@ -28,7 +28,7 @@ struct visited {
   long startup_steps = 0;
 };
 
-/// Records all times and steps. `width` < 0 means no start-up.
+/// Records all times and steps. A negative `width` means no start-up.
 visited march_through(apsis::time_marcher<double> march, double proposed, double width) {
   visited out{{march.t()}, {}, 0};
   if (width >= 0.0) march.start_up(proposed, width);
@@ -45,8 +45,8 @@ apsis::time_marcher<double> random_march(double& proposed, int growth = apsis::d
   const double t0 = random_input::one_in(2) ? 0.0 : random_input::uniform(-3.0, 3.0);
   const double length = random_input::magnitude(-3, 2);
   const bool given = random_input::one_in(2);
-  // The first step of a rule is graded as proposed, and does not share the remainder before t1 as the last
-  // time_marcher::shared_steps do.
+  // The first step of a rule must be graded as proposed. It must not share the remainder before t1, as the
+  // last time_marcher::shared_steps do.
   proposed = length / (given ? random_input::uniform(1.0, 40.0) : random_input::uniform(66.0, 120.0));
   return {t0, t0 + length, given ? std::optional<double>(proposed) : std::nullopt, growth};
 }
@@ -61,8 +61,9 @@ TEST(startup, divides_the_first_step_and_keeps_all_later_times_bitwise) {
     RC_ASSERT(cut.t.size() == plain.t.size() + extra);
     for (std::size_t n = 1; n < plain.t.size(); ++n) RC_ASSERT(cut.t[n + extra] == plain.t[n]);
     for (std::size_t n = 1; n < plain.dt.size(); ++n) RC_ASSERT(cut.dt[n + extra] == plain.dt[n]);
-    // The start-up steps add up to the first step, each is as long as the time before it, none exceeds the
-    // first step, and there are no more than needed.
+    // The start-up steps add up to the first step, and each is as long as the time before it. The first
+    // one is at most a quarter of the width. It exceeds an eighth of the width, so there are no more
+    // steps than needed.
     double sum = 0.0;
     for (std::size_t k = 0; k <= extra; ++k) {
       RC_ASSERT(k == 0 || cut.dt[k] == sum);
@@ -87,7 +88,7 @@ TEST(startup, with_any_ratio_keeps_later_times_and_takes_the_fewest_steps) {
     const auto extra = static_cast<std::size_t>(cut.startup_steps) - 1;
     RC_ASSERT(cut.t.size() == plain.t.size() + extra);
     for (std::size_t n = 1; n < plain.t.size(); ++n) RC_ASSERT(cut.t[n + extra] == plain.t[n]);
-    // A few divisions and a difference round each step.
+    // A few divisions and a difference each round a step.
     const double rounding = 1e-14 * plain.dt[0];
     double time = 0.0;
     for (std::size_t k = 0; k <= extra; ++k) {
@@ -139,7 +140,7 @@ TEST(startup, does_nothing_without_a_layer_and_ends_for_every_width) {
   const apsis::time_marcher<double> march(0.0, 1.0, 0.25);
   for (const double width : {0.0, infinite, 1.0, 7.0})
     EXPECT_EQ(march_through(march, 0.25, width).startup_steps, 1) << width;
-  // The effect of a thinner layer is below rounding: the number of steps is limited to the number of
+  // The effect of a thinner layer is below rounding. The number of steps is at most the number of
   // bits plus two.
   for (const double width : {1e-16, 1e-40, 1e-300, 4e-308}) {
     const auto cut = march_through(march, 0.25, width);
@@ -165,7 +166,7 @@ TEST(startup, ends_if_the_rule_allows_only_shorter_steps) {
     longest = std::max(longest, dt);
   }
   EXPECT_EQ(march.t(), 1.0);
-  EXPECT_EQ(longest, 0.875 / 9.0);  // what is left after three steps, divided evenly
+  EXPECT_EQ(longest, 0.875 / 9.0);  // the remainder after three steps, divided evenly
   EXPECT_EQ(march.startup_steps(), 3);
 }
 
@@ -196,7 +197,7 @@ double error(const std::string& method, state u, real epsilon, startup how) {
       apsis::integrate(march, u, real(0), real(1), step_rule<real>::fixed(1.0L / 256).with(how));
   EXPECT_EQ(done.t, 1);
   EXPECT_EQ(done.steps, 256 + (done.startup_steps > 0 ? done.startup_steps - 1 : 0));
-  // log2(4 · 5/(256 ε)) = 9.6 for ε = 1e-4.
+  // The number follows from log2(4 · 5/(256 ε)) = 9.6 for ε = 1e-4.
   EXPECT_EQ(done.startup_steps, how == startup::graded ? 11 : 0);
   return static_cast<double>(std::abs(u[0] - exact[0]) + std::abs(u[1] - exact[1]));
 }
@@ -214,7 +215,8 @@ TEST(startup, makes_errors_for_inconsistent_data_as_small_as_for_consistent_data
   EXPECT_LT(10 * resolved, error("md-imex-3-2", far, epsilon, startup::graded));
 }
 
-/// Error on the ODE model with equal steps, the first graded with the given ratio, and the number of steps.
+/// Returns the error on the ODE model with equal steps, and the number of steps. The first step is graded
+/// with the given ratio.
 std::pair<double, long> graded(const std::string& method, int steps, int growth, real epsilon) {
   auto problem = ode_model::as_relaxation<state>(epsilon);
   state u = {2, 0}, exact = u;
@@ -228,8 +230,8 @@ std::pair<double, long> graded(const std::string& method, int steps, int growth,
 }
 
 TEST(startup, a_larger_ratio_saves_methods_of_high_order_half_of_the_steps) {
-  // Without grading the error is 3e-8 (ε = 1e-4): a ratio of 4 resolves the layer as well, in half of the
-  // additional steps.
+  // Without grading the error is 3e-8 (ε = 1e-4). A ratio of 4 resolves the layer as well as a ratio of 2,
+  // with half of the additional steps.
   const auto [doubling, steps] = graded("extrapolated-euler-7", 6, 2, 1e-4L);
   const auto [coarse, fewer] = graded("extrapolated-euler-7", 6, 4, 1e-4L);
   EXPECT_LT(doubling, 1e-10);

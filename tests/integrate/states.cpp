@@ -1,5 +1,5 @@
-// The same problem gives the same numbers for every state type: standard vectors, Eigen vectors, fixed
-// arrays, long double, and a class that has only size() and [].
+// A problem gives the same numbers for every state type: standard vectors, Eigen vectors, fixed arrays, long
+// double, and a class that has only size() and [].
 #include <apsis/integrate/integrate.hpp>
 
 #include <array>
@@ -15,7 +15,8 @@ namespace states_test {
 
 namespace {
 
-/// Compilers contract multiply–adds differently for each container: 64 steps, a few ulps of 3.
+/// Compilers contract multiply–adds differently for each container. The tolerance covers a few ulps of 3 in
+/// 64 steps.
 constexpr double rounding = 1e-14;
 
 /// A minimal array_state: no arithmetic, no iterators.

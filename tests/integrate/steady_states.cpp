@@ -1,4 +1,4 @@
-// Methods that leave steady states as they are: what the coefficients say, and what a step does.
+// Some methods keep steady states. The coefficients predict which ones, and a step confirms it.
 #include <apsis/method/steady_states.hpp>
 
 #include "support/catalogue.hpp"
@@ -20,8 +20,8 @@ namespace {
 using real = long double;
 using state = std::vector<real>;
 
-/// The relative change in a step from the steady state of u' = T(u) + Q(u)/ε with T(u) = 1 + u/2 and Q(u)/ε =
-/// −10u²: neither vanishes there, and the rate of relaxation is 20u* = 6.8.
+/// Returns the relative change in a step from the steady state of u' = T(u) + Q(u)/ε with T(u) = 1 + u/2 and
+/// Q(u)/ε = −10u². Neither term vanishes there, and the rate of relaxation is 20u* = 6.8.
 real moved(const std::string& method, real dt) {
   auto problem =
       apsis::make_newton_problem<state>([](real, const state& u, state& out) { out[0] = 1 + u[0] / 2; },
@@ -40,7 +40,7 @@ class steady_states : public testing::TestWithParam<std::string> {};
 TEST_P(steady_states, are_left_by_a_step_where_the_coefficients_say_so) {
   const auto m = apsis::to_butcher(apsis::find_method(GetParam()).coefficients<apsis::mp_real>());
   const bool stays = apsis::steady_state_defect(m) < 1e-30;
-  // Steps from ε/10 to 10 ε; Newton's method solves stages to double precision or better.
+  // Steps are from ε/10 to 10 ε. Newton's method solves stages to double precision or better.
   for (const real dt : {0.01L, 0.1L, 1.0L}) {
     if (stays) {
       EXPECT_LT(moved(GetParam(), dt), 1e-13L) << dt;

@@ -1,4 +1,4 @@
-// Step control of methods without an embedded solution: one step against two of half its length.
+// Step control of methods without an embedded solution compares one step with two of half its length.
 #include "support/catalogue.hpp"
 
 #include <apsis/integrate/error_control.hpp>
@@ -35,8 +35,8 @@ const auto distance = [](const state& u, const state& v) {
   return largest;
 };
 
-/// The ODE model of the paper at ε = 1, or u' = −10u² for methods without transport, from data that resolve
-/// every stage: use(problem, start, solution at t = 1).
+/// Calls use(problem, start, solution at t = 1) with the ODE model of the paper at ε = 1. Methods without
+/// transport get u' = −10u².
 template <class Use>
 auto with_problem(const apsis::method& m, const Use& use) {
   if (m.kind == method_kind::implicit_only) {
@@ -68,11 +68,11 @@ TEST_P(every_method_without_embedded_row, keeps_tolerances_over_six_decades) {
       const auto done = apsis::integrate_to_tolerance(march, u, 0.0, 1.0, step_rule<double>::unlimited(),
                                                       control, distance);
       const double error = distance(u, end), p = m.claims.order;
-      // The error of a step is of order p + 1, and that of the whole interval is tolerance^{p/(p+1)} times a
-      // constant of size 1, at most 30; rounding errors of many steps add 1e-13.
+      // The error of a step has order p + 1. The error of the whole interval is tolerance^{p/(p+1)} times a
+      // constant of at most 30. Rounding errors of many steps add 1e-13.
       EXPECT_LT(error, 30 * std::pow(tolerance, p / (p + 1)) + 1e-13) << tolerance;
-      // 100 times more accurate costs 100^{1/(p+1)} times the steps, within factors of 2; short runs, whose
-      // first steps count, may need fewer.
+      // A tolerance 100 times smaller needs 100^{1/(p+1)} times as many steps, within factors of 2. Short
+      // runs may need fewer, because their first steps count.
       const auto steps = static_cast<double>(done.steps);
       if (steps_before > 20) {
         EXPECT_LT(steps / static_cast<double>(steps_before), 2 * std::pow(100.0, 1 / (p + 1))) << tolerance;
@@ -113,7 +113,7 @@ TEST_P(every_method_without_embedded_row, estimates_a_term_of_order_p_plus_1) {
       const auto tried = march.attempt(0.0, dt, u);
       return distance(tried.result, tried.embedded);
     };
-    // Long enough that the difference stays above rounding for order 8.
+    // The step is long enough that the difference stays above rounding for order 8.
     const double dt = m.claims.order > 5 ? 0.25 : 0.02;
     EXPECT_NEAR(std::log2(estimate(dt) / estimate(dt / 2)), m.claims.order + 1,
                 m.claims.order > 5 ? 1.0 : 0.35);
@@ -128,7 +128,7 @@ INSTANTIATE_TEST_SUITE_P(step_doubling, every_method_without_embedded_row,
                          });
 
 TEST(step_doubling, rejects_steps_that_an_explicit_method_cannot_take) {
-  // λ = −1000: with steps beyond 2.8/1000 the two solutions differ by more than the tolerance.
+  // λ = −1000. In steps beyond 2.8/1000 the two solutions differ by more than the tolerance.
   auto problem = apsis::make_newton_problem<state>(
       apsis::no_transport{}, [](const auto& u, auto& out) { out[0] = -1000 * (u[0] - 1); });
   const apsis::method& m = apsis::find_method("kutta-4");

@@ -1,4 +1,5 @@
-// The laws of step_law.hpp: their formula, where they settle, and the oscillations that they damp.
+// The laws of step_law.hpp: their formula, the step at which they settle, and the oscillations
+// that they damp.
 #include <apsis/core/errors.hpp>
 #include <apsis/integrate/any_march.hpp>
 #include <apsis/integrate/error_control.hpp>
@@ -29,12 +30,12 @@ std::string any_law() {
   return *rc::gen::elementOf(apsis::step_law_names());
 }
 
-/// An accepted step.
+/// Length and estimated error of an accepted step.
 struct past_step {
   double dt, error;
 };
 
-/// ln Δt_{n+1} of the last steps, oldest first, from the sum of logarithms.
+/// Returns ln Δt_{n+1} for the last steps, oldest first, as a sum of logarithms.
 double log_of_next(const apsis::step_law& law, const std::vector<past_step>& past, double tolerance,
                    double k) {
   const auto log_factor = [&](std::size_t back) {
@@ -62,12 +63,12 @@ RC_GTEST_PROP(step_law, the_controller_follows_its_formula, ()) {
   std::vector<past_step> past;
   const auto count = *rc::gen::inRange<std::size_t>(1, 6);
   for (std::size_t n = 0; n < count; ++n) {
-    // Errors near the tolerance, so that no limit of the change of a step is active.
+    // The errors are so near the tolerance that no limit of the change of a step is active.
     const past_step one{random_number(0.9, 1.0), tolerance * std::pow(random_number(0.85, 1.0), k)};
     past.push_back(one);
     RC_ASSERT(control.accepts(one.dt, one.error));
   }
-  // Powers of doubles: rounding of some ulp.
+  // Powers of doubles have rounding errors of some ulp.
   RC_ASSERT(std::abs(std::log(control.proposed()) - log_of_next(law, past, tolerance, k)) < 1e-13);
 }
 
@@ -83,7 +84,7 @@ RC_GTEST_PROP(step_law, every_law_settles_where_a_step_has_its_tolerance_with_sa
     dt = control.proposed();
   }
   RC_ASSERT(late_rejections == 0);
-  // The slowest law loses a ninth of the distance in a step.
+  // The slowest law reduces the distance by a ninth in a step.
   RC_ASSERT(std::abs(dt / (0.9 * std::pow(tolerance / constant, 1.0 / k)) - 1.0) < 1e-9);
 }
 
@@ -105,7 +106,8 @@ RC_GTEST_PROP(step_law, a_controller_that_is_saved_continues_with_the_same_bits,
 }
 
 TEST(step_law, proportional_terms_avoid_rejections_where_stability_limits_the_step) {
-  // u' = −300 (u − cos t) − sin t, u(0) = 1: u = cos t. The steps of an explicit method are limited by −300.
+  // u' = −300 (u − cos t) − sin t with u(0) = 1 has the solution u = cos t. The rate −300 limits the steps of
+  // an explicit method.
   using state = std::vector<double>;
   const auto rejections = [](const char* law) {
     auto p = apsis::make_relaxation_problem<state>(

@@ -23,7 +23,7 @@ struct with_known_square : Problem {
   }
 };
 
-/// u' = T(t) − u² with the solution 2 + sin t: T = cos t + (2 + sin t)².
+/// Returns the error for u' = T(t) − u² with the solution 2 + sin t, so T = cos t + (2 + sin t)².
 long double forced_error(const std::string& name, int steps) {
   using real = long double;
   using state = std::vector<real>;
@@ -45,7 +45,7 @@ long double forced_error(const std::string& name, int steps) {
   return error(exact);
 }
 
-/// The same equation in multiprecision, for explicit methods: their errors are soon smaller than rounding
+/// The same equation in multiprecision for explicit methods. Their errors would soon be smaller than rounding
 /// errors of long double.
 struct forced_square {
   using state = apsis::mp_real;
@@ -81,11 +81,11 @@ TEST(stepper, every_method_with_transport_has_its_order_for_time_dependent_trans
     if (kind == apsis::method_kind::implicit_only) continue;
     const int order = apsis::find_certificate(name).order;
     if (kind == apsis::method_kind::explicit_only) {
-      // The first error term of cash-karp-5 is so small that the second is 6 % of it in steps of 1/200.
+      // The first error term of cash-karp-5 is very small. The second is 6 % of it in steps of 1/200.
       EXPECT_NEAR(std::log2(explicit_error(name, 640) / explicit_error(name, 1280)), order, 0.1) << name;
       continue;
     }
-    // The second error term is below 7 % of the first, even where the first is small; rounding in long double
+    // The second error term is below 7 % of the first, even where the first is small. Rounding in long double
     // is far below both, in fifth order with fewer steps.
     const int steps = order < 5 ? 640 : 80;
     const long double slope = std::log2(forced_error(name, steps) / forced_error(name, 2 * steps));
@@ -124,7 +124,7 @@ TEST(time_marcher, without_dt_few_steps_have_equal_length_and_rounding_adds_no_s
   }
   EXPECT_EQ(steps, std::vector<double>(4, 0.25));
   EXPECT_EQ(march.t(), 1.0);
-  // 36000 steps of a length that divides up to rounding: no 36001st.
+  // The interval has 36000 steps of a length that divides it up to rounding. There must be no 36001st step.
   apsis::time_marcher<double> many(0.0, 0.5);
   const double dt = 0.5 / 36000;
   while (!many.done()) many.advance(many.next(dt));
@@ -148,7 +148,7 @@ TEST(time_marcher, without_dt_no_sliver_is_left_and_only_the_last_64_steps_depen
       if (left >= 65.0 * dt) {
         EXPECT_FALSE(march.shaped_by_end(dt)) << trial;
       }
-      // A step of n that share a remainder is shortened by 1/n at most.
+      // If n steps share a remainder, each is shortened by at most 1/n.
       if (left < 64.0 * dt && march.step() >= 64) {
         EXPECT_GE(last, dt * (1.0 - 1.0 / 63.0)) << trial;
       }
@@ -169,7 +169,7 @@ TEST(time_marcher, divides_the_time_between_stops_into_steps_of_one_length) {
       const double first = march.next(dt);
       EXPECT_NEAR(first, every / std::ceil(every / dt * (1.0 - 1e-14)), 1e-15);
       while (!march.done()) {
-        // The same bits, so that methods of several steps need not begin again.
+        // The steps have the same bits, so methods of several steps need not restart.
         EXPECT_EQ(march.next(dt), first) << every << ", " << dt << " at " << march.t();
         march.advance(march.next(dt));
       }
@@ -211,7 +211,7 @@ TEST(time_marcher, is_restored_bitwise_from_a_save) {
 }
 
 TEST(integrate, reports_step_and_time_of_a_failure_and_keeps_the_last_good_state) {
-  // u' = u² in T blows up; the guarded implicit part rejects values that are not finite.
+  // u' = u² in T blows up. The guarded implicit part rejects values that are not finite.
   const auto blow_up = [](double, const std::vector<double>& u, std::vector<double>& out) {
     out[0] = 1e200 * u[0] * u[0];
   };

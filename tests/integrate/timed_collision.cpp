@@ -30,7 +30,7 @@ constexpr auto driven = [](const auto& t, const auto& u, auto& out) {
   out[1] = u[0] * cos(3.0 * t) - u[1] * sin(t);
 };
 
-/// The same with time as third unknown.
+/// The same equation with time as third unknown.
 constexpr auto autonomous = [](const auto& u, auto& out) {
   using std::sin, std::cos;
   const auto off = u[0] - sin(u[2]);
@@ -54,7 +54,7 @@ TEST(timed_collision, derivatives_are_those_of_time_as_an_unknown) {
     field.second_product(u, x, jx, kx);
     with_time.second_product(u3, x3, jx3, kx3);
     for (std::size_t i = 0; i < 2; ++i) {
-      // A dozen roundings of numbers below 100.
+      // The tolerances cover a dozen roundings of numbers below 100.
       RC_ASSERT(std::abs(g[i] - g3[i]) <= 1e-13 && std::abs(g_dot[i] - g_dot3[i]) <= 1e-13);
       RC_ASSERT(std::abs(jx[i] - jx3[i]) <= 1e-13 && std::abs(kx[i] - kx3[i]) <= 1e-12);
     }
@@ -75,7 +75,7 @@ TEST(timed_collision, a_stage_is_that_of_time_as_an_unknown) {
   for (std::size_t i = 0; i < 2; ++i) EXPECT_NEAR(u[i], v[i], 1e-14);
 }
 
-/// Errors at t = 1 of 1/dt equal steps from t = 0.
+/// Returns the solution at t = 1 after equal steps from t = 0.
 template <class P>
 row end_of(const std::string& method, P& problem, long steps, row u) {
   apsis::with_stepper(find_integrator(method), problem, [&](auto march) {
@@ -94,14 +94,15 @@ TEST_P(methods_without_transport, have_their_order_for_g_of_time) {
   const auto& [name, order] = GetParam();
   newton_problem problem(no_transport{}, driven);
   newton_problem with_time(no_transport{}, autonomous);
-  // An explicit method of order 8 with time as an unknown: no code for G of time is used.
+  // The reference is an explicit method of order 8 with time as an unknown. It uses no code for G of time.
   const row exact = end_of("dop853", with_time, 400, {0.5, 1, 0});
   const double coarse = distance(end_of(name, problem, 20, {0.5, 1}), exact),
                fine = distance(end_of(name, problem, 40, {0.5, 1}), exact);
   EXPECT_GT(std::log2(coarse / fine), order - 0.35) << coarse << " " << fine;
 }
 
-// Implicit methods integrate time as part of Q, with ∂Q/∂t in Q̇; the others as part of T. Names, orders.
+// Implicit methods integrate time as part of Q, with ∂Q/∂t in Q̇. The others integrate it as part of T. The
+// values are names and orders.
 INSTANTIATE_TEST_SUITE_P(timed_collision, methods_without_transport,
                          ::testing::Values(std::pair{"imdrk-1-2", 2}, std::pair{"imdrk-3-3", 3},
                                            std::pair{"imdrk-7-4", 4}, std::pair{"imdrk-9-5", 5},
@@ -136,7 +137,7 @@ TEST(timed_collision, transport_and_collision_may_both_depend_on_time) {
 }
 
 TEST(timed_collision, stiff_solutions_that_move_with_time_are_followed_in_long_steps) {
-  // Prothero & Robinson (1974): u' = −λ(u − sin t) + cos t; the stiff solution is sin t for every λ.
+  // Prothero & Robinson (1974): u' = −λ(u − sin t) + cos t. The stiff solution is sin t for every λ.
   for (const double fast : {1e3, 1e6, 1e9, 1e12}) {
     newton_problem problem(no_transport{}, [fast](const auto& t, const auto& u, auto& out) {
       using std::sin, std::cos;
@@ -154,7 +155,7 @@ TEST(timed_collision, stiff_solutions_that_move_with_time_are_followed_in_long_s
   }
 }
 
-/// driven with derivatives by hand.
+/// The equation `driven` with derivatives by hand.
 struct driven_by_hand {
   double t = 0;
   void set_time(double now) { t = now; }

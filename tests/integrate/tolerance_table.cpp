@@ -1,4 +1,5 @@
-// Runs to tolerances with epsilon from 1 to 1e-10: errors, and steps compared with the best equal steps.
+// Runs to tolerances with epsilon from 1 to 1e-10: their errors, and their steps compared with the
+// best equal steps.
 #include "support/catalogue.hpp"
 
 #include <apsis/integrate/tolerance_forecast.hpp>
@@ -26,11 +27,11 @@ const auto distance = [](const state& u, const state& v) {
 
 struct outcome {
   long steps;
-  double error,  ///< at t = 1, relative
+  double error,  ///< relative error at t = 1
       forecast;  ///< forecast of the error of the O(ε) terms
 };
 
-/// The ODE model of the paper from data out of equilibrium.
+/// Runs the ODE model of the paper from data out of equilibrium.
 outcome run_to(const apsis::method& m, double epsilon, double tolerance) {
   static std::map<double, reference::pair> exact;
   if (!exact.contains(epsilon)) exact[epsilon] = reference::radau(epsilon, 1);
@@ -48,8 +49,9 @@ outcome run_to(const apsis::method& m, double epsilon, double tolerance) {
           distance(u, {static_cast<double>(solution[0]), static_cast<double>(solution[1])}), expected.error};
 }
 
-/// Errors of equal steps of all lengths, with a graded start and without: (number of steps, largest error of
-/// all numbers of steps within a quarter of it), so that zero crossings of the error do not count.
+/// Returns pairs of a number of equal steps and an error, with a graded start or without. The error is the
+/// largest of all numbers of steps within a quarter of this number, so that zero crossings of the error do
+/// not count.
 std::vector<std::pair<long, double>> fixed_steps(const apsis::method& m, double epsilon, bool graded,
                                                  long most) {
   const auto exact = reference::radau(epsilon, 1);
@@ -73,9 +75,9 @@ std::vector<std::pair<long, double>> fixed_steps(const apsis::method& m, double 
   return largest;
 }
 
-/// Requires an error within a factor of 30 of the tolerance, and at most 3 times the steps of the best equal
-/// steps of that error, up to `most`: 2 are wanted, the largest measured is 2.9 (see docs/methods.md for
-/// where). Runs of three steps cannot be coarser, and may be more accurate.
+/// Requires an error within a factor of 30 of the tolerance. Requires at most 3 times the steps of the best
+/// equal steps with that error, up to `most`. The factor 2 is wanted; the largest measured is 2.9
+/// (docs/methods.md shows where). Runs of three steps cannot be coarser, and may be more accurate.
 void check_against_fixed_steps(const std::string& name, double epsilon, long most) {
   const apsis::method& m = apsis::find_method(name);
   auto fixed = fixed_steps(m, epsilon, false, most);
@@ -86,8 +88,7 @@ void check_against_fixed_steps(const std::string& name, double epsilon, long mos
     const auto trace = ::testing::Message() << name << ", epsilon " << epsilon << ", tolerance " << tolerance
                                             << ": " << now.steps << " steps, error " << now.error;
     EXPECT_LE(now.error, 30 * tolerance) << trace;
-    // The error of one number of steps may be near a zero. Equal steps count with neighbouring numbers of
-    // steps.
+    // The error of one number of steps may be near a zero, so neighbouring numbers of equal steps count too.
     double typical = now.error;
     for (const auto& [steps, error] : fixed)
       if (5 * steps >= 4 * now.steps && 4 * steps <= 5 * now.steps) typical = std::max(typical, error);
@@ -103,9 +104,9 @@ void check_against_fixed_steps(const std::string& name, double epsilon, long mos
   }
 }
 
-/// Errors stay within a factor of 30 of the tolerance, of 100 for one method: of the three exceptions in
-/// docs/methods.md#tolerances-and-equal-steps, those at tolerances down to 1e-7. From tolerances below the
-/// forecast of the terms of size ε, steps resolve ε/C.
+/// Requires errors within a factor of 30 of the tolerance, and of 100 for one method.
+/// docs/methods.md#tolerances-and-equal-steps has three exceptions. This is the one at tolerances down to
+/// 1e-7. At tolerances below the forecast of the terms of size ε, steps resolve ε/C.
 void check_all_tolerances(const std::string& name, double epsilon) {
   const apsis::method& m = apsis::find_method(name);
   for (const double tolerance : {1e-3, 1e-4, 1e-5, 1e-6, 1e-7}) {
@@ -116,7 +117,7 @@ void check_all_tolerances(const std::string& name, double epsilon) {
   }
 }
 
-/// The same for the number of steps from data near equilibrium, without a layer.
+/// Bounds the number of steps from data near equilibrium, without a layer.
 void check_steps_near_equilibrium(const std::string& name, double epsilon) {
   const apsis::method& m = apsis::find_method(name);
   long before = 0;
@@ -166,8 +167,8 @@ TEST(steps_near_equilibrium, grow_by_at_most_30_per_decade_of_the_tolerance_in_t
 }
 
 TEST(global_error, scales_with_the_tolerance_to_the_power_p_over_q_plus_1) {
-  // In the limit and where ε is resolved; plateaus intervene in between. Slopes over three decades differ
-  // from the asymptotic ones by up to 0.2, because steps of fourth order are still long.
+  // The slopes hold in the limit and where ε is resolved, but not on the plateaus in between. Over three
+  // decades they differ from the asymptotic ones by up to 0.2, because steps of fourth order are still long.
   for (const auto& name :
        {"md-imex-3-2", "md-imex-8-3-mixed", "md-imex-8-3-accurate", "md-imex-14-4-accurate"}) {
     const apsis::method& m = apsis::find_method(name);

@@ -1,5 +1,5 @@
-// Two-step methods through integrate(): observed orders, the limit ε → 0, the error of the O(ε) terms where
-// ε ~ Δt, positivity, certificates and refusals.
+// Two-step methods in integrate(): observed orders, the limit ε → 0, the error of the O(ε) terms where ε ~
+// Δt, positivity, certificates and refusals.
 #include <apsis/integrate/kinds/two_step.hpp>
 
 #include <apsis/core/errors.hpp>
@@ -34,12 +34,12 @@ const apsis::method& starter() {
   return apsis::find_method("md-imex-10-3-mixed");
 }
 
-/// Returns the rows of a two-step method, as in its file.
+/// Returns the rows of a two-step method as its file has them.
 const apsis::method& rows_of(const std::string& name) {
   return *apsis::find_integrator(name).file();
 }
 
-/// Kaps' problem with ε = 1, whose solution from (1, 1) is u1 = e^{−t}, u2 = u1².
+/// Returns the error for Kaps' problem with ε = 1, whose solution from (1, 1) is u1 = e^{−t}, u2 = u1².
 real error_of(const apsis::method& m, long steps) {
   auto problem = apsis::make_relaxation_problem<state>(
       [](real, const state& u, state& out) { out = {u[1] - u[0] - u[0] * u[0], -2 * u[1]}; },
@@ -55,7 +55,7 @@ TEST(two_step, observed_order_is_the_claimed_one) {
   ASSERT_FALSE(apsis::integrator_names("two-step").empty());
   for (const auto& name : apsis::integrator_names("two-step")) {
     const auto m = rows_of(name);
-    // The second error term is a tenth of the first at these steps.
+    // At these steps the second error term is a tenth of the first.
     EXPECT_NEAR(static_cast<double>(std::log2(error_of(m, 256) / error_of(m, 512))), m.claims.order, 0.15)
         << name;
   }
@@ -63,7 +63,7 @@ TEST(two_step, observed_order_is_the_claimed_one) {
 
 TEST(two_step, has_its_order_in_the_limit_from_data_out_of_equilibrium) {
   const auto exact = reference::limit(1);
-  // A list: clang-19 -O1 converts 256L << i to a long double that is NaN.
+  // The steps are a list, because clang-19 -O1 converts 256L << i to a long double that is NaN.
   constexpr long steps[] = {256, 512};
   for (const auto& name : apsis::integrator_names("two-step")) {
     const auto m = rows_of(name);
@@ -76,13 +76,13 @@ TEST(two_step, has_its_order_in_the_limit_from_data_out_of_equilibrium) {
       moment[i] = std::abs(u[0] - exact[0]);
       rest[i] = std::abs(u[1] - exact[1]);
     }
-    // The second error term is a tenth of the first at these steps; ε is below every error.
+    // At these steps the second error term is a tenth of the first, and ε is below every error.
     EXPECT_NEAR(static_cast<double>(std::log2(moment[0] / moment[1])), m.claims.order, 0.2) << name;
     EXPECT_NEAR(static_cast<double>(std::log2(rest[0] / rest[1])), m.claims.order, 0.2) << name;
   }
 }
 
-// T depends on t: every row evaluates it at its own time.
+// T depends on t, and every row evaluates it at its own time.
 TEST(two_step, integrates_polynomials_below_its_order_exactly) {
   for (const auto& name : apsis::integrator_names("two-step")) {
     const auto m = rows_of(name);
@@ -94,13 +94,13 @@ TEST(two_step, integrates_polynomials_below_its_order_exactly) {
     apsis::two_step march(m, starter(), problem);
     state u{0, 0};
     apsis::integrate(march, u, real(0), real(1), equal(16));
-    // Sums of 16 steps of some 50 products below 1.
+    // The result is a sum of 16 steps with some 50 products below 1.
     EXPECT_LE(std::abs(u[0] - 1), 1e-17L) << name;
   }
 }
 
-/// Rate of a moment that the deviation from equilibrium v = ε changes, w' = v, v' = 1 − v/ε, relative to the
-/// exact one ε, in the steady state of a run with Δt = zε.
+/// For w' = v, v' = 1 − v/ε the deviation v = ε from equilibrium changes the moment w. Returns its rate in
+/// the steady state of a run with Δt = zε, relative to the exact rate ε.
 real observed_flux(const apsis::method& m, real z) {
   const real epsilon = 1 / z;
   auto problem = apsis::make_relaxation_problem<state>(
@@ -123,10 +123,10 @@ TEST(two_step, flux_of_a_run_is_the_certified_one_at_every_z) {
     const auto form = m.coefficients<real>();
     for (const real z : {0.1L, 1.0L, 3.0L, 10.0L, 100.0L}) {
       const real flux = apsis::two_step_at_finite_rate(form, z).flux;
-      // 400 sums of numbers up to 400ε are differenced.
+      // The rate is a difference of sums of 400 numbers, up to 400ε.
       EXPECT_NEAR(static_cast<double>(observed_flux(m, z) - flux), 0.0, 1e-13) << name << " " << z;
     }
-    // Where the band has its maximum, flux differs from 1 by that much.
+    // At the maximum of the band the flux differs from 1 by the error of the band times z.
     const auto band = apsis::certify_two_step(m).band;
     EXPECT_NEAR(static_cast<double>(std::abs(observed_flux(m, static_cast<real>(band.at)) - 1)),
                 band.error * band.at, 1e-3 * band.error * band.at)
@@ -134,8 +134,8 @@ TEST(two_step, flux_of_a_run_is_the_certified_one_at_every_z) {
   }
 }
 
-/// Smallest value of upwind differences for a step function that relaxes to itself, which is nonnegative for
-/// forward Euler steps up to Δx.
+/// Returns the smallest value of upwind differences for a step function that is in equilibrium. Forward Euler
+/// steps up to Δx are nonnegative.
 real smallest_value(const apsis::method& m, real step) {
   constexpr std::size_t cells = 40;
   auto problem = apsis::make_relaxation_problem<state>(
@@ -149,7 +149,7 @@ real smallest_value(const apsis::method& m, real step) {
   state u(cells);
   for (std::size_t i = 10; i < 20; ++i) u[i] = 1;
   real smallest = 1;
-  // The first two steps are those of the starter, at half of its r.
+  // The starter takes the first two steps, at half of its r.
   const real first = real(0.5) * march.starter().r();
   state before = u;
   march.starter().step(0, first, u);
@@ -170,7 +170,7 @@ TEST(two_step, is_positive_up_to_r_and_not_far_above) {
     const auto m = rows_of(name);
     const real r = m.coefficients<real>().r;
     EXPECT_GE(smallest_value(m, r), 0) << name;
-    // The r of the form is a lower bound of the largest step.
+    // The r of the form is only a lower bound of the largest step.
     EXPECT_LT(smallest_value(m, 6 * r), 0) << name;
   }
 }

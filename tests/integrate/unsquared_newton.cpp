@@ -1,5 +1,5 @@
-// Stages whose fast directions are 1e6 to 1e16 times as fast as the step: the slow directions must not be
-// lost in the rounding errors of (Δt λ)², and where they are, the stage must be refused.
+// Stages with fast directions 1e6 to 1e16 times as fast as the step. The rounding errors of (Δt λ)² must not
+// hide the slow directions. Where they do, the stage must be refused.
 #include <apsis/core/errors.hpp>
 #include <apsis/integrate/error_control.hpp>
 #include <apsis/integrate/newton_problem.hpp>
@@ -36,7 +36,7 @@ constexpr auto robertson = [](const auto& v, auto& out) {
   out[2] = third;
 };
 
-/// Largest difference relative to |u_k| + absolute_k.
+/// Returns the largest difference relative to |u_k| + absolute_k.
 auto relative_to(row absolute) {
   return [absolute](const row& u, const row& v) {
     double largest = 0.0;
@@ -46,7 +46,7 @@ auto relative_to(row absolute) {
   };
 }
 
-/// Integrates u' = G(u) to a tolerance; returns the number of accepted and rejected steps.
+/// Integrates u' = G(u) to a tolerance, and returns the number of accepted and rejected steps.
 template <class G>
 long integrate(const std::string& method, const G& g, row& u, double end, double tolerance,
                const row& absolute) {
@@ -64,15 +64,15 @@ class every_two_derivative_method : public ::testing::TestWithParam<std::string>
 
 TEST_P(every_two_derivative_method, follows_robertson_to_any_time) {
   if (!reference::has_cvode) GTEST_SKIP() << "SUNDIALS was not found";
-  // Errors at the end are at most 40 tolerances for these methods; a frozen stage leaves errors from 0.3 to
-  // 1000 times the solution.
+  // Errors at the end are at most 40 tolerances for these methods. A frozen stage would leave errors from 0.3
+  // to 1000 times the solution.
   const double tolerance = 1e-5;
   for (const double end : {4e5, 4e7, 4e10, 4e11}) {
     row u{1, 0, 0};
     EXPECT_LT(integrate(GetParam(), robertson, u, end, tolerance, {1e-12, 1e-18, 1e-12}), 6000);
     const auto exact = reference::cvode_robertson(end);
     for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(u[k] / exact[k], 1, 40 * tolerance) << end << " " << k;
-    // A thousand steps of nine stages, each with an error of a rounding or two in the sum.
+    // There are a thousand steps of nine stages. Each changes the sum by one or two rounding errors.
     EXPECT_NEAR(u[0] + u[1] + u[2], 1, 1e-13) << end;
   }
 }
@@ -96,8 +96,8 @@ TEST(unsquared_newton, reaches_the_published_end_of_robertson_s_problem) {
 }
 
 TEST(unsquared_newton, a_single_stage_far_beyond_the_fast_time_is_not_frozen) {
-  // v₀ and v₁ of the slow manifold at t = 1e6 are far from those of the stage, and the residual at the start
-  // is within its rounding errors. Its solution from elimination: with k = G(v), v = u + a k + b G'(v) k.
+  // On the slow manifold at t = 1e6, v₀ and v₁ are far from those of the stage. The residual at the start is
+  // within its rounding errors. Elimination solves v = u + a k + b G'(v) k with k = G(v).
   row u{0.002035, 8.16e-9, 0.997965 - 8.16e-9};
   const double a = 0.5e7, b = -0.125e14;
   newton_problem problem(no_transport{}, robertson);
@@ -117,7 +117,7 @@ TEST(unsquared_newton, a_single_stage_far_beyond_the_fast_time_is_not_frozen) {
   EXPECT_NEAR(v[0] + v[1] + v[2], u[0] + u[1] + u[2], 1e-15);
 }
 
-/// u' = S diag(rates) S⁻¹ u for a rotation S: no component is fast or slow alone.
+/// u' = S diag(rates) S⁻¹ u for a rotation S. No single component is fast or slow.
 struct rotated {
   double fast, slow, angle;
   template <class U, class V>
@@ -140,7 +140,7 @@ TEST(unsquared_newton, mixed_fast_and_conserved_directions_stay_apart) {
     const double a = uniform(0.1, 1), b = random_input::one_in(3) ? 0.0 : -uniform(0.1, 1);
     row u = g.state(1, 2);
     problem.solve_collision(0, a, b, u);
-    // The problem itself, rounded to double precision, is known to 1e-16 of Δt λ.
+    // Rounding the problem itself to double precision changes it by 1e-16 of Δt λ.
     RC_ASSERT(std::abs(g.slow_part(u) - 2 / (1 + a * g.slow - b * g.slow * g.slow)) <=
               2e-10 + 1e-15 * g.fast);
   });
@@ -168,8 +168,9 @@ TEST(unsquared_newton, steps_are_controlled_whatever_the_fastest_rate) {
 }
 
 TEST(unsquared_newton, van_der_pol_tends_to_its_limit_for_large_mu) {
-  // ε = 1/μ → 0: u' = u/(1 − u²) from |u| = 2 to 1, which takes 3/2 − ln 2, and jumps to −2 sgn u. After two
-  // jumps ln u − u²/2 = ln 2 − 2 + t − 2(3/2 − ln 2), here by bisection. Jumps cost O(ε^{2/3}).
+  // The limit ε = 1/μ → 0 is u' = u/(1 − u²) from |u| = 2 to 1, which takes 3/2 − ln 2, and jumps to −2 sgn
+  // u. After two jumps ln u − u²/2 = ln 2 − 2 + t − 2(3/2 − ln 2), solved here by bisection. Jumps change the
+  // solution by O(ε^{2/3}).
   const double value = 3 * std::log(2.0) - 3;
   double low = 1, high = 2;
   for (int k = 0; k < 60; ++k) {
@@ -190,7 +191,8 @@ TEST(unsquared_newton, van_der_pol_tends_to_its_limit_for_large_mu) {
 }
 
 TEST(unsquared_newton, small_unknowns_are_solved_to_their_own_rounding) {
-  // The residual of the large unknown is a million times the small one; G couples them by its square.
+  // The residual of the large unknown is a million times the small one. G couples them by the square of the
+  // small one.
   const auto g = [](const auto& u, auto& out) {
     out[0] = -1.0 * u[0];
     out[1] = 1e-20 * u[0] - u[1] - 1e18 * u[1] * u[1];
@@ -203,7 +205,7 @@ TEST(unsquared_newton, small_unknowns_are_solved_to_their_own_rounding) {
   EXPECT_NEAR(v[1] * 1e18, std::sqrt(2.005) - 1, 1e-14);
 }
 
-/// Derivatives by hand, and a count of their use.
+/// Derivatives by hand, which count their calls.
 struct decay_by_hand {
   int* products;
   void value(std::span<const double> u, std::span<double> out) const {
@@ -222,8 +224,8 @@ struct decay_by_hand {
   }
 };
 
-// One of two rates vanishes: where rounding errors of the linear solve counted as its size, one run in five
-// ended without a solution.
+// One of two rates vanishes. Once, rounding errors of the linear solve counted as its size, and one run in
+// five ended without a solution.
 TEST(unsquared_newton, ends_where_a_rate_vanishes) {
   for (const char* method : {"md-imex-6-3", "md-imex-16-4-accurate"})
     for (const double epsilon : {1e-6, 1e-8, 1e-10})
@@ -236,7 +238,7 @@ TEST(unsquared_newton, ends_where_a_rate_vanishes) {
         const auto rule = apsis::step_rule<double>::fixed(1.0 / 64);
         apsis::integrate(march, u, 0.0, 1.0, rule);
         apsis::integrate(closed, expected, 0.0, 1.0, rule);
-        // Roundings of 64 steps, of about 16 stages each, are below 1e-13.
+        // There are 64 steps of about 16 stages. Their rounding errors are below 1e-13.
         EXPECT_NEAR(u[0], expected[0], 1e-12) << method << ", epsilon " << epsilon << ", " << k;
         EXPECT_NEAR(u[1], expected[1], 1e-12) << method << ", epsilon " << epsilon << ", " << k;
       }

@@ -1,5 +1,4 @@
-// combine() and project_to_equilibrium(): of problems that define them, and the defaults for those that do
-// not.
+// combine() and project_to_equilibrium() of problems that define them, and the defaults for other problems.
 #include <apsis/integrate/verbs.hpp>
 
 #include <apsis/core/errors.hpp>
@@ -28,7 +27,7 @@ struct pair_state {
   double first = 0.0, second = 0.0;
 };
 
-/// q relaxes to p² with the rate 2/ε; T must not be evaluated.
+/// q relaxes to p² with the rate 2/ε. T must not be evaluated.
 template <class State>
 struct without_verbs {
   using state = State;

@@ -2,7 +2,7 @@
 // digits? The coefficients predict these terms (docs/plateaus.md).
 // The problem is u1' = s(u1) u2, u2' = k(u1) + C(u1)(E(u1) − u2)/ε from u1 = 0. With linear s, k, C and
 // quadratic E every elementary differential is a product of slopes:
-// f = sE, g = E'f − k, Ψ = s/C;  f' = s'E + E', g'f = (E''E + E'f' − k')E, E''(f, f) = E''E², Ψ' = s' − C'.
+//   f = sE, g = E'f − k, Ψ = s/C;  f' = s'E + E', g'f = (E''E + E'f' − k')E, E''(f, f) = E''E², Ψ' = s' − C'.
 #include "support/catalogue.hpp"
 
 #include <apsis/integrate/problem.hpp>

@@ -1,4 +1,4 @@
-// Cells that bodies cut: volumes and areas against exact ones, closed surfaces, small cells.
+// Cells that bodies cut: exact volumes and areas, closed surfaces, small cells.
 #include <apsis/mesh/cut_cells.hpp>
 
 #include <apsis/core/errors.hpp>
@@ -19,17 +19,17 @@
 namespace cut_cells_test {
 
 TEST(cut_cells, of_a_half_space_have_exact_volumes_and_centroids) {
-  // A plane is cut without error, wherever it lies.
+  // The cut of a plane is exact at any position.
   for (const double angle : {0.0, 0.3, std::numbers::pi / 4, 2.0, 4.4}) {
     const grid mesh = plane(9);
     const std::array<double, 3> n = {std::cos(angle), std::sin(angle), 0.0};
     const cut_cells cut(mesh, {half_space(n, 0.123)}, closed);
     expect_sound(mesh, cut);
-    // The gas of the square, by the fine sum of a clipped line.
+    // The volume of gas of the square is a fine sum over the clipped parts of lines.
     double volume = 0.0, moment = 0.0;
     constexpr int fine = 20000;
     for (int k = 0; k < fine; ++k) {
-      // Lines along x or y, whichever the plane crosses.
+      // The lines run along x or along y, so that the plane crosses them.
       const bool along_x = std::abs(n[0]) > std::abs(n[1]);
       const double other = -2.0 + 4.0 * (k + 0.5) / fine, a = along_x ? n[0] : n[1],
                    b = along_x ? n[1] : n[0];
@@ -38,7 +38,7 @@ TEST(cut_cells, of_a_half_space_have_exact_volumes_and_centroids) {
       volume += (to - from) * 4.0 / fine;
       moment += (along_x ? 0.5 * (to * to - from * from) : (to - from) * other) * 4.0 / fine;
     }
-    EXPECT_NEAR(gas_volume(mesh, cut), volume, 1e-6) << angle;  // of the fine sum
+    EXPECT_NEAR(gas_volume(mesh, cut), volume, 1e-6) << angle;  // error of the fine sum
     double found = 0.0;
     for (int cell = 0; cell < mesh.size(); ++cell)
       if (cut.group_of(cell) < 0 && cut.body_of(cell) < 0) found += mesh.cell_volume() * mesh.centre(cell)[0];
@@ -50,7 +50,7 @@ TEST(cut_cells, of_a_half_space_have_exact_volumes_and_centroids) {
 }
 
 TEST(cut_cells, of_a_half_space_in_space_have_exact_volumes) {
-  // The plane goes through the middle of the cube, and leaves half of it.
+  // The plane passes through the middle of the cube, so half of it remains.
   const grid mesh = space(7);
   for (const std::array<double, 3>& n :
        {std::array{1.0, 0.0, 0.0}, {0.6, 0.8, 0.0}, {1.0 / 3, 2.0 / 3, 2.0 / 3}, {0.48, -0.6, 0.64}}) {
@@ -77,7 +77,8 @@ TEST(cut_cells, of_discs_have_volumes_and_lengths_of_second_order) {
     volume = of_volume;
     length = of_length;
   }
-  // Chords of h are short by (h/R)²/24 of their length; those of cells are between 0 and √2 h long.
+  // A chord of length h is shorter than its arc by a share (h/R)²/24. Chords of cells have lengths between 0
+  // and √2 h.
   const double h = 4.0 / 80;
   EXPECT_LT(std::abs(length), 2.0 * std::numbers::pi * h * h / 24 * 2.0);
 }
@@ -97,7 +98,7 @@ TEST(cut_cells, of_balls_have_volumes_and_areas_of_second_order) {
     volume = of_volume;
     area = of_area;
   }
-  // The chords of a cell of size h lie within h²/(8R)·2 of the ball.
+  // The chords of a cell of size h are within 2 h²/(8R) of the ball.
   EXPECT_LT(std::abs(volume), 4.0 * std::numbers::pi / (24.0 * 24.0 / 4.0 * 4.0));
 }
 
@@ -113,12 +114,12 @@ TEST(cut_cells, close_the_surface_of_every_body) {
         length += wall.area;
         for (std::size_t k = 0; k < 2; ++k) sum[k] += wall.area * wall.normal[k];
       }
-    // Chords of the disc are shorter than arcs by (h/r)^2/24 of them. At a sharp corner a chord is shorter
+    // Chords of the disc are shorter than arcs by a share (h/r)²/24. At a sharp corner a chord is shorter
     // than its two legs by some 0.6 h.
     EXPECT_NEAR(length, body == 0 ? std::numbers::pi : 4.8, body == 0 ? 0.008 : 2.4 * mesh.spacing(0));
     for (const double x : sum) EXPECT_NEAR(x, 0.0, 1e-14);
   }
-  // Sharp corners are cut by a chord: an error of the size of a cell at each of them.
+  // A chord cuts off each sharp corner. The error at a corner is at most the size of a cell.
   const double exact = 16.0 - 0.25 * std::numbers::pi - 1.44;
   EXPECT_NEAR(gas_volume(mesh, cut), exact, 4.0 * mesh.cell_volume());
 }
@@ -129,7 +130,7 @@ TEST(cut_cells, have_points_of_walls_on_the_surface) {
   const cut_cells cut(mesh, {phi}, closed);
   for (const auto& wall : cut.walls()) {
     EXPECT_NEAR(phi(wall.middle), 0.0, 1e-12);
-    // The normal is that of a chord: parallel to the radius up to the angle of half a chord.
+    // The normal is that of a chord. Its angle to the radius is at most half the angle of the chord.
     const double dot = (wall.middle[0] - 0.05) * wall.normal[0] + (wall.middle[1] - 0.02) * wall.normal[1];
     EXPECT_GT(dot / 1.3, 1.0 - 0.01);
   }
@@ -145,7 +146,7 @@ TEST(cut_cells, leave_boxes_on_edges_of_cells_whole) {
 }
 
 TEST(cut_cells, have_walls_along_a_surface_through_corners_of_cells) {
-  // Cells of 1/4, whose corners are exact zeros: every face is open or closed.
+  // In cells of size 1/4, φ is exactly 0 at corners. Every face is then open or closed.
   const grid mesh = plane(16);
   for (const double sign : {1.0, -1.0}) {
     const cut_cells cut(mesh, {half_space({1.0, sign, 0}, 0.0)}, closed);
@@ -162,7 +163,8 @@ TEST(cut_cells, have_walls_along_a_surface_through_corners_of_cells) {
   const cut_cells cut(deep, {half_space({1, 0, 1}, 0.0)}, closed);
   EXPECT_EQ(gas_volume(deep, cut), 32.0);
   EXPECT_NEAR(wall_area(cut), 16.0 * std::numbers::sqrt2, 1e-13);
-  // Its points (0.6, 0.8) are corners of cells. Chords are shorter than arcs by (h/r)^2/24 of them.
+  // The points (±0.6, ±0.8) and (±0.8, ±0.6) of the circle are corners of cells. Chords are shorter than arcs
+  // by a share (h/r)²/24.
   EXPECT_NEAR(wall_area(cut_cells(plane(20), {disc(0, 0, 1)}, closed)), 2.0 * std::numbers::pi, 0.02);
 }
 
@@ -181,7 +183,7 @@ TEST(cut_cells, have_no_slivers_where_a_body_touches_an_edge) {
 TEST(cut_cells, see_the_same_body_across_periodic_faces) {
   const grid mesh = plane(24);
   const std::array<bool, 3> periodic = {true, true, false};
-  // The disc lies across a corner of the domain: four parts of it, at the four corners.
+  // The disc lies across a corner of the domain, with a part at each of the four corners.
   outside_function images = [](const position& x) {
     double least = 10.0;
     for (const double a : {-2.0, 2.0})
@@ -258,7 +260,7 @@ TEST(cut_cells, of_random_bodies_in_space_are_sound) {
 }
 
 TEST(cut_cells, have_mirrored_walls_where_corners_of_cells_lie_on_the_surface) {
-  // Corners at (±0.6, ±0.8) and (±0.8, ±0.6): φ is rounding there, of any sign.
+  // Corners lie at (±0.6, ±0.8) and (±0.8, ±0.6). There φ is a rounding error of any sign.
   const cut_cells cut(plane(20), {disc(0, 0, 1)}, closed);
   std::array<double, 4> areas{};
   std::array<int, 4> pieces{};
@@ -288,7 +290,7 @@ TEST(cut_cells, refuse_functions_that_are_no_bodies) {
 }
 
 TEST(cut_cells, have_walls_of_solid_boxes_next_to_them) {
-  // A box on edges of cells beside a disc that overlaps it.
+  // A box on edges of cells overlaps a disc.
   const grid mesh = plane(16).with_solids({{{4, 4, 0}, {4, 4, 1}}});
   const cut_cells cut(mesh, {disc(0.2, -0.4, 0.9)}, closed);
   expect_sound(mesh, cut);

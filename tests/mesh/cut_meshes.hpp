@@ -1,6 +1,6 @@
 #pragma once
 
-// Bodies and meshes of the tests of cut cells, and the properties of every cut mesh.
+// Bodies and meshes for tests of cut cells, and properties of every cut mesh.
 #include <apsis/core/index.hpp>
 #include <apsis/mesh/cut_cells.hpp>
 
@@ -28,12 +28,12 @@ inline outside_function ball(double x, double y, double z, double r) {
   return [=](const position& at) { return std::hypot(at[0] - x, at[1] - y, at[2] - z) - r; };
 }
 
-/// The body lies where n·x < c.
+/// Returns the body with n·x < c.
 inline outside_function half_space(std::array<double, 3> n, double c) {
   return [=](const position& at) { return n[0] * at[0] + n[1] * at[1] + n[2] * at[2] - c; };
 }
 
-/// A square of side 2a about (x, y), turned by an angle.
+/// Returns a square of side 2a about (x, y), turned by an angle.
 inline outside_function turned_square(double x, double y, double a, double angle) {
   return [=](const position& at) {
     const double c = std::cos(angle), s = std::sin(angle), dx = at[0] - x, dy = at[1] - y;
@@ -82,7 +82,7 @@ inline double defect_of_closure(const cut_cells& cut) {
   return most;
 }
 
-/// Whether every group is large enough, its volumes are those of its cells, and it is closed.
+/// Expects that every group is large enough and closed, and that its volume is that of its cells.
 inline void expect_sound(const grid& mesh, const cut_cells& cut) {
   const double area = std::pow(mesh.spacing(0), mesh.dimensions() - 1);
   EXPECT_LT(defect_of_closure(cut), 1e-13 * area);  // sums of some ten areas of this size
@@ -99,7 +99,7 @@ inline void expect_sound(const grid& mesh, const cut_cells& cut) {
   for (const auto& face : cut.faces()) EXPECT_GT(face.area, 0.0);
 }
 
-/// Returns how often a quantity is smaller when the mesh has twice as many cells.
+/// Returns the observed order, log2 of the ratio of two errors. The fine mesh has twice as many cells.
 inline double order_of(double coarse, double fine) {
   return std::log2(std::abs(coarse) / std::abs(fine));
 }

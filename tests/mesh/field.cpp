@@ -1,4 +1,4 @@
-// Storage of rows: padding, alignment, copies, and memory that the host cannot follow pointers into.
+// Storage of rows: padding, alignment, copies, and memory of a device.
 #include <apsis/mesh/field.hpp>
 
 #include <apsis/exec/aligned.hpp>
@@ -22,8 +22,8 @@ using apsis::field;
 
 namespace {
 
-/// Pages that only the functions of this space can read and write: whoever follows a pointer into them ends
-/// with a segmentation fault, as with memory of a device.
+/// Pages that only the functions of this space can read and write. Any other access ends with a segmentation
+/// fault, as with memory of a device.
 class locked_memory : public apsis::memory_space {
  public:
   ~locked_memory() override { EXPECT_TRUE(sizes_.empty()) << "numbers were not released"; }
@@ -67,8 +67,7 @@ class locked_memory : public apsis::memory_space {
   mutable std::map<double*, std::size_t> sizes_;
 };
 
-/// A field whose numbers differ in every bit that matters: signed zeros, subnormals and infinities among
-/// them.
+/// Returns a field with signed zeros, subnormal and infinite numbers among others.
 field numbered(int cells, int components) {
   field u(cells, components);
   constexpr std::array special = {-0.0, 5e-324, std::numeric_limits<double>::infinity(), -1.0 / 3};
@@ -81,7 +80,7 @@ field numbered(int cells, int components) {
   return u;
 }
 
-/// Whether two fields on the host have the same bits.
+/// Returns true if two fields on the host have the same bits.
 bool same(const field& a, const field& b) {
   return a.cells() == b.cells() && a.components() == b.components() &&
          std::memcmp(a.row(0), b.row(0), a.size() * sizeof(double)) == 0;

@@ -1,4 +1,4 @@
-// Cells in space: pencils, blocks, sizes, and what is no mesh.
+// Cells in space: pencils, blocks, sizes, and meshes that are refused.
 #include <apsis/mesh/grid.hpp>
 
 #include <apsis/core/errors.hpp>
@@ -20,7 +20,7 @@ TEST(grid, pencils_of_every_direction_visit_every_cell_once) {
       for (int i = 0; i < mesh.cells(direction); ++i) {
         const int cell = mesh.first_cell(direction, p) + i * mesh.stride(direction);
         EXPECT_TRUE(seen.insert(cell).second);
-        // The coordinate along the direction is that of the i-th cell.
+        // The i-th cell of a pencil has the i-th coordinate.
         EXPECT_DOUBLE_EQ(mesh.centre(cell, direction), mesh.spacing(direction) * (i + 0.5));
       }
     EXPECT_EQ(static_cast<int>(seen.size()), mesh.size());

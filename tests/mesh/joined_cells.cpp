@@ -21,10 +21,10 @@ std::size_t largest_group(const cut_cells& cut) {
   return most;
 }
 
-/// Sorted (x, y, volume) of the groups, with these signs of x and y.
+/// Returns sorted triples (x, y, volume) of the groups, with these signs of x and y.
 std::vector<std::array<double, 3>> placed_groups(const cut_cells& cut, double sign_x, double sign_y) {
   std::vector<std::array<double, 3>> all;
-  // Rounding must not change the order.
+  // Rounding errors must not change the order.
   const auto rounded = [](double x) { return std::round(x * 1e9) * 1e-9; };
   for (const auto& group : cut.groups())
     all.push_back(
@@ -35,7 +35,7 @@ std::vector<std::array<double, 3>> placed_groups(const cut_cells& cut, double si
 
 }  // namespace
 
-/// The triangles along a wall at 45° have two equal open faces, to neighbours that they share.
+/// Triangles along a wall at 45° have two equal open faces. Two triangles share each of these neighbours.
 TEST(joined_cells, along_a_diagonal_wall_are_few) {
   constexpr double r = 0.5 * std::numbers::sqrt2;
   for (const double offset : {0.01, 0.02, 0.05, 0.1, 0.15}) {
@@ -73,8 +73,8 @@ TEST(joined_cells, of_a_body_with_diagonal_walls_are_mirrored) {
   }
 }
 
-/// A wall that halves a cell from corner to corner has the outflow 1 up to rounding: corners at (0.6, 0.8)
-/// and (0.8, 0.6) lie on the circle.
+/// A wall that halves a cell from corner to corner has the outflow 1 up to rounding. The corners at (0.6,
+/// 0.8) and (0.8, 0.6) lie on the circle.
 TEST(joined_cells, do_not_depend_on_rounding_where_a_wall_halves_a_cell) {
   for (const auto& [n, end] : {std::pair{20, 2.0}, {30, 3.0}, {70, 7.0}}) {
     const cut_cells cut(plane(n, -end, end), {disc(0, 0, 1)}, closed);

@@ -1,4 +1,4 @@
-// Pencils cut at solid boxes.
+// Solid boxes cut pencils into segments.
 #include <apsis/mesh/segments.hpp>
 
 #include <apsis/core/errors.hpp>
@@ -39,7 +39,7 @@ grid random_mesh() {
   }
 }
 
-/// Number of a cell from its indices.
+/// Returns the number of a cell with these indices.
 int number_of(const grid& mesh, const std::array<int, 3>& at) {
   return (at[0] * mesh.cells(1) + at[1]) * mesh.cells(2) + at[2];
 }

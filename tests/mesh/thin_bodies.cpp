@@ -1,5 +1,5 @@
-// Bodies with edges, tips and thin parts: accepted where the mesh holds them, else refused with the cells
-// they need.
+// Bodies with edges, tips and thin parts. The mesh either resolves them, or refuses them with the required
+// number of cells.
 #include <apsis/core/errors.hpp>
 
 #include <algorithm>
@@ -19,8 +19,8 @@
 namespace cut_cells_test {
 
 TEST(thin_bodies, of_turned_bodies_with_edges_are_sound) {
-  // Cubes, cylinders with flat ends, and tetrahedra: an edge may lie between all corners of a face, and leave
-  // two of them diagonally in the body.
+  // The bodies are cubes, cylinders with flat ends, and tetrahedra. An edge may lie between all corners of a
+  // face, so that two of them are diagonally in the body.
   std::mt19937 generator(11);
   std::normal_distribution<double> any;
   std::uniform_real_distribution<double> place(-0.1, 0.1);
@@ -59,7 +59,8 @@ TEST(thin_bodies, of_turned_bodies_with_edges_are_sound) {
       const grid mesh = space(n);
       const cut_cells cut(mesh, {body}, closed);
       expect_sound(mesh, cut);
-      // Chords at edges cut off up to half of their cells: edges of a length of 20 on cells of 1/3 and 1/6.
+      // At edges, chords cut off up to half of a cell. The edges have a total length of 20, the cells sizes
+      // of 1/3 and 1/6.
       const double lost = exact[static_cast<std::size_t>(k % 3)] - (64.0 - gas_volume(mesh, cut));
       EXPECT_NEAR(lost, 0.0, 10.0 * mesh.spacing(0) * mesh.spacing(0)) << k << " " << n;
     }
@@ -84,13 +85,13 @@ TEST(thin_bodies, refuse_thin_plates_and_gaps_with_the_cells_that_they_need) {
   EXPECT_GE(needed, 40);
   EXPECT_LE(needed, 400);
   EXPECT_NO_THROW(cut(needed, {plate(0.1)}));
-  // Two discs that nearly touch, and gas enclosed between the corners of a cell.
+  // In the first case two discs nearly touch. In the second the corners of a cell enclose gas.
   bad_input::expect_refused({
       {[&] { cut(20, {disc(-0.77, 0.03, 0.7), disc(0.67, 0.03, 0.7)}); },
        {"a gap between bodies is thinner than a cell"}},
   });
   EXPECT_NO_THROW(cut(400, {disc(-0.77, 0.03, 0.7), disc(0.67, 0.03, 0.7)}));
-  // A disc within a cell.
+  // A disc lies within a cell.
   bad_input::expect_refused({
       {[&] { cut(4, {disc(0.5, 0.5, 0.2)}); }, {"a body is thinner than a cell"}},
       {[&] { cut(4, {disc(0.7, 0.5, 0.01)}); }, {"body 1 has no wall in the domain"}},
@@ -111,7 +112,7 @@ TEST(thin_bodies, of_plates_at_any_angle_keep_most_of_the_plate_or_are_refused) 
     };
     try {
       const cut_cells cut(mesh, {plate}, closed);
-      // A fifth is the bound; the corners of the plate lose up to a cell more, which tips may.
+      // A plate may lose a fifth. Its corners may lose up to half a cell more, as tips may.
       EXPECT_GT(16.0 - gas_volume(mesh, cut), 0.8 * 2.0 * thickness - 0.5 * mesh.cell_volume())
           << thickness << " " << angle;
       ++made;
@@ -127,7 +128,7 @@ TEST(thin_bodies, of_plates_at_any_angle_keep_most_of_the_plate_or_are_refused) 
 }
 
 TEST(thin_bodies, accept_the_tip_of_a_wedge) {
-  // A wedge of 20 degrees: its tip vanishes between the corners of two or three cells.
+  // The tip of a wedge of 20 degrees vanishes between the corners of two or three cells.
   const outside_function wedge = [](const position& x) {
     const double s = std::sin(std::numbers::pi / 18), c = std::cos(std::numbers::pi / 18);
     return std::max(
@@ -139,7 +140,7 @@ TEST(thin_bodies, accept_the_tip_of_a_wedge) {
   EXPECT_GT(cut.thin_cells(), 0);
 }
 
-/// A part that lies between a corner of cells inside and one outside is lost without a trace on any edge.
+/// A part between a corner inside and a corner outside leaves no trace on any edge.
 TEST(thin_bodies, refuse_bodies_that_are_smaller_than_a_cell_or_two) {
   const auto box = [](double a) {
     return [a](const position& x) { return std::max({std::abs(x[0]), std::abs(x[1]), std::abs(x[2])}) - a; };
@@ -153,7 +154,7 @@ TEST(thin_bodies, refuse_bodies_that_are_smaller_than_a_cell_or_two) {
     }
     return false;
   };
-  // The middle of each body is a corner of cells; cells have the size 0.2, in space 0.4.
+  // The middle of each body is a corner of cells. Cells have the size 0.2, in space 0.4.
   EXPECT_TRUE(refused(plane(20), disc(0, 0, 0.05)));
   EXPECT_TRUE(refused(plane(20), box(0.15)));
   EXPECT_TRUE(refused(space(10), box(0.1)));

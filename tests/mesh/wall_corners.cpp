@@ -1,4 +1,4 @@
-// Corners of the pieces of wall: areas and normals of the pieces, and surfaces without holes.
+// Corners of the pieces of wall: areas and normals, and surfaces without holes.
 #include <apsis/core/errors.hpp>
 #include <apsis/core/index.hpp>
 #include <apsis/mesh/cut_cells.hpp>
@@ -41,7 +41,7 @@ std::array<double, 3> cross(const position& a, const position& b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 
-/// The vector area of a polygon; of a segment its length times the normal on its right.
+/// Returns the vector area of a polygon, or the length of a segment times the normal on its right.
 std::array<double, 3> vector_area(const std::vector<position>& corners) {
   if (corners.size() == 2) return {corners[1][1] - corners[0][1], corners[0][0] - corners[1][0], 0.0};
   std::array<double, 3> sum{};
@@ -55,7 +55,7 @@ std::array<double, 3> vector_area(const std::vector<position>& corners) {
 void expect_areas_and_normals(const grid& mesh, const cut_cells& cut) {
   ASSERT_FALSE(cut.walls().empty());
   const std::size_t fewest = mesh.dimensions() == 2 ? 2 : 3;
-  // Products of coordinates up to 2, and differences of shares of cells.
+  // The tolerance covers products of coordinates up to 2 and differences of shares of cells.
   const double rounding = 1e-14;
   for (const auto& wall : cut.walls()) {
     ASSERT_GE(wall.corners.size(), fewest);
@@ -72,7 +72,7 @@ void expect_areas_and_normals(const grid& mesh, const cut_cells& cut) {
 
 using side = std::pair<position, position>;
 
-/// Counts the directed sides of all pieces of bodies; the ends of segments as sides of one point.
+/// Counts the directed sides of all pieces of bodies. An end of a segment counts as a side of one point.
 std::map<side, int> sides_of(const cut_cells& cut) {
   std::map<side, int> count;
   for (const auto& wall : cut.walls()) {
@@ -87,7 +87,8 @@ std::map<side, int> sides_of(const cut_cells& cut) {
   return count;
 }
 
-/// Whether a piece begins where another ends, bit by bit; in space both have a side, in opposite directions.
+/// Expects that each piece begins exactly where another ends. In space two pieces have each side,
+/// in opposite directions.
 void expect_no_holes(const grid& mesh, const cut_cells& cut) {
   const auto sides = sides_of(cut);
   int missing = 0;
@@ -103,7 +104,7 @@ void expect_no_holes(const grid& mesh, const cut_cells& cut) {
 
 }  // namespace
 
-/// Edges of cells lie in the walls of the slot, so that φ is rounding on a part of them.
+/// Edges of cells lie in the walls of the slot. On a part of them φ is a rounding error.
 TEST(walls_on_edges_of_cells, are_those_of_the_mirrored_body) {
   const auto slotted = [](double from, double to) {
     return [=](const position& p) {
@@ -146,7 +147,7 @@ TEST(moments_of_walls, of_a_uniform_pressure_vanish) {
     const double a = 0.8 * p[0] + 0.6 * p[1], b = 0.8 * p[1] - 0.6 * p[0];
     return std::max({std::abs(a), std::abs(b), std::abs(p[2] - 0.1)}) - 0.9;
   };
-  // Sums of some hundred areas.
+  // The moments are sums of some hundred areas.
   constexpr double rounding = 1e-14;
   for (const int n : {12, 24, 31}) {
     EXPECT_LT(largest_moment(cut_cells(plane(n), {triangle}, closed)), rounding) << n;

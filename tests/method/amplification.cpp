@@ -20,7 +20,7 @@ using complex = std::complex<double>;
 
 namespace {
 
-/// The modulus of the largest factor, by bisection of is_within().
+/// Returns the modulus of the largest factor by bisection of is_within().
 double largest_factor(const amplification& R, complex z, double w) {
   double low = 0.0, high = 1e3;
   for (int k = 0; k < 60; ++k) {
@@ -37,7 +37,7 @@ complex random_in_disc() {
 
 }  // namespace
 
-// Bisection resolves 1e3/2⁶⁰, rounding of the stages is a few 1e-16.
+// Bisection resolves 1e3/2⁶⁰. The stages have rounding errors of a few 1e-16.
 constexpr double rounding = 1e-12;
 
 TEST(amplification, of_explicit_methods_is_their_taylor_polynomial) {
@@ -49,7 +49,7 @@ TEST(amplification, of_explicit_methods_is_their_taylor_polynomial) {
     EXPECT_NEAR(largest_factor(heun, z, 0.0), std::abs(two), rounding);
     EXPECT_NEAR(largest_factor(third, z, 0.0), std::abs(three), rounding);
     EXPECT_NEAR(largest_factor(classic, z, 0.0), std::abs(four), rounding);
-    // They treat the collision like the transport.
+    // Explicit methods treat the collision like the transport.
     EXPECT_NEAR(largest_factor(classic, z + 0.5, -0.5), std::abs(four), rounding);
   }
 }
@@ -60,7 +60,7 @@ TEST(amplification, without_transport_is_the_stability_function_of_the_implicit_
     const method& m = find_method(name);
     const auto b = to_butcher(m.coefficients<long double>());
     for (const double w : {-1e-2, -1.0, -30.0, -1e4})
-      // Methods of type A divide by up to w⁴, whose rounding is relative.
+      // Methods of type A divide by numbers up to w⁴, so rounding errors are relative to these.
       EXPECT_NEAR(largest_factor(amplification(m), 0.0, w),
                   static_cast<double>(std::abs(stability_function(b, static_cast<long double>(w)))), 1e-9)
           << name << ", " << w;
@@ -76,7 +76,7 @@ TEST(amplification, of_bdf_2_is_the_root_of_its_characteristic_polynomial) {
   const amplification R = find_integrator("imex-bdf-2").growth();
   for (const complex z : {complex(-0.2, 0.3), complex(0.0, 0.5)})
     for (const double w : {0.0, -2.0}) {
-      // (3/2 − w) ζ² − (2 + 2z) ζ + (1/2 + z) = 0
+      // The characteristic polynomial is (3/2 − w) ζ² − (2 + 2z) ζ + (1/2 + z).
       const complex a = 1.5 - w, b = -(2.0 + 2.0 * z), c = 0.5 + z, root = std::sqrt(b * b - 4.0 * a * c);
       EXPECT_NEAR(largest_factor(R, z, w),
                   std::max(std::abs((-b + root) / (2.0 * a)), std::abs((-b - root) / (2.0 * a))), rounding);
@@ -88,7 +88,7 @@ TEST(amplification, of_two_step_methods_has_the_roots_1_and_minus_b_without_both
     const amplification R = find_integrator(name).growth();
     EXPECT_TRUE(R.is_within(1.0 + 1e-9, 0.0, 0.0)) << name;
     EXPECT_FALSE(R.is_within(1.0 - 1e-9, 0.0, 0.0)) << name;
-    // Consistency of order p: the larger root is exp(z) up to the error of a step.
+    // For a method of order p the larger root is exp(z) up to the error of a step.
     const complex z(-0.01, 0.02);
     EXPECT_NEAR(largest_factor(R, z, 0.0), std::exp(-0.01), 1e-6) << name;
   }
@@ -108,7 +108,7 @@ RC_GTEST_PROP(amplification, counts_the_roots_of_random_polynomials, ()) {
     }
     c = next;
   }
-  // Clusters of six equal roots move by the sixth root of the rounding, 2e-3.
+  // The rounding error moves a cluster of six equal roots by its sixth root, 2e-3.
   RC_ASSERT(has_roots_within(c, largest + 0.02));
   RC_ASSERT(largest <= 0.02 || !has_roots_within(c, largest - 0.02));
 }

@@ -1,4 +1,4 @@
-// Files and names of methods that are refused: the table of the folder bad_input, and long ones.
+// Files and names of methods that are refused: those of the table in the folder bad_input, and long ones.
 #include <support/bad_input.hpp>
 
 #include "tableaux.hpp"
@@ -22,7 +22,7 @@ void find(const std::string& name) {
   apsis::find_method(name);
 }
 
-/// "a.a.a", n parts.
+/// Returns "a.a.a" with n parts.
 std::string many_dots(int n) {
   std::string key = "a";
   for (int i = 1; i < n; ++i) key += ".a";

@@ -20,7 +20,7 @@ std::string head(const std::string& kind, int order, const std::string& claim) {
 void expect_same_form(const method& a, const method& b) {
   const auto x = a.coefficients<double>(), y = b.coefficients<double>();
   ASSERT_EQ(x.stages(), y.stages());
-  // Both are correctly rounded from values that agree to 47 digits, or rounded to the same grid.
+  // Both numbers are correctly rounded from values that agree to 47 digits, or rounded to the same grid.
   EXPECT_DOUBLE_EQ(x.r, y.r);
   for (std::size_t i = 0; i < x.stages(); ++i) {
     EXPECT_DOUBLE_EQ(x.ddot[i], y.ddot[i]);
@@ -61,7 +61,7 @@ TEST(butcher_files, reproduce_the_canonical_form_of_explicit_methods) {
 }
 
 TEST(butcher_files, reproduce_the_exact_weights_of_hu_shu_zhang) {
-  // The first stage is u^n: it carries the weight of u^n in every row.
+  // The first stage is u^n, so it has the weight of u^n in every row.
   const method m = parse_method(
       head("imex", 2, "0.8125") +
           "A_hat = [[], [\"0\"], [\"1\", \"0\"], [\"1/2\", \"0\", \"1/2\"], [\"1/2\", \"0\", \"1/2\", "
@@ -80,7 +80,7 @@ const std::string midpoint_rows = "A_hat = [[], [\"1/2\"]]\nA = [[\"0\"], [\"0\"
 const std::string midpoint_update = "b_hat = [\"0\", \"1\"]\nb = [\"0\", \"1\"]\n";
 
 TEST(butcher_files, treat_an_update_as_an_additional_row) {
-  // The IMEX midpoint rule, ARS(1,2,2).
+  // The method is the IMEX midpoint rule, ARS(1,2,2).
   const method m = parse_method(head("imex", 2, "0") + midpoint_rows + midpoint_update, "x");
   EXPECT_TRUE(m.ends_with_update());
   EXPECT_EQ(m.stages(), 3u);
@@ -98,17 +98,17 @@ TEST(butcher_files, treat_an_update_as_an_additional_row) {
 }
 
 TEST(butcher_files, support_updates_for_methods_of_every_kind) {
-  // Implicit midpoint: Q(u_1) enters u^{n+1} with a larger weight than through u_1.
+  // In the implicit midpoint rule Q(u_1) has a larger weight in u^{n+1} than u_1 provides.
   const method implicit = parse_method(head("implicit", 2, "0") + "A = [[\"1/2\"]]\nb = [\"1\"]\n", "x");
   EXPECT_TRUE(certify(implicit).claims_hold);
   EXPECT_FALSE(certify(implicit).gsa);
-  // Classical Runge–Kutta: an explicit method without a convex form.
+  // The classical Runge–Kutta method is explicit and has no convex form.
   const method kutta = parse_method(head("explicit", 4, "0") +
                                         "A_hat = [[], [\"1/2\"], [\"0\", \"1/2\"], [\"0\", \"0\", \"1\"]]\n"
                                         "b_hat = [\"1/6\", \"1/3\", \"1/3\", \"1/6\"]\n",
                                     "x");
   EXPECT_TRUE(certify(kutta).claims_hold) << ::testing::PrintToString(certify(kutta).failures);
-  // Heun's method, whose update is a convex combination with r = 1.
+  // The update of Heun's method is a convex combination with r = 1.
   const method heun =
       parse_method(head("explicit", 2, "1") + "A_hat = [[], [\"1\"]]\nb_hat = [\"1/2\", \"1/2\"]\n", "x");
   EXPECT_TRUE(certify(heun).claims_hold);
@@ -121,17 +121,17 @@ TEST(butcher_files, with_any_byte_changed_do_not_crash) {
   int read = 0;
   for (int k = 0; k < 2000; ++k) {
     std::string text = good;
-    // Mutate coefficients, where most changes leave a valid file.
+    // The mutations are in the coefficients, where most changes leave a valid file.
     const std::size_t start = good.find("A_hat");
     text[start + draw() % (text.size() - start)] = "0123456789/-.e\", ]"[draw() % 19];
     try {
       certify(parse_method(text, "x"));
       ++read;
     } catch (const input_error&) {
-      // Any other exception fails the test.
+      // Exceptions of other types fail the test.
     }
   }
-  EXPECT_GT(read, 100);  // some mutants are valid methods
+  EXPECT_GT(read, 100);  // some mutants are valid
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Methods from the literature: coefficients transcribed from the publications against the method files.
+// Methods from the literature: the method files agree with the published coefficients.
 #include "tableaux.hpp"
 
 #include <algorithm>
@@ -12,7 +12,7 @@
 namespace apsis::test::comparators_test {
 namespace {
 
-/// Printed entries by row and column, from 1; all others are 0.
+/// Expects the printed entries by row and column, counted from 1. All others must be 0.
 using entries = std::map<std::pair<std::size_t, std::size_t>, double>;
 
 void expect_matrix(const matrix<double>& m, const entries& printed, double tolerance, const char* what) {
@@ -24,7 +24,7 @@ void expect_matrix(const matrix<double>& m, const entries& printed, double toler
 }
 
 TEST(comparators, method_2_6_2_of_hu_shu_zhang_has_the_published_butcher_form) {
-  // The last row is u^{n+1} after the correction with α = 0.8, which does not change T and Q.
+  // The last row is u^{n+1} after the correction with α = 0.8. The correction does not change T and Q.
   const auto b = to_butcher(find_method("hsz-ars-4-2").coefficients<double>());
   constexpr double rounding = 1e-15;  // for a dozen operations on numbers below 2
   expect_matrix(b.A_hat, {{{3, 1}, 1.0}, {{4, 1}, 0.5}, {{4, 3}, 0.5}, {{5, 1}, 0.5}, {{5, 3}, 0.5}},
@@ -41,14 +41,14 @@ TEST(comparators, method_2_6_2_of_hu_shu_zhang_has_the_published_butcher_form) {
                  {{5, 4}, 0.2}},
                 rounding, "A");
   expect_matrix(b.A_dot, {{{5, 5}, -0.8}}, rounding, "Adot");
-  // r by hand: the weight of u^n in the third stage, 1 − 0.3/1.6, carries an Euler step of length 1.
+  // By hand, the weight 1 − 0.3/1.6 of u^n in the third stage carries an Euler step of length 1, so it is r.
   const auto& c = find_certificate("hsz-ars-4-2");
   EXPECT_NEAR(c.ssp_coefficient.convert_to<double>(), 1 - 0.3 / 1.6, 1e-15);
   EXPECT_EQ(c.type, "ARS");
   EXPECT_FALSE(c.ap);
 }
 
-/// SSP3(4,3,3) with any α, β = α/4 and η = (1 − 2α)/4.
+/// Returns SSP3(4,3,3) with any α, β = α/4 and η = (1 − 2α)/4.
 std::string member_of_ssp3_433(const mp_real& alpha) {
   const auto text = [](const mp_real& x) { return '"' + x.str(50, std::ios_base::fixed) + '"'; };
   const std::string a = text(alpha);
@@ -66,12 +66,12 @@ TEST(comparators, ssp3_433_is_the_l_stable_member_of_a_family_of_order_3) {
     EXPECT_TRUE(c.claims_hold) << alpha;
     EXPECT_FALSE(c.stability.l_stable) << alpha;
   }
-  // R(−∞) = 0 is (2α − 1)(3α² − 9α + 2) = 0; 1/2 is the other root below 1.
+  // R(−∞) = 0 means (2α − 1)(3α² − 9α + 2) = 0. The other root below 1 is 1/2.
   const mp_real root = (9 - sqrt(mp_real(57))) / 6;
   EXPECT_TRUE(certify(parse_method(member_of_ssp3_433(root), "x")).stability.l_stable);
   const auto b = to_butcher(find_method("ssp3-433").coefficients<mp_real>());
   EXPECT_LT(abs(b.A(0, 0) - root), mp_real("1e-49"));
-  // The printed digits are the rounded root, β and η.
+  // The printed digits of the root, β and η are rounded values.
   EXPECT_LT(abs(b.A(0, 0) - mp_real("0.24169426078821")), mp_real("0.5e-14"));
   EXPECT_LT(abs(b.A(3, 0) - mp_real("0.06042356519705")), mp_real("0.5e-14"));
   EXPECT_LT(abs(b.A(3, 1) - mp_real("0.12915286960590")), mp_real("0.5e-14"));
@@ -94,7 +94,7 @@ TEST(comparators, bhr_553_follows_from_gamma_and_c4) {
     EXPECT_LT(abs(b.A(5, i) - b.A_hat(5, i)), digits) << i;  // b̂ = b
     EXPECT_LT(abs(b.A(5, i) - b.A(4, i)), digits) << i;      // the implicit part is stiffly accurate
     if (i < 2) continue;
-    // Stage order 2, A c = c²/2, and the same for Â, from the third stage on.
+    // From the third stage on the stage order is 2: A c = c²/2, and the same for Â.
     mp_real implicit(0), transport(0);
     for (std::size_t j = 0; j < 6; ++j) {
       implicit += b.A(i, j) * c[j];
@@ -117,8 +117,8 @@ TEST(comparators, bhr_553_follows_from_gamma_and_c4) {
   EXPECT_LT(abs(gamma - mp_real("0.435866521508459")), half_unit);          // printed …460
 }
 
-/// Rational coefficients in common use for the older BHR(5,5,3), c_4 = 2684624/1147171 (Boscarino, Appl.
-/// Numer. Math. 59 (2009)).
+/// The rational coefficients in common use belong to the older BHR(5,5,3) with c_4 = 2684624/1147171
+/// (Boscarino, Appl. Numer. Math. 59 (2009)).
 TEST(comparators, rational_coefficients_of_bhr_satisfy_their_conditions_to_13_digits_only) {
   const std::string g = "424782/974569", zero = "0";
   const std::string b1 = "487698502336740678603511/1181159636928185920260208",
@@ -150,7 +150,7 @@ TEST(comparators, rational_coefficients_of_bhr_satisfy_their_conditions_to_13_di
       ", " + row({b1, zero, b3, b4, g}) + "]\nb = " + row({b1, zero, b3, b4, g}) + "\n";
   const auto c = certify(parse_method(text, "x"));
   EXPECT_FALSE(c.claims_hold);
-  EXPECT_EQ(c.order, 1);  // rationals are exact, and their b·c is not 1/2
+  EXPECT_EQ(c.order, 1);  // the rationals are exact, and their b·c is not 1/2
   mp_real largest(0);
   for (const auto& condition : c.next)
     largest = std::max(largest, mp_real(abs(condition.value - condition.wanted)));

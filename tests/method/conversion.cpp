@@ -1,5 +1,4 @@
-// Shu–Osher forms of the catalogue are recovered from their Butcher forms; random forms are
-// tested in properties.cpp.
+// The Shu–Osher forms of the catalogue follow from their Butcher forms. Random forms are in properties.cpp.
 #include "tableaux.hpp"
 
 #include <gtest/gtest.h>
@@ -9,7 +8,7 @@ namespace {
 
 void expect_same(const shu_osher_form<mp_real>& a, const shu_osher_form<mp_real>& b,
                  const std::string& name) {
-  // Sixty digits, minus a few lost in two triangular inverses.
+  // The numbers have sixty digits. Two triangular inverses lose a few of them.
   const mp_real rounding("1e-55");
   EXPECT_EQ(a.r, b.r) << name;
   for (std::size_t i = 0; i < a.stages(); ++i) {

@@ -16,7 +16,8 @@ namespace {
 
 using ::testing::HasSubstr;
 
-// md-imex-3-2 with u + Δt T(u_1)/2 + … of order 1. Lines: 16 [embedded], 17 order, 18 P, 19 W, 20 d, 21 ddot.
+// The file is md-imex-3-2 with u + Δt T(u_1)/2 + … of order 1. Lines: 16 [embedded], 17 order, 18 P, 19 W, 20
+// d, 21 ddot.
 const std::string good = R"(name = "x"
 title = "t"
 citation = "c"
@@ -60,15 +61,16 @@ TEST(embedded_row, is_certified_with_its_estimate) {
   EXPECT_EQ(c.embedded->implicit_solves, 1);
   EXPECT_EQ(c.embedded->explicit_evaluations, 0);
   EXPECT_TRUE(c.embedded->relaxes);
-  // By hand: u_1 has c = (1/2), ĉ = 0; u_2 = u_1 + Δt T(u_1) − Δt² Q̇/2 has ĉ = 1. Of the four conditions of
-  // order 2, whose 1/γ is 1/2, ũ = 0.45 u_1 + 0.1 (u_1 + Δt T(u_1)) + 0.45 (u_2 + Δt T(u_2)) + … satisfies
+  // By hand: u_1 has c = (1/2), ĉ = 0; u_2 = u_1 + Δt T(u_1) − Δt² Q̇/2 has ĉ = 1. The embedded solution is ũ
+  // = 0.45 u_1 + 0.1 (u_1 + Δt T(u_1)) + 0.45 (u_2 + Δt T(u_2)) + …. The four conditions of order 2 have 1/γ
+  // = 1/2 and the left-hand sides
   //   T[T] = 0.45 · 1 = 0.45,   T[Q] = 0.55 · ½ + 0.45 · ½ = ½,   Q[T] = d̃ = ½,
   //   Q[Q] = ¼ (of u_1) − 0.45 · ½ (of Q̇ in u_2) + d̃ − 3/40 = 0.45.
   EXPECT_NEAR(c.embedded->estimate.convert_to<double>(), 0.05 * std::sqrt(2.0), 1e-15);
   EXPECT_NEAR(c.embedded->alignment.convert_to<double>(), std::sqrt(0.5), 1e-15);
 }
 
-// The error constant over the estimate along the Taylor term, where both are factors of Δt^p.
+// The weight is the error constant over the estimate along the Taylor term. Both are factors of Δt^p.
 TEST(embedded_row, has_a_weight_where_its_estimate_is_far_below_the_error_constant) {
   for (const std::string name : {"md-imex-16-4-efficient", "md-imex-8-3-large-r", "md-imex-5-2"}) {
     const certificate& c = find_certificate(name);
@@ -82,7 +84,7 @@ TEST(embedded_row, has_a_weight_where_its_estimate_is_far_below_the_error_consta
   EXPECT_EQ(find_certificate("md-imex-8-3-accurate").embedded->weight, 1.0);  // the ratio is 12
   EXPECT_EQ(find_certificate("md-imex-16-4-large-r").embedded->weight, 1.0);  // q = p − 2
   EXPECT_EQ(find_certificate("extrapolated-euler-8").embedded->weight, 1.0);  // no error constant
-  // An estimate that has no part along the Taylor term.
+  // The estimate has no part along the Taylor term.
   EXPECT_LT(find_certificate("extrapolated-euler-6").embedded->alignment, 1e-50);
   EXPECT_EQ(find_certificate("extrapolated-euler-6").embedded->weight, 1.0);
 }
@@ -117,8 +119,8 @@ TEST(embedded_row, exists_for_every_recommended_method_at_the_cost_of_one_solve)
       ASSERT_TRUE(e->last) << name;
       EXPECT_LT(abs(*e->last - 1), mp_real(1e-40)) << name;
     }
-    // The target was at least 1/30 of the Taylor term, with a coverage of at least 0.15 in the limit ε → 0,
-    // whose terms are 0.4 of all.
+    // The search required at least 1/30 of the Taylor term, with a coverage of at least 0.15 in the limit ε →
+    // 0. The terms of the limit are 0.4 of all.
     EXPECT_GT(e->estimate, mp_real(0.15 * 0.4 / 30)) << name;
     EXPECT_LT(e->estimate, mp_real(0.15)) << name;
   }
@@ -148,7 +150,7 @@ TEST(embedded_row, is_exported_as_it_was_read) {
     EXPECT_EQ(again.embedded->d, m.embedded->d);
     EXPECT_EQ(again.embedded->ddot, m.embedded->ddot);
   }
-  // Omitted entries are zero: a solution of order 1 from two stages of forward Euler steps.
+  // Omitted entries are zero. The solution has order 1 and two stages of forward Euler steps.
   const std::string explicit_method =
       "name = \"x\"\ntitle = \"t\"\ncitation = \"c\"\nkind = \"explicit\"\n[claims]\norder = 2\n"
       "[shu_osher]\nr = \"1\"\nP = [[], [\"0\"], [\"1/2\", \"0\"]]\nW = [[], [\"1\"], [\"0\", \"1/2\"]]\n"
@@ -160,7 +162,7 @@ TEST(embedded_row, is_exported_as_it_was_read) {
 }
 
 TEST(embedded_row, of_a_tableau_is_given_by_its_weights) {
-  // Heun's method of order 3, whose radius of monotonicity is 0.
+  // Heun's method of order 3 has the radius of monotonicity 0.
   const std::string heun =
       "name = \"x\"\ntitle = \"t\"\ncitation = \"c\"\nkind = \"explicit\"\n[claims]\norder = 3\n"
       "[butcher]\nA_hat = [[], [\"1/3\"], [\"0\", \"2/3\"]]\nb_hat = [\"1/4\", \"0\", "
@@ -177,7 +179,7 @@ TEST(embedded_row, of_a_tableau_is_given_by_its_weights) {
 
 TEST(embedded_row, of_wrong_order_or_sign_fails_certification) {
   using ::testing::Contains, ::testing::ElementsAre;
-  // u^{n+1} itself as embedded solution has order 2, not 1 as claimed.
+  // As embedded solution u^{n+1} itself has order 2, not 1 as the file claims.
   EXPECT_THAT(failures(changed(good.substr(good.find("P = [\"9/20\"")),
                                "P = [\"1/2\", \"0\", \"0\"]\nW = [\"0\", \"1/2\", \"0\"]\nd = \"1/2\"\n")),
               ElementsAre("embedded.order = 1 but the embedded solution has order 2"));
@@ -193,8 +195,8 @@ TEST(embedded_row, of_wrong_order_or_sign_fails_certification) {
 }
 
 TEST(embedded_row, that_is_not_convex_is_certified_if_the_file_says_so) {
-  // u_1 replaces u^n, which it equals up to the implicit part: the conditions of order 1 hold for any weights
-  // of u_1 and u_2 with Σ_j p̃_j c_j + w̃_j … = 1.
+  // u_1 equals u^n up to the implicit part and replaces it. The conditions of order 1 hold for any weights of
+  // u_1 and u_2 with Σ_j p̃_j c_j + w̃_j … = 1.
   const std::string negative =
       "P = [\"-1/20\", \"1/2\", \"0\"]\nW = [\"1/10\", \"9/20\", \"0\"]\nd = \"1/2\"\nddot = \"-3/40\"\n";
   const auto with = [&](const std::string& key) {
@@ -213,8 +215,8 @@ TEST(embedded_row, of_order_p_minus_1_exists_for_all_but_two_imex_methods) {
   }
 }
 
-/// Changing a coefficient by 1e-6 violates a condition. Those of order 1 do not involve Q̇, and hence neither
-/// d̃̇ nor the weight of a first stage with ḋ alone, for which u_1 = u^n + O(Δt²).
+/// A change of a coefficient by 1e-6 violates a condition. Conditions of order 1 do not involve Q̇, so two
+/// coefficients are exempt: d̃̇, and the weight of a first stage with ḋ alone, for which u_1 = u^n + O(Δt²).
 void expect_changes_are_detected(const method& m) {
   method damaged = m;
   const auto expect_noticed = [&](std::string& place, const std::string& what) {
@@ -226,7 +228,7 @@ void expect_changes_are_detected(const method& m) {
   };
   auto& e = *damaged.embedded;
   for (std::size_t j = 0; j < m.stages(); ++j) {
-    // u_1 = u^n in a tableau, whose weight is what the others leave.
+    // In a tableau u_1 = u^n. Its weight is the rest of the other weights.
     if (e.order > 1 && (e.convex || j > 0)) expect_noticed(e.P[j], "P" + std::to_string(j + 1));
     expect_noticed(e.W[j], "W" + std::to_string(j + 1));
   }

@@ -1,5 +1,4 @@
-// Exponential methods as data: conditions of second order against a formula, refusals, and the step of a
-// form.
+// Exponential methods as data: conditions of second order by a formula, refusals, and the step of a form.
 #include <apsis/core/errors.hpp>
 #include <apsis/method/certificate.hpp>
 #include <apsis/method/export.hpp>
@@ -22,8 +21,8 @@ using apsis::certify;
 using apsis::parse_method;
 using testing::HasSubstr;
 
-/// f₀ = exp(a₀ΔtQ) u^n, f₁ = exp(a₁ΔtQ)(f₀ + Δt/r T(f₀)), u^{n+1} = exp(a₂ΔtQ)(w (f₁ + Δt/r T(f₁)) + (1 − w)
-/// exp(a₁ΔtQ) f₀); coefficients as texts.
+/// Returns the file of f₀ = exp(a₀ΔtQ) u^n, f₁ = exp(a₁ΔtQ)(f₀ + Δt/r T(f₀)), u^{n+1} = exp(a₂ΔtQ)(w (f₁ +
+/// Δt/r T(f₁)) + (1 − w) exp(a₁ΔtQ) f₀). The coefficients are texts.
 std::string file(const std::string& a0, const std::string& a1, const std::string& a2, const std::string& w,
                  const std::string& rest, const std::string& r) {
   return fmt::format(
@@ -48,7 +47,7 @@ TEST(exponential_method, of_the_catalogue_has_second_order_and_the_step_of_forwa
 }
 
 // With equal Euler steps of length 1/r the conditions of second order are 2w/r = 1, w/r² = 1/2, a₀ + a₁ + a₂
-// = 1 and a₀ + (w/r) a₁ = 1/2: r = 1, w = 1/2, and a₀ = a₂ is free.
+// = 1 and a₀ + (w/r) a₁ = 1/2. Their solution is r = 1, w = 1/2 with a₀ = a₂ free.
 TEST(exponential_method, of_second_order_satisfies_four_conditions) {
   for (const auto& [a0, a1] :
        {std::pair{"0", "1"}, std::pair{"1/10", "4/5"}, std::pair{"2/5", "1/5"}, std::pair{"1/2", "0"}})
@@ -62,17 +61,18 @@ TEST(exponential_method, that_violates_one_condition_has_first_order_and_a_messa
     EXPECT_FALSE(c.claims_hold);
     return c.failures;
   };
-  // ∫ T after the collisions: b·c of transport and collision, F[G] and G[F], are wrong, G[G] and F[F] are
-  // not.
+  // The collisions precede ∫ T. The conditions b·c that mix transport and collision, F[G] and G[F], are then
+  // violated. G[G] and F[F] hold.
   EXPECT_THAT(failures(file("1/4", "1/4", "1/2", "1/2", "1/2", "1")),
               testing::ElementsAre(HasSubstr("tree F[G] is 0.375 instead of 0.5"),
                                    HasSubstr("tree G[F] is 0.625 instead of 0.5")));
-  // w/r² ≠ 1/2 with 2w/r = 1 is impossible; 1 + w weights of T other than 1 have order 0.
+  // The first file has 2w/r = 2/3, the second a₀ + a₁ + a₂ = 5/6. Both must be 1 for order 1.
   EXPECT_EQ(certify(parse_method(file("1/3", "1/3", "1/3", "1/3", "2/3", "1"), "trial.toml")).order, 0);
   EXPECT_EQ(certify(parse_method(file("1/3", "1/3", "1/6", "1/2", "1/2", "1"), "trial.toml")).order, 0);
 }
 
-// exp(ΔtQ/2) (u + Δt T) exp(ΔtQ/2) with T = 0 is exact: all trees of Q alone hold to the order of the flow.
+// exp(ΔtQ/2) (u + Δt T) exp(ΔtQ/2) with T = 0 is exact. All trees of Q alone hold up to the order
+// of the flow.
 TEST(exponential_method, resolved_flows_satisfy_all_conditions_of_the_collision_alone) {
   auto m =
       parse_method(file("1/8", "3/8", "1/2", "1/2", "1/2", "1"), "trial.toml").coefficients<apsis::mp_real>();
@@ -80,7 +80,7 @@ TEST(exponential_method, resolved_flows_satisfy_all_conditions_of_the_collision_
   EXPECT_EQ(b.stages(), 20U);
   const auto trees = apsis::rooted_trees(apsis::order_of_resolved_flows, apsis::tree_colours::G_only);
   const auto weights = apsis::elementary_weights(b, trees);
-  // Only the path through one of the two middle stages has all of Q: both have the same times.
+  // The path through either of the two middle stages has all of Q, because both have the same times.
   for (std::size_t k = 0; k < trees.size(); ++k)
     EXPECT_LT(abs(weights[k] - apsis::mp_real(1) / trees[k].density), 1e-50) << trees[k].name;
 }

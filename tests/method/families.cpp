@@ -1,4 +1,4 @@
-// Families in closed form: every member is certified and found by exactly one name.
+// Families in closed form: every member is certified, and exactly one name finds it.
 #include "tableaux.hpp"
 
 #include <apsis/core/errors.hpp>
@@ -25,7 +25,7 @@ std::string plateau_free(std::size_t s) {
   return "md-imex-plateau-free-" + std::to_string(s) + "-2";
 }
 
-/// Exact rationals in 60 digits: only rounding of sums of up to 64 terms remains.
+/// Exact rationals have 60 digits. Only the rounding of sums of up to 64 terms remains.
 const mp_real rounding("1e-55");
 
 void expect_member(const std::string& name, std::size_t stages, int evaluations, int r) {
@@ -77,7 +77,7 @@ TEST(families, in_a_chain_are_third_order_without_transport) {
 
 using exact_form = shu_osher_form<std::string>;
 
-/// Returns the names of the coefficients, except for ḋ, in which two forms differ.
+/// Returns the names of the coefficients in which two forms differ, except for ḋ.
 std::vector<std::string> differences(const exact_form& a, const exact_form& b) {
   std::vector<std::string> found;
   const auto compare = [&](const std::string& what, const std::string& x, const std::string& y) {
@@ -98,7 +98,7 @@ TEST(families, in_a_chain_of_three_stages_differ_from_the_papers_method_only_in_
   const auto& paper = find_method("md-imex-3-2").exact;
   EXPECT_THAT(differences(made, paper), ::testing::IsEmpty());
   EXPECT_THAT(made.ddot, ::testing::ElementsAre("-1/8", "-1/6", "-1/24"));
-  // Its error constant is smaller, 0.4061 instead of 0.4658 (computed by an independent program).
+  // The error constant is 0.4061 instead of 0.4658 (computed by an independent program).
   EXPECT_NEAR(find_certificate(chain(3)).error_constant.convert_to<double>(), 0.4061164310337068, 1e-15);
   EXPECT_NEAR(find_certificate("md-imex-3-2").error_constant.convert_to<double>(), 0.46584749531245623,
               1e-15);
@@ -112,7 +112,7 @@ TEST(families, without_plateaus_start_with_the_method_of_the_catalogue) {
 }
 
 TEST(families, without_plateaus_have_nearly_minimal_error_constants) {
-  // ḋ_2 + (n−1) ḋ_{n+1} is fixed; shift t from one to the other and search for an improvement of 3 %.
+  // ḋ_2 + (n−1) ḋ_{n+1} is fixed. Shift t from one to the other and search for an improvement of 3 %.
   for (const std::size_t s : {6U, 10U}) {
     const method& m = find_method(plateau_free(s));
     const auto error = [&](const mp_real& t) {

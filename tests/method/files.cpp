@@ -1,4 +1,4 @@
-// Invalid method files and the positions in their error messages.
+// Invalid method files, and the positions in their error messages.
 #include "tableaux.hpp"
 
 #include <apsis/core/errors.hpp>
@@ -64,7 +64,7 @@ TEST(method_files, with_any_byte_changed_do_not_crash) {
     try {
       parse_method(text, "m.toml");
     } catch (const input_error&) {
-      // Any other exception fails the test.
+      // Exceptions of other types fail the test.
     }
   }
 }
@@ -74,12 +74,12 @@ TEST(method_files, of_ten_megabytes_are_rejected_quickly) {
   std::string garbage(10'000'000, ' ');
   for (char& c : garbage) c = static_cast<char>(draw() % 256);
   std::string brackets = "x = " + std::string(900'000, '[');
-  const std::clock_t start = std::clock();  // CPU time, which excludes other programs
+  const std::clock_t start = std::clock();  // CPU time excludes other programs
   EXPECT_TRUE(complaint(garbage));
   EXPECT_TRUE(complaint(std::string(10'000'000, '\n')));
   EXPECT_TRUE(complaint(brackets));
   EXPECT_TRUE(complaint(std::string(1'000'000, '\0')));
-  // A few milliseconds; more under a sanitizer.
+  // The refusal takes a few milliseconds, and more under a sanitizer.
   EXPECT_LT(std::clock() - start, 3 * CLOCKS_PER_SEC);
 }
 
@@ -100,7 +100,7 @@ std::string write_file(const std::string& name, const std::string& text) {
 }
 
 TEST(method_files, larger_than_a_mebibyte_are_rejected_rather_than_truncated) {
-  // Beyond the limit there is a comment or another key; the message gives the position of the limit.
+  // Beyond the limit there is a comment or another key. The message has the position of the limit.
   const std::string comment = "# " + std::string(1 << 20, 'c') + "\n";
   const auto path = write_file("large.toml", good + comment);
   try {
@@ -139,7 +139,7 @@ TEST(method_files, may_repeat_a_catalogue_method_but_not_reuse_its_name) {
 }
 
 TEST(method_files, that_changed_are_certified_again) {
-  // Two backward Euler steps of half the length: order 1.
+  // The method is two backward Euler steps of half the length, with order 1.
   const auto text = [](const std::string& order, const std::string& d) {
     return "name = \"mine-1\"\ntitle = \"t\"\nkind = \"implicit\"\ncitation = \"c\"\n[claims]\norder = " +
            order + "\n[shu_osher]\nP = [[], [\"1\"]]\nd = [\"1/2\", \"" + d + "\"]\nddot = [\"0\", \"0\"]\n";
@@ -160,8 +160,8 @@ TEST(method_files, that_changed_are_certified_again) {
   }
   EXPECT_FALSE(find_certificate(path).claims_hold);
 
-  // Same length as the first text and possibly the same time stamp: neither size nor modification time may
-  // identify the contents.
+  // The second text has the same length as the first and possibly the same time stamp. Neither size nor
+  // modification time may identify the contents.
   write_file("edited.toml", text("1", "2/2"));
   EXPECT_THAT(find_certificate(path).failures, ::testing::Contains(::testing::HasSubstr("tree G is 1.5")));
   write_file("edited.toml", text("1", "1/2"));

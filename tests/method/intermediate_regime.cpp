@@ -1,4 +1,4 @@
-// O(ε) terms from coefficients alone. Their meaning is tested with the stepper (tests/integrate).
+// O(ε) terms from coefficients alone. tests/integrate compares them with the stepper.
 #include <apsis/method/intermediate_regime.hpp>
 
 #include "tableaux.hpp"
@@ -34,7 +34,8 @@ TEST(intermediate_regime, flux_of_the_papers_second_order_method_is_zero) {
 TEST(intermediate_regime, flux_of_the_papers_third_order_method_is_too_large) {
   const auto terms = of("md-imex-6-3");
   ASSERT_TRUE(terms.applies);
-  // By hand from the printed coefficients: χ₃ = w₃₁/(r d₃), χ₄ = w₄₃/(r d₄), b̂ = last row of R⁻¹W/r.
+  // By hand from the printed coefficients, χ₃ = w₃₁/(r d₃), χ₄ = w₄₃/(r d₄), and b̂ is the last
+  // row of R⁻¹W/r.
   const double r = 0.904402174130635;
   EXPECT_NEAR(terms.kept[2].convert_to<double>(), 0.764266518291495 / (r * 0.388820513661584), 1e-12);
   EXPECT_NEAR(terms.kept[3].convert_to<double>(), 0.292520982667463 / (r * 0.083529464436389), 1e-12);
@@ -71,9 +72,9 @@ TEST(intermediate_regime, does_not_apply_if_a_stage_is_explicit) {
 }
 
 TEST(intermediate_regime, includes_the_terms_of_next_order) {
-  // md-imex-5-2 by hand: T contributes at stages 1, 3, 4 with weights 1/3 and ĉ = 0, 1/2, 1; χ = (0, 0, 3, 0,
-  // 1). RÂĉ is (1/2) ĉ of the previous stage, so (0, 0, 0, 1/4, 1/3·…): χ′ is 0 except for χ′_5; Rĉ²/2 is 1/8
-  // at stage 3 and χ″_3 = (1/8)/(1/6).
+  // md-imex-5-2 by hand. T contributes at stages 1, 3, 4 with weights 1/3 and ĉ = 0, 1/2, 1. χ = (0, 0, 3, 0,
+  // 1). RÂĉ is (1/2) ĉ of the previous stage, so (0, 0, 0, 1/4, 1/3·…). χ′ is 0 except for χ′_5. Rĉ²/2 is 1/8
+  // at stage 3, and χ″_3 = (1/8)/(1/6).
   const auto terms = of("md-imex-5-2");
   const auto expect = [](const mp_real& value, double wanted) {
     EXPECT_NEAR(value.convert_to<double>(), wanted, 1e-15);
@@ -99,7 +100,7 @@ TEST(intermediate_regime, is_the_limit_of_the_band_and_vanishes_with_the_order) 
                softer = at_finite_rate(b, mp_real(1e-7));
     EXPECT_LT(abs(stiff.flux - terms.flux), mp_real(1e-15)) << name;
     EXPECT_LT(abs(stiff.last - terms.last), mp_real(1e-15)) << name;
-    // flux(z) − 1 = O(z^p)
+    // The flux error has the order of the method, flux(z) − 1 = O(z^p).
     const int order = m.claims.order;
     EXPECT_LT(abs(soft.flux - 1), 20 * pow(mp_real(1e-6), order)) << name;
     EXPECT_LT(abs(softer.flux - 1), 20 * pow(mp_real(1e-7), order)) << name;
@@ -113,7 +114,7 @@ TEST(intermediate_claims, of_the_catalogue_are_certified) {
   EXPECT_EQ(find_certificate("md-imex-5-2").remaining_terms(), "all");
   EXPECT_EQ(find_certificate("md-imex-8-3").remaining_terms(), "all");
   EXPECT_FALSE(find_certificate("ssp2-222").regime.applies);
-  // The largest error in the band, from an independent program in 30 digits.
+  // An independent program computed the largest errors in the band with 30 digits.
   EXPECT_NEAR(find_certificate("md-imex-3-2").band.error, 0.20125, 1e-4);
   EXPECT_NEAR(find_certificate("md-imex-5-2").band.error, 0.01806, 1e-4);
   EXPECT_NEAR(find_certificate("md-imex-5-2").band.at, 4.47, 0.3);
@@ -129,9 +130,9 @@ TEST(intermediate_band, is_the_maximum_over_ten_thousand_samples) {
       const long double z = std::exp(3 * static_cast<long double>(k) / 5000);
       largest = std::max(largest, std::abs(at_finite_rate(b, z).flux - 1) / z);
     }
-    // Samples are at most 3e-4 in log z away from a maximum and miss 4.5e-8 times its relative curvature,
-    // which is 2 for wide bands and 7 for narrow ones, whose errors oscillate: 1e-6 allows 20. Methods
-    // without a band have rounding errors, 1e-12.
+    // Samples are at most 3e-4 in log z away from a maximum. They miss 4.5e-8 times its relative curvature.
+    // The curvature is 2 for wide bands and 7 for narrow ones, whose errors oscillate. The tolerance 1e-6
+    // allows 20. Methods without a band have rounding errors, 1e-12.
     EXPECT_NEAR(find_certificate(name).band.error, static_cast<double>(largest),
                 1e-6 * static_cast<double>(largest) + 1e-12)
         << name;
@@ -163,13 +164,13 @@ TEST(intermediate_claims, that_do_not_hold_are_rejected) {
   EXPECT_THAT(failures_with("md-imex-4-2", "all"), Contains(HasSubstr("layer 2.16")));
   EXPECT_THAT(failures_with("ars-222", "all"), Contains(HasSubstr("claims.intermediate = all")));
   EXPECT_THAT(failures_with("ssp2-222", "slow"), Contains(HasSubstr("neither relaxed nor u^n")));
-  // Changing d_3 = 1/6 by 1e-6 changes the flux by 6e-6.
+  // A change of d_3 = 1/6 by 1e-6 changes the flux by 6e-6.
   EXPECT_THAT(failures_with("md-imex-5-2", "slow", "1/6", "0.166667666666666666666666666667"),
               Contains(HasSubstr("claims.intermediate = slow but the O(epsilon) terms are flux 0.99999")));
   bad_input::expect_refused({{[&] { failures_with("md-imex-5-2", "slwo"); }, {"did you mean 'slow'?"}}});
 }
 
-// Four digits from a search suffice for Newton's method to find the other forty; trailing zeros mark the
+// Four digits from a search suffice for Newton's method to find the other forty. Trailing zeros mark the
 // numbers as inexact.
 const std::string four_digits = test::method_text("md-imex-4-2", "imex", 2, R"([shu_osher]
 r = "1.511000000000"
@@ -185,8 +186,8 @@ TEST(polishing, with_conditions_of_the_intermediate_regime_recovers_the_catalogu
     return std::vector<mp_real>{terms.flux - 1, terms.last - 1};
   };
   const auto polished = polish(parse_method(four_digits, "four digits"), 45, keeps_flux).polished;
-  // Eight conditions leave one of nine coefficients free, so the result is as close to the method of the file
-  // as four digits allow.
+  // Eight conditions leave one of nine coefficients free. The result is therefore as close to the method of
+  // the file as four digits allow.
   const auto m = polished.coefficients<mp_real>(), file = find_method("md-imex-4-2").coefficients<mp_real>();
   EXPECT_LT(abs(m.r - file.r), mp_real(1e-3));
   EXPECT_LT(abs(analyse_intermediate_regime(m).flux - 1), mp_real(1e-42));

@@ -1,4 +1,4 @@
-// The table of choices answers every request with a method that can do what is asked.
+// The table of choices answers every request with a method that satisfies the request.
 #include <apsis/method/method_choice.hpp>
 
 #include <apsis/method/certificate.hpp>
@@ -51,13 +51,13 @@ TEST(choice, is_a_method_that_can_do_what_is_asked) {
     if (m.kind == apsis::method_kind::explicit_only) {
       EXPECT_TRUE(wanted.highest_ratio && *wanted.highest_ratio <= apsis::resolved_ratio) << m.name;
       EXPECT_FALSE(wanted.graded_start);
-      // Stable, with room for a rate that doubles.
+      // The method is stable even if the rate doubles.
       EXPECT_LT(apsis::rate_errors_at(m, 2.0 * apsis::resolved_ratio).flux, inf);
     } else {
       EXPECT_EQ(m.kind, apsis::method_kind::imex);
       const auto response = apsis::compute_rate_response(m);
       ASSERT_TRUE(response);
-      // The terms of size ε are right in the limit, so that no choice has a plateau.
+      // The terms of size ε are right in the limit, so no choice has a plateau.
       EXPECT_NEAR(apsis::rate_errors_at(m, 1e8).flux, 0.0, 1e-5) << m.name;
     }
   }

@@ -1,4 +1,4 @@
-// SSP coefficients against independent formulas: random Shu–Osher forms, θ methods, stability polynomials.
+// SSP coefficients agree with independent formulas: random Shu–Osher forms, θ methods, stability polynomials.
 #include <apsis/method/monotonicity.hpp>
 
 #include "tableaux.hpp"
@@ -10,7 +10,7 @@
 namespace apsis::test::monotonicity_test {
 namespace {
 
-const mp_real zero("1e-45");  // exact dyadic input, sixty digits
+const mp_real zero("1e-45");  // the input is dyadic and exact, the arithmetic has sixty digits
 
 struct random_form {
   shu_osher_form<mp_real> form;
@@ -18,7 +18,7 @@ struct random_form {
   bool bounded = false;  ///< some w_ij > 0
 };
 
-/// A form with the signs of the theorem: weights k/1024 with row sums below 1, d ≥ 0 ≥ ḋ, not both 0.
+/// Returns a form with the signs of the theorem: weights k/1024 with row sums below 1, d ≥ 0 ≥ ḋ, not both 0.
 random_form draw_form(std::size_t s) {
   const auto dyadic = [](int low, int high) { return mp_real(*rc::gen::inRange(low, high)) / 1024; };
   random_form m;
@@ -95,7 +95,7 @@ TEST(monotonicity, radius_of_theta_methods_is_1_over_1_minus_theta) {
     b.A(1, 0) = 1 - theta;
     b.A(1, 1) = theta;
     RC_ASSERT(abs(monotonicity_radius(b.A, zero) * (1 - theta) - 1) < mp_real("1e-40"));
-    // Outside the paper's class for every θ: Q(u^n) enters explicitly.
+    // For every θ the method is outside the paper's class, because Q(u^n) enters explicitly.
     const auto found = analyse_imex(b, zero);
     RC_ASSERT(!found.exists);
     RC_ASSERT(!found.unconditional);
@@ -109,8 +109,8 @@ TEST(monotonicity, of_backward_euler_is_unconditional) {
   EXPECT_GE(monotonicity_radius(A, zero), mp_real(1e6));
 }
 
-/// Whether the derivatives of the stability polynomial ψ(z) = Σ z^k/k! at −x are ≥ 0, which holds up to its
-/// threshold factor, an upper bound for r.
+/// Returns true if all derivatives of the stability polynomial ψ(z) = Σ z^k/k! at −x are ≥ 0. This holds for
+/// x up to its threshold factor, an upper bound of r.
 bool absolutely_monotonic(int degree, double x) {
   for (int derivative = 0; derivative <= degree; ++derivative) {
     double sum = 0, term = 1;
@@ -126,15 +126,15 @@ bool absolutely_monotonic(int degree, double x) {
 TEST(monotonicity, of_explicit_methods_lies_between_the_bounds_by_form_and_polynomial) {
   for (const auto& [name, stages] : {std::pair{"ssprk-2-2", 2}, std::pair{"ssprk-3-3", 3}}) {
     const auto form = find_method(name).coefficients<mp_real>();
-    // Lower bound: the weights of the file are convex with r = 1.
+    // For a lower bound, the weights of the file are convex with r = 1.
     for (const auto& weight : initial_weights(form)) EXPECT_GE(weight, 0) << name;
     for (std::size_t i = 0; i < form.stages(); ++i)
       for (std::size_t j = 0; j < i; ++j) EXPECT_GE(std::min(form.P(i, j), form.W(i, j)), 0) << name;
     EXPECT_EQ(form.r, 1) << name;
-    // Upper bound: no method with this polynomial has r > 1.
+    // For an upper bound, no method with this polynomial has r > 1.
     EXPECT_TRUE(absolutely_monotonic(stages, 1.0)) << name;
     EXPECT_FALSE(absolutely_monotonic(stages, 1.0 + 1e-9)) << name;
-    // Hence r = 1, which bisection on the tableau finds.
+    // Bisection on the tableau must therefore find r = 1.
     EXPECT_LT(abs(monotonicity_radius(to_butcher(form).A_hat, zero) - 1), mp_real("1e-40")) << name;
   }
 }

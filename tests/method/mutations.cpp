@@ -1,4 +1,4 @@
-// Files with wrong coefficients are rejected, whichever coefficient is wrong.
+// A file with a single wrong coefficient is rejected.
 #include "named_tree.hpp"
 #include "support/catalogue.hpp"
 #include "tableaux.hpp"
@@ -31,7 +31,7 @@ std::string moved(const std::string& text, const char* by) {
   return mp_real(coefficient_value(text) + mp_real(by)).str(45, std::ios_base::fixed);
 }
 
-/// Returns the files of all methods that differ from m in one coefficient, zeros included.
+/// Returns the files of all methods that differ from m in one coefficient, also in one that is zero.
 std::vector<mutant> mutants(const method& m, const char* by) {
   std::vector<mutant> all;
   method changed = m;
@@ -64,12 +64,13 @@ std::vector<mutant> mutants(const method& m, const char* by) {
   return all;
 }
 
-/// Coefficients that the claims leave free: changing them by 1e-6 gives another method with the same claims.
+/// The claims do not depend on these coefficients. A change by 1e-6 gives another method with
+/// the same claims.
 const std::map<std::string, std::vector<std::string>> free_coefficients = {
     // Conditions of order 1 do not involve Q̇.
     {"forward-backward-euler", {"ddot22 + -1e-6"}},
-    // Only T(u_2) is used, and it reaches u^{n+1} through u_3 and u_5 with weights γ b̂_3 and −γ b̂_3:
-    // conditions of order 3 do not depend on the abscissa of stage 2.
+    // Only T(u_2) is used. It reaches u^{n+1} through u_3 and u_5 with the weights γ b̂_3 and −γ b̂_3.
+    // Conditions of order 3 therefore do not depend on the abscissa of stage 2.
     {"bhr-553",
      {"A21 + 1e-6", "A21 + -1e-6", "d22 + 1e-6", "d22 + -1e-6", "A_hat21 + 1e-6", "A_hat21 + -1e-6"}}};
 
@@ -89,19 +90,20 @@ bool same_butcher_form(const method& a, const method& b) {
   return true;
 }
 
-/// Reasons for rejecting mutants that satisfy the order conditions; all others violate an order condition.
+/// Reasons for the rejection of mutants that satisfy the order conditions. All other mutants violate one.
 const std::map<std::pair<std::string, std::string>, std::string> other_causes = {
-    // Conditions of order 1 do not involve Q̇: its sign decides strong stability, its presence in stage
-    // 1 the type.
+    // Conditions of order 1 do not involve Q̇. Its sign decides about strong stability, its presence in stage
+    // 1 about the type.
     {{"forward-backward-euler", "ddot11 + 1e-6"}, "claims.ssp_coefficient = 1 but the Butcher form gives 0"},
     {{"forward-backward-euler", "ddot22 + 1e-6"}, "claims.ssp_coefficient = 1 but the Butcher form gives 0"},
     {{"forward-backward-euler", "ddot11 + -1e-6"}, "claims.type = ARS but the method is of type A"},
-    // T of stage 1 is not used, and its Q has weight 0 in u^{n+1}.
+    // T of stage 1 is not used. Q of stage 1 has weight 0 in u^{n+1}.
     {{"ssp3-433", "d11 + 1e-6"}, "claims.l_stable = true but the implicit part is A("},
     {{"ssp3-433", "d11 + -1e-6"}, "claims.l_stable = true but the implicit part is A("},
 };
 
-/// The message names a condition of the claimed order, which `m` violates by the printed residual.
+/// Expects that the message names a condition of the claimed order, and that `m` violates it by
+/// the printed residual.
 void expect_violated_condition(const method& m, const std::string& refusal) {
   const std::regex pattern(
       R"(order (\d+): the condition of tree ([FG\[\],]+) is \S+ instead of \S+ \(residual (\S+)\))");
@@ -124,8 +126,8 @@ class every_method : public ::testing::TestWithParam<std::string> {};
 
 TEST_P(every_method, is_rejected_for_the_right_reason_if_a_coefficient_is_off_by_a_millionth) {
   const method& m = find_method(GetParam());
-  // For a first stage u^n, changing P_i1 shifts weight from u^n to u^n: the same method in a form that
-  // is not unique.
+  // If the first stage is u^n, a change of P_i1 shifts weight from u^n to itself. The method is the same, in
+  // another form.
   const bool first_is_initial = !m.is_tableau() && m.exact.D(0, 0) == "0" && m.exact.ddot[0] == "0";
   for (const char* by : {"1e-6", "-1e-6"})
     for (const auto& mutant : mutants(m, by)) {
@@ -136,7 +138,7 @@ TEST_P(every_method, is_rejected_for_the_right_reason_if_a_coefficient_is_off_by
         EXPECT_TRUE(c.claims_hold);
         continue;
       }
-      // A form that is not unique is refused where strong stability is read off it.
+      // A form that is not unique is refused if strong stability follows from it.
       if (first_is_initial && mutant.weight_of_first_stage > 0 && m.claims.ssp_coefficient == "0") {
         EXPECT_TRUE(same_butcher_form(m, changed) && c.claims_hold);
         continue;
@@ -179,7 +181,7 @@ std::string name_of(const ::testing::TestParamInfo<std::string>& method_name) {
   return name;
 }
 
-/// Methods with many stages have several hundred mutants of about 10 ms each.
+/// A method with many stages has several hundred mutants, which take about 10 ms each.
 std::vector<std::string> methods_with(bool many_stages) {
   return methods_where([&](const method& m) { return (m.stages() > 6) == many_stages; });
 }
@@ -228,7 +230,7 @@ TEST(refusals, name_condition_value_and_tree) {
     const temporary_file file(text);
     EXPECT_NO_THROW(load_method_file(file.path()));
   }
-  // d_1 = 0.6 gives b·e = 0.6 + 0.5.
+  // With d_1 = 0.6, b·e = 0.6 + 0.5.
   const std::string wrong = refusal(with(text, "d = [\"1/2\"", "d = [\"0.6\""));
   EXPECT_THAT(wrong, ::testing::HasSubstr("tree G is 1.1 instead of 1"));
 }
@@ -249,12 +251,12 @@ TEST(refusals, reject_wrong_orders_coefficients_and_types) {
 }
 
 TEST(refusals, reject_a_method_with_a_negative_weight) {
-  // The trapezoidal rule uses Q(u^n) explicitly, so no form of the paper's class exists.
+  // The trapezoidal rule uses Q(u^n) explicitly, so it has no form of the paper's class.
   const auto& c = find_certificate("dirk-2-2");
   EXPECT_EQ(c.ssp_coefficient, 0);
   EXPECT_FALSE(c.unconditional);
   EXPECT_THAT(c.limiting_entry, ::testing::HasSubstr("A_2,1 = 0.5"));
-  // Its radius of absolute monotonicity follows from 1 − r/2 ≥ 0.
+  // The radius of absolute monotonicity follows from 1 − r/2 ≥ 0.
   EXPECT_NEAR(c.radius_of_implicit_part.convert_to<double>(), 2.0, 1e-15);
 }
 

@@ -8,8 +8,8 @@
 
 namespace apsis::test {
 
-/// The left-hand side of the order condition of a tree given by name, "G[F,G[F]]", and its exact value, by
-/// independent recursions, so that a condition named in a message is not checked by the code that named it.
+/// The left-hand side of the order condition of a tree given by name, "G[F,G[F]]", and its exact value. The
+/// recursions are independent of the code that names the condition in a message.
 class named_tree {
  public:
   explicit named_tree(const std::string& name) {
@@ -39,7 +39,7 @@ class named_tree {
         for (std::size_t j = 0; j <= i; ++j) sums[i] += coefficients(i, j) * values[j];
     };
     add(root_ == 'F' ? b.A_hat : b.A, at_stages);
-    // Q̇ = Q'Q: one factor G of the product is replaced by its own children.
+    // As Q̇ = Q'Q, the children of one factor G of the product replace this factor.
     for (std::size_t k = 0; root_ == 'G' && k < children_.size(); ++k) {
       if (children_[k].root_ != 'G') continue;
       auto values = product(b, children_, k);

@@ -1,5 +1,5 @@
 // Polishing the digits printed in papers gives the digits of the catalogue. The printed coefficients are
-// transcribed here, so that errors in the files and in polishing cannot cancel.
+// transcribed here. Errors in the files and in polishing thus cannot cancel.
 #include <apsis/method/polish.hpp>
 
 #include "tableaux.hpp"
@@ -29,7 +29,7 @@ d = ["0.660949255604937", "0.242201390400848", "1.137542996287740", "0.191388711
 ddot = ["-0.177750705279127", "-0.354733903778084", "-0.403963513682271", "-0.161628266349058", "-0.218859021269943"]
 )");
 
-// The printed 2 in d and ddot is known to fifteen decimals, like the other coefficients.
+// The printed 2 in d and ddot is exact to fifteen decimals, like the other coefficients.
 const std::string printed_md_imex_6_3 = method_text("md-imex-6-3", "imex", 3, R"([shu_osher]
 r = "0.904402174130635"
 P = [
@@ -52,7 +52,7 @@ d = ["0", "2.000000000000000", "0.388820513661584", "0.083529464436389", "1.7933
 ddot = ["-0.871358934880525", "-0.856842702601821", "0", "0", "-2.000000000000000", "-0.205134529930013"]
 )");
 
-// The method 2.6.1 of Hu, Shu and Zhang by its Butcher form, with the correction step as the fourth row.
+// Method 2.6.1 of Hu, Shu and Zhang in Butcher form. The correction step is the fourth row.
 const std::string printed_hsz_a_3_2 = method_text("hsz-a-3-2", "imex", 2, R"([butcher]
 A_hat = [
   [],
@@ -69,8 +69,8 @@ A = [
 A_dot = [["0"], ["0", "0"], ["0", "0", "0"], ["0", "0", "0", "-0.27973737915215"]]
 )");
 
-/// SSPRK(5,4) of Spiteri and Ruuth, u_i = Σ_j α_ij u_j + Δt β_ij T(u_j): in our form W = rβ and P = α − rβ
-/// with r = min α/β, and P = 0 where r is attained to the printed digits.
+/// SSPRK(5,4) of Spiteri and Ruuth is u_i = Σ_j α_ij u_j + Δt β_ij T(u_j). Our form has W = rβ and P = α − rβ
+/// with r = min α/β. P = 0 where r is attained to the printed digits.
 std::string printed_ssprk_5_4() {
   using rows = std::vector<std::vector<std::string>>;
   const rows alpha = {{"1"},
@@ -106,7 +106,7 @@ std::string printed_ssprk_5_4() {
                      "[shu_osher]\nr = \"" + digits(r) + "\"\nP = " + P + "]\nW = " + W + "]\n");
 }
 
-/// Pairs of corresponding coefficients of two methods, in file order.
+/// Returns pairs of corresponding coefficients of two methods, in file order.
 std::vector<std::pair<std::string, std::string>> side_by_side(const method& a, const method& b) {
   std::vector<std::pair<std::string, std::string>> pairs{{a.exact.r, b.exact.r}};
   for (std::size_t i = 0; i < a.stages(); ++i) {
@@ -124,7 +124,7 @@ mp_real difference(const std::string& a, const std::string& b) {
   return abs(coefficient_value(a) - coefficient_value(b));
 }
 
-/// Largest allowed and smallest possible change, in units of the fifteenth decimal.
+/// Largest allowed change, and a lower bound of any change, in units of the fifteenth decimal.
 struct expected_move {
   std::string name, text;
   double at_most, at_least;
@@ -163,16 +163,16 @@ TEST_P(printed_digits, move_by_almost_the_minimum) {
   }
   // The reported change refers to the unrounded coefficients.
   EXPECT_LT(abs(largest - result.largest_move), mp_real("1e-44"));
-  // The dual bound lies below the change found, and close to it: the polished method is almost optimal.
+  // The dual bound is below the change found, and close to it. The polished method is thus almost optimal.
   EXPECT_GE(result.smallest_possible_move, mp_real(at_least) * unit);
-  // The bound is that of the linearized conditions; changes of 1e-15 change gradients by about
-  // as much, relatively.
+  // The bound holds for linearized conditions. Changes of 1e-15 change gradients by about the
+  // same relative amount.
   EXPECT_LE(result.smallest_possible_move, result.largest_move * mp_real(1 + 1e-12));
 }
 
 // For the third-order IMEX method no coefficients within one unit of all printed digits satisfy the
-// conditions exactly: the bound is 1.07. For SSPRK(5,4), r = min α/β is known only to about 1e-14. Hu, Shu
-// and Zhang print fourteen digits; a unit of the last one is 10 here.
+// conditions exactly: the bound is 1.07. For SSPRK(5,4), r = min α/β is accurate only to about 1e-14. Hu, Shu
+// and Zhang print fourteen digits, so a unit of their last digit is 10 here.
 INSTANTIATE_TEST_SUITE_P(papers, printed_digits,
                          ::testing::Values(expected_move{"imdrk-5-4", printed_imdrk_5_4, 0.72, 0.70},
                                            expected_move{"md-imex-6-3", printed_md_imex_6_3, 1.08, 1.07},
@@ -184,7 +184,7 @@ INSTANTIATE_TEST_SUITE_P(papers, printed_digits,
                            return name;
                          });
 
-// A maximum that drops NaN would report convergence here.
+// A maximum that ignores NaN would report convergence here.
 TEST(polish, does_not_accept_nan_as_a_solution) {
   const method& m = find_method("md-imex-6-3");
   const auto broken = [](const shu_osher_form<mp_real>&) {

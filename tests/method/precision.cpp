@@ -29,8 +29,8 @@ TEST(catalogue, has_residuals_below_1e_38_and_satisfies_its_claims) {
 TEST(catalogue, is_certified_in_a_few_seconds_of_cpu_time) {
   const std::clock_t start = std::clock();
   for (const auto& name : method_names()) certify(parse_method(catalogue_text(name), name));
-  // About 1 s; the limit allows for an unoptimized build. CPU time, because other programs may
-  // load the machine.
+  // Certification takes about 1 s. The limit allows for an unoptimized build. The test measures CPU time,
+  // because other programs may load the machine.
   EXPECT_LT(static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC, 5.0);
 }
 
@@ -42,7 +42,7 @@ TEST(catalogue, returns_the_same_method_to_every_thread) {
   for (const auto* m : found) EXPECT_EQ(m, &find_method("ssprk-3-3"));
 }
 
-/// Adds in a different order; on a common grid every partial sum is exact, so the order does not matter.
+/// The sum has a different order. On a common grid every partial sum is exact, so the order does not matter.
 template <class Real>
 void expect_exact_rows(const method& m) {
   const auto form = m.coefficients<Real>();
@@ -60,8 +60,8 @@ void expect_exact_rows(const method& m) {
       for (const auto part : {&shu_osher_form<std::string>::P, &shu_osher_form<std::string>::W}) {
         const Real value = part == &shu_osher_form<std::string>::P ? form.P(i, j) : form.W(i, j);
         const mp_real wanted = coefficient_value((m.exact.*part)(i, j));
-        // The grid is epsilon/2: each weight is off by at most half of it, or by half a unit in the last
-        // place if it is above 1, and the largest of a row takes the remainder.
+        // The grid is epsilon/2. Each weight is off by at most half of it, or by half a unit in the last
+        // place if it is above 1. The largest weight of a row takes the remainder.
         const mp_real half = mp_real(std::numeric_limits<Real>::epsilon()) / 4;
         EXPECT_LE(abs(mp_real(value) - wanted), half * (mp_real(i + 2) + 2 * abs(wanted)))
             << m.name << i << j;
@@ -91,7 +91,7 @@ TEST(coefficients, off_the_grid_are_correctly_rounded) {
 }
 
 TEST(coefficients, of_rows_that_nearly_sum_to_1_leave_no_negative_weight_for_u_n) {
-  // Thirty weights, each rounded separately: their sum could exceed 1 by several ulps.
+  // There are thirty weights, each rounded separately. Their sum could exceed 1 by several ulps.
   std::string p = "P = [[]", d = "d = [\"1\"", ddot = "ddot = [\"-1/2\"";
   for (int i = 1; i <= 30; ++i) {
     p += ", [";
@@ -111,7 +111,8 @@ TEST(coefficients, of_rows_that_nearly_sum_to_1_leave_no_negative_weight_for_u_n
 }
 
 TEST(coefficients, do_not_round_to_a_sum_above_1) {
-  // Three thirds minus 1e-20: each third rounds up on the grid, so the plain sum would be 1 + 2⁻⁵³.
+  // The weights are three thirds minus 1e-20. Each third rounds up on the grid, so the plain sum would be
+  // 1 + 2⁻⁵³.
   const std::string third = "\"33333333333333333333/100000000000000000000\"";
   std::string text = catalogue_text("imdrk-1-2");
   const auto form = text.find("\n[shu_osher]");
@@ -149,8 +150,8 @@ TEST(monotonicity, radii_agree_with_the_literature) {
   const auto radius = [&](const matrix<mp_real>& K) {
     return monotonicity_radius(K, zero).convert_to<double>();
   };
-  // Forward Euler: 1; SSPRK(3,2): 2; SSPRK(4,3): 2 (Kraaijevanger 1991); the classical
-  // fourth-order method: 0.
+  // The radii are 1 for forward Euler, 2 for SSPRK(3,2) and SSPRK(4,3), and 0 for the classical fourth-order
+  // method (Kraaijevanger 1991).
   EXPECT_DOUBLE_EQ(radius(explicit_tableau(2, {{}, {"1"}})), 1.0);
   EXPECT_DOUBLE_EQ(radius(explicit_tableau(4, {{}, {"1/2"}, {"1/2", "1/2"}, {"1/3", "1/3", "1/3"}})), 2.0);
   EXPECT_DOUBLE_EQ(

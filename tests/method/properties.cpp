@@ -1,5 +1,5 @@
-// Properties of trees, order conditions and conversions for random input, and of methods of the literature
-// with known order.
+// Properties of trees, order conditions and conversions for random input. Methods of the literature have
+// their known orders.
 #include "tableaux.hpp"
 
 #include <apsis/method/order_conditions.hpp>
@@ -16,7 +16,8 @@ namespace apsis::test::properties_test {
 namespace {
 
 TEST(trees, have_the_known_number_per_order) {
-  // One colour: rooted trees, 1, 1, 2, 4, 9, 20, 48 (OEIS A000081); two colours: A000151.
+  // The numbers of rooted trees with one colour are 1, 1, 2, 4, 9, 20, 48 (OEIS A000081). Those with two
+  // colours are A000151.
   const std::vector<std::size_t> one = {1, 1, 2, 4, 9, 20, 48}, two = {2, 4, 14, 52, 214, 916};
   for (const auto& [colours, numbers_of] :
        {std::pair{tree_colours::G_only, one}, std::pair{tree_colours::F_only, one},
@@ -37,7 +38,7 @@ struct measured {
   double order = 1, density = 1;
 };
 
-/// Order and density of a tree, computed from the brackets of its name.
+/// Returns the order and density of a tree from the brackets of its name.
 measured measure(const std::string& name, std::size_t& at) {
   measured tree;
   ++at;
@@ -65,7 +66,7 @@ TEST(trees, have_the_order_and_density_of_their_names) {
 }
 
 TEST(trees, have_densities_between_those_of_the_bush_and_the_tall_tree) {
-  // Among the trees of order n, the tall tree has the largest density, γ = n!, and the bush the smallest,
+  // Among the trees of order n, the tall tree has the largest density, γ = n!. The bush has the smallest,
   // γ = n.
   double factorial = 1;
   for (int n = 1; n <= 6; ++n) {
@@ -117,7 +118,8 @@ TEST(order, of_methods_of_the_literature_is_the_known_one) {
                              {35.0 / 384, 0, 500.0 / 1113, 125.0 / 192, -2187.0 / 6784, 11.0 / 84}});
   EXPECT_EQ(order_of(dormand_prince, tree_colours::F_only), 5);
 
-  // Two-derivative methods with one and two internal stages (Chan and Tsai, Numer. Algorithms 53, 2010).
+  // These two-derivative methods have one and two internal stages (Chan and Tsai, Numer.
+  // Algorithms 53, 2010).
   auto fourth = tableau(3);
   set(fourth.A, {{}, {0.5}, {1}});
   set(fourth.A_dot, {{}, {1.0 / 8}, {1.0 / 6, 1.0 / 3}});
@@ -144,7 +146,7 @@ TEST(order_conditions, scale_with_the_step_length) {
     const auto before = elementary_weights(b, trees), after = elementary_weights(scaled, trees);
     for (std::size_t k = 0; k < trees.size(); ++k) {
       const double wanted = std::pow(lambda, trees[k].order) * before[k];
-      // Sums of up to 5⁵ products of numbers below 2.5⁵ may cancel: the bound is absolute.
+      // Sums of up to 5⁵ products of numbers below 2.5⁵ may cancel, so the bound is absolute.
       RC_ASSERT(std::abs(after[k] - wanted) <= 1e-10 * std::pow(1 + lambda, 5) * 100);
     }
   });
@@ -162,7 +164,7 @@ TEST(order_conditions, do_not_depend_on_colours_if_both_tableaux_are_equal) {
       std::string bare = trees[k].name;
       std::replace(bare.begin(), bare.end(), 'F', 'G');
       const auto [place, fresh] = seen[trees[k].density].emplace(bare, weights[k]);
-      // Twins may list children in a different order; they are then compared with each other.
+      // Twins may list children in a different order. They are then compared with each other.
       if (!fresh) RC_ASSERT(std::abs(place->second - weights[k]) < 1e-11);
     }
   });
@@ -187,7 +189,7 @@ TEST(conversion, to_butcher_and_back_is_the_identity) {
     }
     const auto again = to_shu_osher(to_butcher(m), R, m.r);
     for (std::size_t i = 0; i < s; ++i) {
-      // 60 digits, minus a few lost in the inverse of R.
+      // The numbers have 60 digits. The inverse of R loses a few of them.
       RC_ASSERT(abs(again.ddot[i] - m.ddot[i]) < mp_real(1e-50));
       for (std::size_t j = 0; j <= i; ++j) {
         RC_ASSERT(abs(again.P(i, j) - m.P(i, j)) < mp_real(1e-50));

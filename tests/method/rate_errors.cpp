@@ -31,7 +31,7 @@ TEST_P(errors_at_rates, have_the_limits_of_the_intermediate_regime) {
   const auto limit = apsis::analyse_intermediate_regime(m.coefficients<double>());
   const double z = 1e7;
   const auto at = apsis::rate_errors_at(m, z);
-  // Stages with small d + |ḋ| reach the limit late: terms of relative size 1e3/z.
+  // Stages with small d + |ḋ| approach the limit slowly, with terms of relative size 1e3/z.
   EXPECT_NEAR(at.flux, limit.flux - 1.0, 1e-3 * (1.0 + std::abs(limit.flux)));
   EXPECT_NEAR(at.last, limit.last - 1.0, 1e-3 * (1.0 + std::abs(limit.last)));
   if (std::isfinite(limit.layer)) {
@@ -52,8 +52,8 @@ TEST_P(errors_at_rates, are_interpolated_to_a_quarter_of_the_largest) {
     flux_defect = std::max(flux_defect, std::abs((1.0 - s) * value(fit->flux, s) - at.flux));
     last_defect = std::max(last_defect, std::abs((1.0 - s) * value(fit->last, s) - at.last));
   }
-  // Small d + ḋ make responses that are no polynomials of s where s is small; a warning needs their size
-  // alone. A twentieth of an error of the flux makes a method unfit (judge_loss).
+  // Small d + ḋ make responses that are no polynomials of s where s is small. A warning needs only their
+  // size. A twentieth of an error of the flux makes a method unfit (judge_loss).
   EXPECT_LE(flux_defect, 0.25 * flux + 0.03);
   EXPECT_LE(last_defect, 0.25 * last + 0.15);
 }
@@ -62,13 +62,13 @@ INSTANTIATE_TEST_SUITE_P(catalogue, errors_at_rates, testing::ValuesIn(methods_w
                          test_name);
 
 TEST(errors_of_other_integrators, are_those_of_their_equations) {
-  // e^{−z} leaves no deviation, so that the limit has no flux; small z have the order of the method.
+  // e^{−z} leaves no deviation, so the limit has no flux. For small z the error has the order of the method.
   const apsis::method& exponential = apsis::find_method("exponential-2");
   EXPECT_NEAR(apsis::rate_errors_at(exponential, 1e4).flux, -1.0, 1e-12);
   const double coarse = apsis::rate_errors_at(exponential, 0.02).flux,
                fine = apsis::rate_errors_at(exponential, 0.01).flux;
   EXPECT_GT(std::log2(std::abs(coarse / fine)), 1.9);
-  // The backward differentiation formula of a constant deviation is exact.
+  // The backward differentiation formula is exact for a constant deviation.
   for (const char* name : {"imex-bdf-2", "imex-bdf-5"})
     for (const double z : {0.1, 10.0, 1e6}) {
       const auto at = apsis::find_integrator(name).errors_at(z);
@@ -77,7 +77,7 @@ TEST(errors_of_other_integrators, are_those_of_their_equations) {
     }
   const auto two_step = apsis::find_integrator("two-step-10-3-mixed").errors_at(1e6);
   EXPECT_NEAR(two_step.flux, 0.0, 1e-4);
-  // Explicit methods have a response within their stability limit, 2 for the method of second order.
+  // Explicit methods have a response within their stability limit. The limit of the second-order method is 2.
   EXPECT_TRUE(std::isfinite(apsis::rate_errors_at(apsis::find_method("ssprk-2-2"), 1.9).flux));
   EXPECT_FALSE(std::isfinite(apsis::rate_errors_at(apsis::find_method("ssprk-2-2"), 2.1).flux));
   EXPECT_FALSE(apsis::compute_rate_response("ssprk-2-2"));

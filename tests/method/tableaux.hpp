@@ -14,7 +14,7 @@ namespace apsis::test {
 
 using numbers = std::vector<double>;
 
-/// Uniform random numbers in (−1, 1), reproducible on every platform.
+/// Uniform random numbers in (−1, 1), equal on every platform.
 class noise {
  public:
   explicit noise(std::uint64_t seed) : state_(seed * 2654435761U + 88172645463325252U) {}
@@ -29,7 +29,7 @@ class noise {
   std::uint64_t state_;
 };
 
-/// A random tableau without structure other than triangularity.
+/// Returns a random lower triangular tableau without further structure.
 inline butcher_form<double> random_tableau(std::size_t s, std::uint64_t seed) {
   noise draw(seed);
   butcher_form<double> b{matrix<double>(s, s), matrix<double>(s, s), matrix<double>(s, s)};

@@ -1,5 +1,4 @@
-// Time integrators of every kind as data: published error constants, roots, what they need, names and
-// refusals.
+// Time integrators of every kind as data: published error constants, roots, requirements, names and refusals.
 #include <apsis/method/time_integrator.hpp>
 
 #include <apsis/core/embedded.hpp>
@@ -23,7 +22,7 @@ namespace time_integrator_test {
 using testing::HasSubstr;
 
 TEST(time_integrator, imex_bdf_has_the_orders_and_error_constants_of_the_literature) {
-  // The constant of BDF is −1/(k + 1) for Σ_j ∇^j u/j = Δt u' (Hairer, Nørsett, Wanner, Solving Ordinary
+  // The constant of BDF for Σ_j ∇^j u/j = Δt u' is −1/(k + 1) (Hairer, Nørsett, Wanner, Solving Ordinary
   // Differential Equations I, table III.2.2 after division by σ(1)). Extrapolation of u' from t_n, …,
   // t_{n+1−k} leaves Δt^k u^{(k+1)}, the factor of ∇^k u'.
   for (int k = 1; k <= 5; ++k) {
@@ -44,7 +43,7 @@ TEST(time_integrator, a_wrong_coefficient_lowers_the_order) {
 
 TEST(time_integrator, errors_grow_as_the_roots_say) {
   EXPECT_EQ(apsis::error_amplification({1.0}), 1.0);
-  // h_n − h_{n−1} = (−b)^n.
+  // The history satisfies h_n − h_{n−1} = (−b)^n.
   EXPECT_NEAR(apsis::error_amplification({1.25, -0.25}), 1.0 / 0.75, 1e-14);
   EXPECT_NEAR(apsis::error_amplification({0.5, 0.5}), 1.0 / 0.5, 1e-14);
   // BDF of order 2 has the roots 1 and 1/3.

@@ -1,5 +1,4 @@
-// Limits that unconditional strong stability of the implicit part sets to the band (docs/plateaus.md, (11)
-// and (12)).
+// Unconditional strong stability of the implicit part limits the band (docs/plateaus.md, (11) and (12)).
 #include <apsis/core/random_source.hpp>
 #include <apsis/method/certificate.hpp>
 #include <apsis/method/convexity.hpp>
@@ -13,7 +12,7 @@
 namespace apsis::unconditional_ssp_test {
 namespace {
 
-/// b·e, b·c and ḃ·e of the last stage.
+/// The sums b·e, b·c and ḃ·e of the last stage.
 struct sums {
   double weights = 0.0, abscissas = 0.0, second = 0.0;
 };
@@ -48,7 +47,7 @@ TEST(unconditional_ssp, bounds_b_c_from_below_and_excludes_c_dot_of_zero_for_eve
     const sums s = of_last_stage(form);
     double implicit = 0.0;
     for (std::size_t i = 0; i < form.stages(); ++i) implicit += form.D(i, i) > 0.0 ? 1.0 : 0.0;
-    // Rounding of sums of 16 stages with terms of order one.
+    // The tolerance covers the rounding of sums of 16 stages with terms of order one.
     EXPECT_NEAR(s.weights, 1.0, 1e-13) << name;
     EXPECT_GE(s.abscissas, 0.5 + 0.5 / implicit - 1e-13) << name;
     EXPECT_LE(s.second, -0.5 / implicit + 1e-13) << name;
@@ -75,7 +74,7 @@ TEST(unconditional_ssp, bounds_b_c_of_random_convex_forms) {
     auto form = zeros(stages);
     for (std::size_t i = 0; i < stages; ++i) {
       form.D(i, i) = source.one_in(4) ? 0.0 : source.magnitude(-2, 0);
-      // Row i divides its weight among the stages before it and u^n, half of the time without u^n.
+      // Row i divides its weight among the earlier stages and u^n. Half of the rows leave nothing for u^n.
       double left = 1.0;
       for (std::size_t j = i; j-- > 0;) {
         const double share =
@@ -105,7 +104,7 @@ TEST(finite_rate, has_exact_viscosity_and_layer_where_transport_and_collision_ha
     ++tested;
     for (const long double z : {0.1L, 1.0L, 7.0L, 1e3L}) {
       const auto at = at_finite_rate(b, z);
-      // Rounding of long double, times z² of the stage equations.
+      // The tolerance covers the rounding of long double times z² of the stage equations.
       EXPECT_NEAR(static_cast<double>(at.flux), 1.0, 1e-11) << name;
       EXPECT_NEAR(static_cast<double>(z * at.layer), static_cast<double>(1.0L - at.decay), 1e-11) << name;
     }
@@ -114,7 +113,8 @@ TEST(finite_rate, has_exact_viscosity_and_layer_where_transport_and_collision_ha
 }
 
 TEST(finite_rate, integrates_a_layer_like_repeated_steps_of_the_stage_equations) {
-  // Equal steps: Σ_n layer(z) R(−z)ⁿ = layer(z)/(1 − R(−z)), which tends to (7) as z → ∞ and to 1/z as z → 0.
+  // For equal steps Σ_n layer(z) R(−z)ⁿ = layer(z)/(1 − R(−z)). This tends to (7) as z → ∞ and to 1/z as
+  // z → 0.
   for (const auto& name : method_names()) {
     const auto form = find_method(name).coefficients<mp_real>();
     const auto terms = analyse_intermediate_regime(form);

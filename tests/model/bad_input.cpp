@@ -1,4 +1,4 @@
-// Formulas that are refused: the tables of the folder bad_input.
+// Formulas of the tables in the folder bad_input are refused.
 #include <support/bad_input.hpp>
 
 #include <apsis/model/expression.hpp>

@@ -1,4 +1,4 @@
-// The Broadwell model checked against its equations.
+// The Broadwell model satisfies its equations.
 #include <apsis/model/model_registry.hpp>
 
 #include <algorithm>
@@ -18,7 +18,7 @@ const apsis::relaxation_model& broadwell() {
   return dynamic_cast<const apsis::relaxation_model&>(*made);
 }
 
-/// Densities of any magnitude, zeros included.
+/// Returns densities of any magnitude, including zeros.
 std::vector<double> random_densities(int lowest_power, int highest_power) {
   std::vector<double> f(3);
   for (double& value : f)
@@ -40,7 +40,7 @@ TEST(broadwell, rate_times_distance_from_equilibrium_is_the_collision_of_the_pap
     const double q = f[1] * f[1] - f[0] * f[2];
     const double scale = omega[0] * omega[0];
     const double sign[] = {1.0, -1.0, 1.0};
-    // About a dozen rounding errors of terms up to ρ².
+    // The tolerance covers about a dozen rounding errors of terms up to ρ².
     for (std::size_t k = 0; k < 3; ++k)
       RC_ASSERT(std::abs(m.rate(omega) * (e[k] - f[k]) - sign[k] * q) <= 1e-15 * scale);
   });
@@ -66,8 +66,8 @@ TEST(broadwell, collisions_lower_the_entropy_and_equilibrium_is_its_minimum) {
     RC_ASSERT(m.equilibrium(omega, e));
     const double start = m.entropy()->density(f.data()),
                  rounding = 1e-14 * omega[0] * (1.0 + std::abs(std::log(omega[0] + 1e-300)));
-    // Every state with the same ω is f + s (1, −1, 1): checks dH/ds along Q, and H on the segment from f to
-    // E.
+    // Every state with the same ω is f + s (1, −1, 1). The test checks dH/ds along Q, and H on the segment
+    // from f to E.
     double previous = start;
     for (int k = 1; k <= 10; ++k) {
       std::vector<double> v(3);
@@ -81,14 +81,14 @@ TEST(broadwell, collisions_lower_the_entropy_and_equilibrium_is_its_minimum) {
 }
 
 TEST(broadwell, wrong_weights_would_not_decay) {
-  // With weight 1 for the particles at rest, collisions that produce moving particles increase the sum.
+  // If particles at rest had weight 1, collisions that produce moving particles would increase the sum.
   const double f[] = {0.1, 1.0, 0.1}, q = f[1] * f[1] - f[0] * f[2];
   const auto slope = [&](double weight) {
     return q * (std::log(f[0]) + 1.0) - weight * q * (std::log(f[1]) + 1.0) + q * (std::log(f[2]) + 1.0);
   };
   EXPECT_LT(slope(2.0), 0.0);
   EXPECT_NEAR(slope(2.0), q * std::log(f[0] * f[2] / (f[1] * f[1])), 1e-14);
-  // The entropy of the model has the slope that weight 2 gives.
+  // The entropy of the model has the slope for weight 2.
   const double h = 1e-6, along[] = {f[0] + h * q, f[1] - h * q, f[2] + h * q};
   EXPECT_NEAR((broadwell().entropy()->density(along) - broadwell().entropy()->density(f)) / h, slope(2.0),
               1e-4);
@@ -109,7 +109,7 @@ TEST(broadwell, data_of_the_riemann_problems_have_the_published_moments) {
     for (std::size_t k = 0; k < b.size(); ++k) EXPECT_NEAR(a[k], b[k], 1e-15);
   };
   expect(moments_at("riemann-1", 0.19), {2.0, 1.0, 1.0});
-  expect(moments_at("riemann-1", 0.2), {1.0, 0.13962, 1.0});  // the value at the jump is the right one
+  expect(moments_at("riemann-1", 0.2), {1.0, 0.13962, 1.0});  // the value at the jump is that on the right
   expect(moments_at("riemann-2", -0.01), {1.0, 0.0, 1.0});
   expect(moments_at("riemann-2", 0.01), {0.2, 0.0, 1.0});
 }

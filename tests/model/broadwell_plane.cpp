@@ -1,4 +1,4 @@
-// Broadwell's model in the plane checked against its collision and against the model on a line.
+// Broadwell's model in the plane agrees with its collision and with the model on a line.
 #include <apsis/model/model_registry.hpp>
 
 #include <algorithm>
@@ -21,7 +21,7 @@ const apsis::relaxation_model& called(const char* name) {
   return dynamic_cast<const apsis::relaxation_model&>(*one);
 }
 
-/// Densities of any magnitude, zeros included.
+/// Returns densities of any magnitude, including zeros.
 std::array<double, 4> random_densities(int lowest_power, int highest_power) {
   std::array<double, 4> f{};
   for (double& value : f)
@@ -49,7 +49,7 @@ TEST(broadwell_plane, rate_times_distance_from_equilibrium_is_the_collision) {
     const equilibrium of(f);
     const double q = f[2] * f[3] - f[0] * f[1];
     const std::array<double, 4> sign = {1.0, 1.0, -1.0, -1.0};
-    // About twenty rounding errors of terms up to ρ².
+    // The tolerance covers about twenty rounding errors of terms up to ρ².
     for (std::size_t k = 0; k < 4; ++k)
       RC_ASSERT(std::abs(of.omega[0] * (of.e[k] - f[k]) - sign[k] * q) <= 3e-15 * of.omega[0] * of.omega[0]);
   });

@@ -1,4 +1,4 @@
-// Central moments of rows on velocity grids, and targets that they make conservative.
+// Central moments of rows on velocity grids, and the conservative targets that follow from them.
 #include <apsis/model/central_sums.hpp>
 
 #include <apsis/model/correlated_gaussian.hpp>
@@ -26,7 +26,7 @@ double number(double from, double to) {
   return from + (to - from) * *rc::gen::inRange(0, 10'001) / 1e4;
 }
 
-/// Lines of different lengths, uniform or with unequal spacing and weights; or rings about an axis.
+/// Returns lines of different lengths, uniform or with unequal spacing and weights, or rings about an axis.
 apsis::velocity_grid any_grid(int dimensions) {
   if (dimensions == 3 && *rc::gen::arbitrary<bool>())
     return {apsis::velocity_line(*rc::gen::inRange(4, 11), number(3.0, 8.0)),
@@ -76,14 +76,14 @@ RC_GTEST_PROP(central_sums, are_those_of_long_double_in_every_direction, ()) {
             exact += term;
             size += std::abs(term);
           }
-          // A term takes part in about 15 roundings, and in one of each addition above it.
+          // A term is part of about 15 roundings, and of one more for each addition above it.
           RC_ASSERT(std::abs(static_cast<long double>(sums[{a, b, c}]) - exact) <= 8e-15L * size);
         }
   });
 }
 
-/// A base that is no product of lines: with the ratio θ of h and g its target takes no pass over the row to
-/// restore its moments; without it is iterated. Both are the same target.
+/// The base is not a product of lines. With the ratio θ of h and g its target needs no pass over the row to
+/// restore its moments. Without θ the target is iterated. Both targets must agree.
 RC_GTEST_PROP(central_sums, make_targets_conservative, ()) {
   const int d = *rc::gen::inRange(1, 4);
   auto parts = apsis::default_config(apsis::find_model("es-bgk"));

@@ -56,9 +56,9 @@ RC_GTEST_PROP(correlated_gaussian, is_its_formula_at_every_velocity, ()) {
     Eigen::VectorXd c(d);
     for (int k = 0; k < d; ++k) c[k] = grid.component(k)[static_cast<std::size_t>(j)] - state.u[k];
     const double exact = height * std::exp(-0.5 * c.dot(inverse * c));
-    // Exponents up to 700 with their rounding, in sums whose terms are larger where components correlate;
-    // values are 0 below 1e-300, and so are exponentials below exp(-690) < 3e-300, whose factor is at most
-    // the height.
+    // Exponents up to 700 are rounded in sums, whose terms are larger where components correlate.
+    // Values below 1e-300 are set to 0. So are exponentials below exp(-690) < 3e-300, whose factor is
+    // at most the height.
     RC_ASSERT(std::abs(m[static_cast<std::size_t>(j)] - exact) <=
               1e-11 * exact + 3e-300 * std::max(1.0, height));
   }

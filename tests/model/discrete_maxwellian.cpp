@@ -1,4 +1,4 @@
-// The discrete Maxwellian up to the boundary of the realizable moments, and in a vacuum.
+// The discrete Maxwellian, up to the boundary of the realizable moments and in a vacuum.
 #include <apsis/core/random_source.hpp>
 #include <apsis/model/maxwellian.hpp>
 
@@ -34,7 +34,7 @@ velocity_grid random_grid(random_source& random) {
   return {d, random.integer(4, d == 1 ? 60 : d == 2 ? 16 : 10), random.magnitude(-1, 2)};
 }
 
-/// One to four values of very different magnitudes.
+/// Returns a row with one to four values of very different magnitudes.
 row few_values(const velocity_grid& grid, random_source& random) {
   row f = zeros(grid);
   for (int left = random.integer(1, 5); left > 0; --left)
@@ -43,7 +43,7 @@ row few_values(const velocity_grid& grid, random_source& random) {
   return f;
 }
 
-/// An arbitrary point, a grid point, a midpoint, or a small distance from one of these.
+/// Returns an arbitrary point, a grid point, a midpoint, or a point close to one of these.
 double random_centre(const velocity_grid& grid, random_source& random) {
   if (random.one_in(3)) return random.uniform(-grid.max(), grid.max());
   const double point = grid.line(0).v()[static_cast<std::size_t>(random.integer(0, grid.line(0).points()))];
@@ -51,8 +51,8 @@ double random_centre(const velocity_grid& grid, random_source& random) {
   return point + (random.one_in(2) ? 0.0 : 0.5 * grid.line(0).spacing() * nearly);
 }
 
-/// exp(∓|v − u|²/(2T)): T from 1e-6 Δv² to `hottest` Δv²; with the lower sign the mass concentrates at the
-/// corners.
+/// Returns exp(∓|v − u|²/(2T)) with T from 1e-6 Δv² to `hottest` Δv². With the lower sign the mass
+/// concentrates at the corners.
 row gaussian(const velocity_grid& grid, random_source& random, double hottest, bool inverted) {
   const double T =
       random.magnitude(-6, std::log10(hottest)) * grid.line(0).spacing() * grid.line(0).spacing();
@@ -69,7 +69,7 @@ row gaussian(const velocity_grid& grid, random_source& random, double hottest, b
   return exponent;
 }
 
-/// Two adjacent velocities in each direction, plus a tiny amount elsewhere.
+/// Returns two adjacent velocities in each direction, plus a tiny amount elsewhere.
 row nearly_on_a_face(const velocity_grid& grid, random_source& random) {
   row f(static_cast<std::size_t>(grid.size()), 1.0);
   for (int k = 0; k < grid.dimensions(); ++k) {
@@ -107,8 +107,9 @@ row random_row(const velocity_grid& grid, random_source& random) {
   return f;
 }
 
-/// Largest defect of the moments of m, summed in extended precision, relative to the mass, to √(2ρ𝓔) ≥ Σ|v|m,
-/// and to the energy (plus the rounding error of the energy of one spacing, for a gas at rest with T = 0).
+/// Returns the largest defect of the moments of m, summed in extended precision. Defects are relative to the
+/// mass, to √(2ρ𝓔) ≥ Σ|v|m, and to the energy. The scale of the energy includes the rounding error of one
+/// spacing, for a gas at rest with T = 0.
 double defect(const velocity_grid& grid, const row& m, const std::array<double, 5>& omega) {
   const auto d = static_cast<std::size_t>(grid.dimensions());
   std::array<long double, 5> own{};
@@ -130,7 +131,7 @@ double defect(const velocity_grid& grid, const row& m, const std::array<double, 
   return std::max(worst, miss(1 + d, omega[1 + d] + grain));
 }
 
-/// Σ m log(m Δv^d/ρ), independent of the units of m.
+/// Returns Σ m log(m Δv^d/ρ), which does not depend on the unit of m.
 double entropy(const velocity_grid& grid, const row& m, double rho) {
   double sum = 0.0;
   for (const double x : m)
@@ -150,16 +151,17 @@ TEST(discrete_maxwellian, exists_for_the_moments_of_every_nonnegative_row) {
     ASSERT_TRUE(apsis::discrete_maxwellian(grid, omega.data(), m.data()))
         << sample << ": " << apsis::why_unrealizable(grid, omega.data());
     for (const double x : m) ASSERT_GE(x, 0.0) << sample;
-    // About ten rounding errors: of the sums of f over up to 1000 points, of a division, and of m.
+    // The tolerance covers about ten rounding errors: of the sums of f over up to 1000 points, of a division,
+    // and of m.
     ASSERT_LE(defect(grid, m, omega), 2e-14) << sample << ", d = " << grid.dimensions();
-    // It minimizes the entropy among the rows with these moments, and f is one of them.
+    // m minimizes the entropy among the rows with these moments, such as f.
     ASSERT_LE(entropy(grid, m, omega[0]), entropy(grid, f, omega[0]) + 1e-9) << sample;
   }
 }
 
 TEST(discrete_maxwellian, has_the_given_moments_near_a_corner_of_the_grid) {
-  // Nearly all mass at one end: during the iteration the weights at the other end pass through subnormal
-  // numbers.
+  // Nearly all mass is at one end. During the iteration the weights at the other end pass
+  // through subnormal numbers.
   for (const int points : {28, 30, 55}) {
     const velocity_grid grid(1, points, 1.0);
     for (double share = 1e-14; share < 1e-6; share *= 1.5)
@@ -184,15 +186,15 @@ TEST(discrete_maxwellian, of_a_row_on_one_velocity_or_two_adjacent_ones_is_that_
     f[first + 1] = random.one_in(3) && f[first] > 0.0 ? 0.0 : random.magnitude(-20, 0);
     const auto omega = moments_of(grid, f);
     ASSERT_TRUE(apsis::discrete_maxwellian(grid, omega.data(), m.data())) << sample;
-    // Moments are rounded relative to the energy, which may correspond to many spacings.
+    // Moments are rounded relative to the energy. It may be that of many spacings.
     const double rounding = 1e-15 * (f[first] + f[first + 1]) * grid.line(0).points() * grid.line(0).points();
     for (std::size_t j = 0; j < m.size(); ++j) ASSERT_NEAR(m[j], f[j], rounding) << sample;
   }
 }
 
 TEST(discrete_maxwellian, on_a_face_is_the_product_of_its_lines) {
-  // Means between two adjacent points in each direction with the smallest energy: 2^d points. The same means
-  // with the largest energy of the grid: its 2^d corners.
+  // With the smallest energy, means between two adjacent points in each direction belong to 2^d points. With
+  // the largest energy of the grid the same means belong to its 2^d corners.
   for (int d = 1; d <= 3; ++d) {
     const velocity_grid grid(d, 6, 3.0);
     for (const bool lower : {true, false}) {
@@ -204,7 +206,7 @@ TEST(discrete_maxwellian, on_a_face_is_the_product_of_its_lines) {
           const double v = grid.component(k)[j], s = share[static_cast<std::size_t>(k)];
           expected[j] *= v == high ? s : v == low ? 1.0 - s : 0.0;
         }
-      // Maximal correlation: the same marginals with as much mass as possible on the diagonal.
+      // With maximal correlation the marginals are the same, but as much mass as possible is on the diagonal.
       row f = zeros(grid);
       double placed = 0.0;
       std::array<double, 3> sorted = share;
@@ -225,14 +227,15 @@ TEST(discrete_maxwellian, on_a_face_is_the_product_of_its_lines) {
       }
       const auto omega = moments_of(grid, f);
       ASSERT_TRUE(apsis::discrete_maxwellian(grid, omega.data(), m.data()));
-      // A rounding error ε of the energy moves a fraction of a few ε of the mass to other velocities.
+      // A rounding error ε of the energy moves a share of a few ε of the mass to other velocities.
       for (std::size_t j = 0; j < m.size(); ++j) EXPECT_NEAR(m[j], expected[j], 1e-14) << d << lower;
     }
   }
 }
 
 TEST(discrete_maxwellian, depends_continuously_on_the_moments_up_to_the_boundary) {
-  // From T = 0 at and between grid points, in steps of increasing size: |Δm| ≤ C |Δω| with C of order 1/Δv².
+  // The steps from T = 0, at and between grid points, have increasing size. |Δm| ≤ C |Δω| with C
+  // of order 1/Δv².
   for (const double u : {0.5, 0.0, 0.3, 2.5, 5.4999999999}) {
     const velocity_grid grid(1, 12, 6.0);
     const double distance = std::abs(u - std::floor(u) - 0.5);

@@ -1,5 +1,4 @@
-// Gases of discrete velocities given by a table: invariants, the stage equation, equilibria, and tables that
-// are refused.
+// Gases of discrete velocities from a table: invariants, the stage equation, equilibria, and refused tables.
 #include <apsis/core/errors.hpp>
 #include <apsis/core/random_source.hpp>
 #include <apsis/model/internal/binary_collisions.hpp>
@@ -48,12 +47,12 @@ void make(const texts& velocities, const texts& collisions = {}, int dimensions 
   gas(velocities, collisions, dimensions);
 }
 
-/// A table with its collisions written out, so that tests do not depend on how the model finds them.
+/// A table with explicit collisions, so that tests do not depend on the search of the model.
 struct table {
   std::vector<std::array<double, 2>> v;
   std::vector<std::array<std::size_t, 4>> collisions;
 
-  /// All elastic collisions of different pairs.
+  /// Adds all elastic collisions of different pairs.
   explicit table(const apsis::model& equation) {
     for (std::size_t j = 0; j < static_cast<std::size_t>(equation.components()); ++j)
       v.push_back({equation.speeds(0)[j], equation.speeds(1)[j]});
@@ -70,7 +69,7 @@ struct table {
               collisions.push_back({i, j, k, l});
   }
 
-  /// The symmetric bilinear form with Q(f) = B(f, f).
+  /// Returns the symmetric bilinear form B with Q(f) = B(f, f).
   template <class Real>
   std::vector<Real> form(const std::vector<Real>& f, const std::vector<Real>& g) const {
     std::vector<Real> q(f.size());
@@ -91,7 +90,7 @@ std::vector<double> random_row(std::size_t n, apsis::random_source& random) {
   return f;
 }
 
-/// The solution of one stage.
+/// Returns the solution of one stage.
 std::vector<double> stage(const apsis::model& equation, double a, double b, double epsilon,
                           std::vector<double> u) {
   const point_batch at{.count = 1, .pitch = equation.components(), .epsilon = &epsilon};
@@ -116,7 +115,7 @@ TEST(discrete_velocity, stages_of_four_velocities_are_those_in_closed_form_at_ev
       for (int repetition = 0; repetition < 20; ++repetition) {
         const auto u = random_row(4, random);
         const auto v = stage(*closed, a, b, epsilon, u), w = stage(*general, a, b, epsilon, u);
-        // Newton's method ends at rounding of terms of the size of u, and solves 3 linear equations with a
+        // Newton's method ends at the rounding of terms as large as u. It solves 3 linear equations with a
         // condition of some ten.
         for (std::size_t k = 0; k < 4; ++k)
           EXPECT_NEAR(w[k], v[k], 1e-14 * largest(u)) << epsilon << " " << a;
@@ -137,7 +136,7 @@ TEST(discrete_velocity, stages_solve_the_equation_that_defines_them) {
         const std::vector<long double> wide(v.begin(), v.end());
         const auto q = of.form(wide, wide), q_dot = of.form(wide, q);
         const long double first = a / epsilon, second = 2.0 * b / epsilon / epsilon;
-        // An error of 1e-15 in v is multiplied by the derivatives of Q and Q̇, about 10 and 100.
+        // The derivatives of Q and Q̇ multiply an error of 1e-15 in v by about 10 and 100.
         const double allowed =
             static_cast<double>(1e-14L * (1.0L + 10.0L * first + 100.0L * std::abs(second)));
         for (std::size_t k = 0; k < 9; ++k)
@@ -157,9 +156,9 @@ TEST(discrete_velocity, stages_keep_the_invariants_to_rounding_and_approach_the_
       std::vector<double> before(count), after(count);
       equation->invariant_densities(u.data(), before.data());
       equation->invariant_densities(v.data(), after.data());
-      // Sums of nine terms.
+      // The invariants are sums of nine terms.
       for (std::size_t k = 0; k < count; ++k) EXPECT_NEAR(after[k], before[k], 4e-15 * before[0]) << epsilon;
-      // v − E is about the deviation of u over B = 0.02 (ν/ε)², ν ≥ 0.1.
+      // v − E is about the deviation of u divided by 0.02 (ν/ε)² with ν ≥ 0.1.
       const double distance = std::min(1.0, 1e4 * epsilon * epsilon) + 1e-14;
       for (std::size_t k = 0; k < 9; ++k) EXPECT_NEAR(v[k], e[k], distance * largest(u)) << epsilon;
     }
@@ -189,7 +188,7 @@ TEST(discrete_velocity, equilibria_are_maxwellians_also_at_the_boundary) {
       EXPECT_NEAR(q[k], 0.0, 1e-14 * largest(e) * largest(e));  // log e is quadratic in v
     }
   }
-  // All particles with one velocity: nothing collides.
+  // If all particles have one velocity, none collide.
   for (std::size_t j = 0; j < 9; ++j) {
     std::vector<double> u(9);
     u[j] = 0.7;
@@ -220,10 +219,10 @@ TEST(discrete_velocity, collisions_never_increase_the_entropy) {
 
 TEST(discrete_velocity, invariants_are_found_and_spurious_ones_named) {
   EXPECT_THAT(nine_velocities()->invariants(), ElementsAre("mass", "momentum_x", "momentum_y", "energy"));
-  // One speed: energy is half of the mass.
+  // All particles have the same speed, so energy is half of the mass.
   EXPECT_THAT(gas(plane)->invariants(), ElementsAre("mass", "momentum_x", "momentum_y"));
-  // Head-on collisions alone keep the differences of opposite densities: two momenta and one invariant more
-  // (Gatignol 1975).
+  // Head-on collisions alone conserve the differences of opposite densities: two momenta and one more
+  // invariant (Gatignol 1975).
   EXPECT_THAT(gas(hexagon)->invariants(), ElementsAre("mass", "momentum_x", "momentum_y", "spurious_1"));
   const texts octahedron = {"1, 0, 0", "-1, 0, 0", "0, 1, 0", "0, -1, 0", "0, 0, 1", "0, 0, -1"};
   EXPECT_THAT(gas(octahedron, {}, 3)->invariants(),
@@ -245,7 +244,7 @@ TEST(discrete_velocity, data_by_density_velocity_and_temperature_have_them) {
             "no equilibrium of these velocities has density 1, bulk velocity (0, 0) and temperature 1.5");
   EXPECT_THAT(forms.front().row(std::vector{1.0, 1.2, 0.0, 0.1}, f), HasSubstr("no equilibrium"));
   EXPECT_THAT(forms.front().row(std::vector{-1.0, 0.0, 0.0, 0.5}, f), HasSubstr("no equilibrium"));
-  // A bulk velocity along z that no particle has.
+  // No particle has a velocity along z, so a bulk velocity along z is refused.
   const auto flat = gas({"1, 0, 0", "-1, 0, 0", "0, 1, 0", "0, -1, 0"});
   std::vector<double> row(4);
   EXPECT_EQ(flat->data_forms().front().row(std::vector{1.0, 0.2, 0.0, 0.0}, row), "");
@@ -254,8 +253,8 @@ TEST(discrete_velocity, data_by_density_velocity_and_temperature_have_them) {
 }
 
 TEST(discrete_velocity, all_elastic_collisions_are_found) {
-  // Those of four nested loops, in their order; a lattice that is turned and shifted has its collisions but
-  // for rounding.
+  // Four nested loops find the expected collisions in their order. A turned and shifted lattice has the same
+  // collisions up to rounding.
   std::vector<std::vector<double>> lattice, turned;
   for (int i = -2; i <= 2; ++i)
     for (int j = -2; j <= 1; ++j) {
@@ -316,8 +315,8 @@ TEST(discrete_velocity, tables_without_sense_are_refused) {
 }
 
 TEST(discrete_velocity, weak_collisions_beside_strong_ones_are_not_lost) {
-  // Two squares that do not meet, with rates 1 and `slow`: each must relax as if it were alone. With squares
-  // of Δt/ε the matrix of a stage has entries of size 1 and 1/slow².
+  // Two squares do not collide with each other. Their rates are 1 and `slow`, and each must relax as if it
+  // were alone. With squares of Δt/ε the matrix of a stage would have entries of size 1 and 1/slow².
   const texts squares = {"1, 0", "-1, 0", "0, 1", "0, -1", "2, 0", "-2, 0", "0, 2", "0, -2"};
   const std::vector<double> first{1.0, 0.5, 0.2, 0.3}, second{0.9, 0.4, 0.1, 0.6};
   std::vector<double> both = first;
@@ -328,10 +327,10 @@ TEST(discrete_velocity, weak_collisions_beside_strong_ones_are_not_lost) {
     for (const double b : {0.0, -0.4}) {
       const auto found = stage(*together, 0.7, b, slow, both);
       const auto wanted = stage(*alone, 0.7, b, slow, second);
-      // A few roundings; squares left 7e-11 for 1e-8.
+      // The tolerance covers a few roundings. Squares left an error of 7e-11 for 1e-8.
       for (std::size_t j = 0; j < 4; ++j) EXPECT_NEAR(found[4 + j], wanted[j], 1e-14) << slow << " " << b;
       EXPECT_GT(std::abs(found[4] - second[0]), 1e-3) << "the slow collision is frozen, " << slow;
-      EXPECT_NEAR(found[0] * found[1], found[2] * found[3], 3 * slow);  // the fast one is near equilibrium
+      EXPECT_NEAR(found[0] * found[1], found[2] * found[3], 3 * slow);  // the fast square is near equilibrium
       EXPECT_NEAR(found[0] + found[1] + found[2] + found[3], 2.0, 1e-14);
     }
   }

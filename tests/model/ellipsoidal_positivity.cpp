@@ -1,5 +1,5 @@
-// When stages of ES-BGK with its published target are nonnegative: the condition of
-// docs/strong-stability.md, both ways, and a state for which it fails however small B is.
+// Stages of ES-BGK with its published target are nonnegative exactly under the condition of
+// docs/strong-stability.md. For one state it fails however small B is.
 #include <apsis/model/gas_target.hpp>
 #include <apsis/model/model_registry.hpp>
 
@@ -24,7 +24,7 @@ constexpr double lambda = 1.5;  // 1/Pr, Pr = 2/3
 constexpr int points = 24;
 constexpr double end_of_lines = 6.0, spacing = 2.0 * end_of_lines / points;
 
-/// The model on cubes of velocities, with the published target.
+/// Returns the model on cubes of velocities with the published target.
 std::unique_ptr<apsis::model> make_model() {
   auto parts = apsis::default_config(apsis::find_model("es-bgk"));
   parts.options["tails"] = "signed";
@@ -39,7 +39,7 @@ double speed(std::size_t index) {
   return -end_of_lines + (static_cast<double>(index) + 0.5) * spacing;
 }
 
-/// f(v_x, v_y, v_z) at all velocities, the last component fastest.
+/// Returns f(v_x, v_y, v_z) at all velocities, the last component fastest.
 template <class Function>
 row sampled(const Function& f) {
   row u;
@@ -49,7 +49,7 @@ row sampled(const Function& f) {
   return u;
 }
 
-/// Mean of v_x², v_y², v_z² of a state without mean velocity.
+/// Returns the means of v_x², v_y², v_z² of a state without mean velocity.
 std::array<double, 3> stress_of(const row& u) {
   std::array<double, 3> sum{};
   double mass = 0.0;
@@ -89,7 +89,7 @@ class bracket {
     for (std::size_t i = 0; i < 3; ++i) sum += 0.5 * q_ * D_[i] / width_[i] * (c[i] * c[i] / width_[i] - 1.0);
     return sum;
   }
-  /// The largest R with E* ≥ 0 wherever |c| ≤ R.
+  /// Returns the largest R with E* ≥ 0 for all |c| ≤ R.
   double largest_speed() const {
     double steepest = 0.0, trace = 0.0;
     for (std::size_t i = 0; i < 3; ++i) {
@@ -108,7 +108,7 @@ double maxwellian(double v, double T) {
   return std::exp(-v * v / (2.0 * T)) / std::sqrt(2.0 * M_PI * T);
 }
 
-/// A Gaussian with the temperatures Tx, Ty, Tz.
+/// Returns a Gaussian with the temperatures Tx, Ty, Tz.
 row gaussian(double Tx, double Ty, double Tz) {
   return sampled([&](double x, double y, double z) {
     return maxwellian(x, Tx) * maxwellian(y, Ty) * maxwellian(z, Tz);
@@ -139,8 +139,8 @@ RC_GTEST_PROP(ellipsoidal_positivity, the_target_is_nonnegative_up_to_the_speed_
         const std::array<double, 3> c{speed(i), speed(j), speed(k)};
         const double target = v[at] * (1.0 + A + B) - u[at];
         const double norm = std::hypot(c[0], c[1], c[2]), expected = exact.at(c);
-        // Sums over these velocities have errors of 1e-6; the conservative correction changes the target by
-        // as much. Rounding of u is left where the target is far below it.
+        // Sums over these velocities have errors of 1e-6, and the conservative correction changes the target
+        // by as much. If the target is far below u, only the rounding error of u remains.
         if (std::abs(expected) < 1e-3 || std::abs(target) < 1e-12 * u[at]) continue;
         if (norm <= R) {
           ++inside;
@@ -155,12 +155,13 @@ RC_GTEST_PROP(ellipsoidal_positivity, the_target_is_nonnegative_up_to_the_speed_
 
 TEST(ellipsoidal_positivity, a_state_that_ends_before_the_target_becomes_negative_however_small_B_is) {
   const auto equation = make_model();
-  // Molecules of two beams along x and none faster: much stress, and u = 0 where the target is negative.
+  // The molecules form two beams along x and none are faster. The stress is large, and u = 0 where the target
+  // is negative.
   const row u = sampled([](double x, double y, double z) {
     const bool beam = std::abs(x) > 1.4 && std::abs(x) < 2.1;
     return beam && std::hypot(y, z) < 1.3 ? 1.0 : 0.0;
   });
-  // A larger B leaves so little stress that only faster molecules have a negative target.
+  // A larger B reduces the stress so much that the target is negative only for faster molecules.
   for (const double B : {1e-6, 1e-3, 0.1, 1.0}) {
     const row v = solved(*equation, u, 0.0, B);
     EXPECT_LT(*std::min_element(v.begin(), v.end()), 0.0) << B;

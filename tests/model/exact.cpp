@@ -1,4 +1,4 @@
-// Exact solutions of models: they start from the initial data, and without space they satisfy u' = S + Q.
+// Exact solutions of models start from the initial data. Without space they satisfy u' = S + Q.
 #include <apsis/model/general_model.hpp>
 #include <apsis/model/model_registry.hpp>
 
@@ -59,7 +59,7 @@ TEST(exact_solution, of_the_decay_model_satisfies_its_equation) {
     exact(t, {}, now);
     exact(t + h, {}, after);
     const double derivative = (after[0] - before[0]) / (2.0 * h), q = collision(general, now)[0];
-    // Error of the central difference: h²u'''/6 ≤ (h/t)² u', plus rounding of about 1e-16/1e-4.
+    // The central difference has the error h²u'''/6 ≤ (h/t)² u', plus a rounding error of about 1e-16/1e-4.
     RC_ASSERT(std::abs(derivative - q) <= 1e-7 * std::abs(q));
   });
 }

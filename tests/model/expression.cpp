@@ -24,11 +24,11 @@ using testing::HasSubstr;
 TEST(expression, agrees_with_the_formula_of_the_mixed_regime) {
   const expression epsilon("1e-5 + tanh(1 - 11*(x - 1)) + tanh(1 + 11*(x - 1))");
   EXPECT_FALSE(epsilon.is_constant());
-  // The same sum as a quotient without a common operation: tanh a + tanh b = sinh(a + b)/(cosh a cosh b).
+  // The sum is also a quotient without a common operation: tanh a + tanh b = sinh(a + b)/(cosh a cosh b).
   for (double x = 0.0; x <= 2.0; x += 0.01) {
     const double y = 11.0 * (x - 1.0);
     const double exact = 1e-5 + std::sinh(2.0) / (std::cosh(1.0 - y) * std::cosh(1.0 + y));
-    // Both terms are at most 1: a few rounding errors of 1.1e-16 each.
+    // Both terms are at most 1, with a few rounding errors of 1.1e-16 each.
     EXPECT_NEAR(epsilon.evaluate(x), exact, 1e-15);
   }
 }
@@ -66,7 +66,7 @@ TEST(expression, accepts_another_variable_and_negative_values_on_request) {
   const expression f("u^2/2 - 1", {"file", 3, 10}, flux);
   EXPECT_DOUBLE_EQ(f.evaluate(1.0), -0.5);
   EXPECT_FALSE(f.is_constant());
-  // The unchecked value never throws; the checked one does.
+  // value() never throws, but evaluate() does.
   const expression root("sqrt(u)", {"file", 3, 10}, flux);
   EXPECT_TRUE(std::isnan(root.value(-1.0)));
   EXPECT_THROW(root.evaluate(-1.0), input_error);
@@ -101,7 +101,7 @@ TEST(expression, has_constants_of_the_user) {
 }
 
 TEST(expression, rounds_every_operation_as_it_is_written) {
-  // Not (10/3) x or 4 x/2 · …: sums and products are taken in the order of the text.
+  // Sums and products have the order of the text, not (10/3) x or 4 x/2 · ….
   const std::vector<double> x = {0.1, 0.7, 1.3, 2.9, 1e-3, 7e5};
   const auto expect = [&](const std::string& text, const auto& value) {
     const expression of(text, {}, {{"u"}, false, {{"g", 0.3}}});
@@ -123,7 +123,7 @@ TEST(expression, rounds_every_operation_as_it_is_written) {
 
 TEST(expression, has_the_same_values_at_many_points_as_at_each) {
   const apsis::formula_kind kind{{"a", "b", "c"}, false, {{"g", 1.4}}};
-  // With and without a condition; more points than are evaluated together.
+  // Formulas with and without a condition, at more points than are evaluated together.
   for (const char* text :
        {"c", "7", "a/b*(c + (g - 1)*(c - a^2/(2*b)))", "a > b ? c : -a", "exp(a)*b^0.3 - c",
         "(a < b) || (c < 1)", "((a + b)*(a - c) - (b + c)*(b - a))/((a + 1)*(b + 2) + c^4)"}) {
@@ -144,7 +144,7 @@ TEST(expression, has_the_same_values_at_many_points_as_at_each) {
 }
 
 TEST(expression, evaluates_formulas_with_many_intermediate_results) {
-  // A pyramid of parentheses has as many open sums as levels: more than there are columns.
+  // In a pyramid of parentheses each level has an open sum. These exceed the available columns.
   std::string text = "x", end;
   double exact = 1.0;
   for (int level = 0; level < 60; ++level) {
@@ -164,7 +164,7 @@ TEST(expression, evaluates_formulas_with_many_intermediate_results) {
 TEST(expression, is_evaluated_by_many_threads_concurrently) {
   const expression f("sin(u)/2 + u^3 - (u > 0.5 ? exp(-u) : 2*u)", {}, {{"u"}, false});
   const auto exact = [](double u) { return std::sin(u) / 2 + u * u * u - (u > 0.5 ? std::exp(-u) : 2 * u); };
-  // More threads than the expression has parsers for, all evaluating the same formula.
+  // More threads than the expression has parsers evaluate the same formula.
   std::atomic<int> wrong{0};
   std::vector<std::thread> threads;
   for (int t = 0; t < 80; ++t)

@@ -1,4 +1,4 @@
-// Fields of a gas: every component of the bulk velocity has its own name.
+// Fields of a gas. Every component of the bulk velocity has its own name.
 #include <apsis/model/model_registry.hpp>
 
 #include <cmath>
@@ -29,7 +29,7 @@ std::vector<std::string> names_of_fields(const apsis::model& m) {
   return names;
 }
 
-/// ρ (2πT)^{−d/2} exp(−|v − u|²/(2T)) at the velocities of the model.
+/// Returns ρ (2πT)^{−d/2} exp(−|v − u|²/(2T)) at the velocities of the model.
 std::vector<double> maxwellian(const apsis::model& m, double rho, const std::vector<double>& u, double T) {
   std::vector<double> f;
   for (int j = 0; j < m.components(); ++j) {
@@ -69,7 +69,7 @@ TEST(fluid_fields, of_a_sampled_maxwellian_are_its_density_velocity_and_temperat
     const auto m = gas(d);
     const std::vector<double> u(velocity.begin(), velocity.begin() + d);
     const auto values = fields_of(*m, maxwellian(*m, 1.25, u, 1.1));
-    // Δv = 3/4 and v_max = 9: truncation and aliasing are below 1e-12.
+    // With Δv = 3/4 and v_max = 9, truncation and aliasing are below 1e-12.
     EXPECT_NEAR(values[0], 1.25, 1e-11);
     for (std::size_t k = 0; k < u.size(); ++k) EXPECT_NEAR(values[1 + k], u[k], 1e-11) << d << " " << k;
     EXPECT_NEAR(values[u.size() + 1], 1.1, 1e-11);
@@ -78,8 +78,8 @@ TEST(fluid_fields, of_a_sampled_maxwellian_are_its_density_velocity_and_temperat
 }
 
 TEST(fluid_fields, of_two_beams_have_their_stress_and_heat_flux) {
-  // f = Σ_k ρ_k M[u_k, T_k]: stress Σ ρ_k (c_k c_kᵀ + T_k I) − p I, heat flux ½ Σ ρ_k c_k (|c_k|² + (d + 2)
-  // T_k) with c_k = u_k − u.
+  // With f = Σ_k ρ_k M[u_k, T_k] and c_k = u_k − u, the stress is Σ ρ_k (c_k c_kᵀ + T_k I) − p I. The heat
+  // flux is ½ Σ ρ_k c_k (|c_k|² + (d + 2) T_k).
   for (const int d : {1, 2, 3}) {
     const auto m = gas(d);
     const std::vector<double> rho = {0.7, 0.5}, T = {1.2, 0.8};
@@ -94,7 +94,7 @@ TEST(fluid_fields, of_two_beams_have_their_stress_and_heat_flux) {
     const auto values = fields_of(*m, f);
     const double p = 1.2 * values[n + 1];
     std::size_t at = n + 2;
-    for (std::size_t a = 0; a < n && n > 1; ++a)  // a single degree of freedom has none
+    for (std::size_t a = 0; a < n && n > 1; ++a)  // a gas with a single degree of freedom has no stress
       for (std::size_t b = a; b < n; ++b) {
         double stress = a == b ? -p : 0.0;
         for (std::size_t k = 0; k < 2; ++k)
@@ -108,7 +108,7 @@ TEST(fluid_fields, of_two_beams_have_their_stress_and_heat_flux) {
         for (std::size_t i = 0; i < n; ++i) square += (u[k][i] - mean[i]) * (u[k][i] - mean[i]);
         heat += 0.5 * rho[k] * (u[k][a] - mean[a]) * (square + (d + 2) * T[k]);
       }
-      EXPECT_NEAR(values[at++], heat, 1e-9) << d;  // v_max = 9 cuts off 1e-10 of it
+      EXPECT_NEAR(values[at++], heat, 1e-9) << d;  // the end v_max = 9 cuts off a share of 1e-10
     }
     EXPECT_EQ(at, values.size());
   }

@@ -20,7 +20,7 @@ using namespace apsis;
 
 TEST(formula_table, interpolates_and_is_constant_beyond_its_points) {
   const expression f("2*table(x - 1, 0, 1, 0.5, 2, +2.5, -6) + 1");
-  // The interpolation of binary fractions is exact.
+  // Interpolation of binary fractions is exact.
   const std::vector<std::pair<double, double>> values = {{-9, 3}, {1, 3},  {1.25, 4}, {1.5, 5},
                                                          {2, 1},  {3, -7}, {99, -11}};
   for (const auto& [x, wanted] : values) EXPECT_EQ(f.value(x), wanted) << x;
@@ -32,7 +32,7 @@ TEST(formula_table, interpolates_and_is_constant_beyond_its_points) {
 
 TEST(formula_table, of_all_digits_has_the_values_of_its_points) {
   std::vector<std::pair<double, double>> points;
-  // More characters than a formula without tables may have.
+  // The formula has more characters than one without tables may have.
   for (int k = 0; k < 5000; ++k) points.emplace_back(k / 3.0, std::sin(k));
   const expression f(formula_of_table("x", points));
   std::vector<std::thread> threads;
@@ -44,7 +44,8 @@ TEST(formula_table, of_all_digits_has_the_values_of_its_points) {
 }
 
 TEST(formula_table, of_two_arguments_is_linear_in_each) {
-  // 1 + 2x + 4y + 8xy at the corners of [0, 1]²; the interpolation of binary fractions is exact.
+  // The values at the corners of [0, 1]² are those of 1 + 2x + 4y + 8xy. Interpolation of binary
+  // fractions is exact.
   const formula_kind plane{.variables = {"x", "y"}, .nonnegative = false};
   const expression f("1 + table2(x, y + 1, 2, 0, 1, 1, 0, 2, 2, 4, 14)", {}, plane);
   for (const double x : {0.0, 0.25, 0.5, 1.0})
@@ -54,7 +55,7 @@ TEST(formula_table, of_two_arguments_is_linear_in_each) {
   EXPECT_EQ(f.value(std::vector{9.0, -7.0}), 3.0);
   EXPECT_TRUE(std::isnan(f.value(std::vector{0.0, std::nan("")})));
   EXPECT_EQ(expression("table2(x, 5, 3, 0, 1, 2, 0, 7, 8, 9)").value(1.5), 8.5);
-  // Tables of both kinds within each other.
+  // Tables of both kinds are nested.
   const expression nested(
       "table2(table(x, 0, 0, 1, 10), table2(x, x, 1, 0, 0, 1), 2, 0, 10, 0, 0, 0, 2, 4, 8)");
   EXPECT_EQ(nested.value(0.5), 3.0);

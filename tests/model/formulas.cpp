@@ -1,5 +1,5 @@
-// Kernels against their formulas on single numbers, point by point: the same bits in every instruction set.
-// Sums have one chain of additions per lane; the reference adds in the same chains.
+// Kernels and their formulas on single numbers have the same bits in every instruction set, at every point.
+// Sums have one chain of additions per lane. The reference adds in the same chains.
 #include "drawn_velocity.hpp"
 
 #include <apsis/core/random_source.hpp>
@@ -45,7 +45,7 @@ TEST(formulas, exponential_and_logarithm_are_accurate_to_two_units_in_the_last_p
       const double x = random.one_in(3) ? random.uniform(-1.0, 1.0) : random.uniform(-700.0, 700.0);
       const double y = random.one_in(3) ? random.uniform(0.5, 2.0) : random.magnitude(-307.0, 308.0);
       const long double e = std::exp(static_cast<long double>(x)), l = std::log(static_cast<long double>(y));
-      // Without a fused product the reduced argument has another rounding.
+      // Without a fused product the rounding error of the reduced argument is larger.
       RC_ASSERT(std::abs(scalar::exp_of(x) - e) <= 2.3e-16L * e);
       RC_ASSERT(std::abs(value_of(scalar::exp_of(unfused(x))) - e) <= 4.5e-16L * e);
       const double small = random.uniform(-scalar::small_exponent, scalar::small_exponent);
@@ -136,10 +136,10 @@ TEST(formulas, weighed_targets_are_those_of_single_numbers) {
 
 namespace {
 
-/// Chains of additions of grid_sums, point j in chain j mod 8.
+/// Number of chains of additions in grid_sums. Point j is in chain j mod 8.
 constexpr std::size_t chains = 8;
 
-/// Σ a_l f_l in chains of at most 16 lines, halves of halves.
+/// Returns Σ a_l f_l in chains of at most 16 lines, which are added as halves of halves.
 template <class N>
 N sum_over_lines(const double* f, std::size_t apart, const double* a, std::size_t lines) {
   if (lines > 16) {
@@ -156,7 +156,7 @@ N sum_over_lines(const double* f, std::size_t apart, const double* a, std::size_
 
 namespace {
 
-/// Powers of the sums over lines of one function, by formulas on single numbers, chain by chain.
+/// Compares powers of the sums over lines of one function with formulas on single numbers, chain by chain.
 template <class Powers, class N>
 void expect_powers(const Powers& sums, const std::vector<N>& of_columns, const std::vector<N>& c,
                    double factor) {

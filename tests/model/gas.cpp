@@ -1,5 +1,5 @@
-// A gas with more degrees of freedom than velocity dimensions (Chu's reduction), against the definitions of
-// its moments and against a gas whose velocity grid resolves all of them.
+// A gas with more degrees of freedom than velocity dimensions (Chu's reduction). Its moments agree with their
+// definitions and with a gas whose velocity grid resolves all degrees of freedom.
 #include <apsis/model/gas.hpp>
 
 #include <apsis/core/errors.hpp>
@@ -28,7 +28,7 @@ gas make_gas(int dimensions, int degrees, int points = 24, double max = 9.0) {
   return gas(config);
 }
 
-/// Sum of two Maxwellians with different velocities and temperatures, and with h off equilibrium.
+/// Returns the sum of two Maxwellians with different velocities and temperatures, with h off equilibrium.
 std::vector<double> random_row(const gas& of) {
   const auto number = [](int low, int high) { return *rc::gen::inRange(low, high) / 100.0; };
   std::vector<double> sum(static_cast<std::size_t>(of.velocities().components()), 0.0), row(sum.size());
@@ -86,7 +86,7 @@ RC_GTEST_PROP(gas, moments_are_sums_over_g_and_h, ()) {
     mass += row[j];
     energy += 0.5L * square * row[j] + (of.reduced() ? 0.5L * row[n + j] : 0.0L);
   }
-  // Sums of up to 12³ terms.
+  // The moments are sums of up to 12³ terms.
   RC_ASSERT(std::abs(omega[0] - static_cast<double>(mass) * of.grid().weight()) < 1e-14 * omega[0]);
   const double total = omega[static_cast<std::size_t>(d) + 1];
   RC_ASSERT(std::abs(total - static_cast<double>(energy) * of.grid().weight()) < 1e-14 * total);
@@ -104,14 +104,15 @@ RC_GTEST_PROP(gas, equilibrium_has_the_moments_and_minimizes_the_entropy, ()) {
     RC_ASSERT(std::abs(again[k] - omega[k]) < 4e-14 * (omega[0] + omega.back()));
   const double h_row = of.entropy(row.data()), h_e = of.entropy(e.data());
   RC_ASSERT(h_e <= h_row + 1e-12 * (1.0 + std::abs(h_row)));
-  // Convex along the way from the row to its equilibrium.
+  // The entropy is convex along the line from the row to its equilibrium.
   std::vector<double> middle(row.size());
   for (std::size_t j = 0; j < row.size(); ++j) middle[j] = 0.5 * (row[j] + e[j]);
   RC_ASSERT(of.entropy(middle.data()) <= 0.5 * (h_row + h_e) + 1e-12 * (1.0 + std::abs(h_row)));
 }
 
 RC_GTEST_PROP(gas, every_nonnegative_row_has_an_equilibrium_with_its_moments, ()) {
-  // Sparse rows with g and h of any sizes: temperatures far below and above those that g can have.
+  // The rows are sparse, with g and h of any size. Temperatures are far below and above those that
+  // g can have.
   const int d = *rc::gen::inRange(1, 4);
   const gas of = make_gas(d, 3 + *rc::gen::inRange(0, 3), d == 3 ? 6 : 10);
   const auto n = static_cast<std::size_t>(of.grid().size());

@@ -1,4 +1,4 @@
-// Scales of a gas and definitions of the mean free path, from first principles in SI units.
+// Scales of a gas and definitions of the mean free path follow from first principles in SI units.
 #include <apsis/model/gas_scales.hpp>
 
 #include <apsis/model/mean_free_path.hpp>
@@ -26,13 +26,13 @@ double quantity(const gas_scales& scales, const std::string& name) {
   return std::nan("");
 }
 
-/// The distribution of speeds of molecules of mass m at temperature T, per unit of speed.
+/// Returns the density of speeds of molecules of mass m at temperature T, per unit of speed.
 double speeds(double c, double m, double T) {
   const double a = m / (2.0 * k_B * T);
   return 4.0 * pi * c * c * std::pow(a / pi, 1.5) * std::exp(-a * c * c);
 }
 
-/// ∫ c f(c) dc by midpoints, spectrally accurate for this integrand.
+/// Returns ∫ c f(c) dc by the midpoint rule, which is spectrally accurate for this integrand.
 double mean_speed(double m, double T) {
   const double largest = 12.0 * std::sqrt(k_B * T / m);
   double sum = 0.0;
@@ -44,7 +44,7 @@ double mean_speed(double m, double T) {
   return sum;
 }
 
-/// Where f(c) is largest, by bisection of the sign of its difference quotient.
+/// Returns the maximizer of f(c) by bisection of the sign of its difference quotient.
 double most_probable_speed(double m, double T) {
   double low = 0.1 * std::sqrt(k_B * T / m), high = 10.0 * std::sqrt(k_B * T / m);
   for (int k = 0; k < 60; ++k) {
@@ -62,21 +62,21 @@ TEST(gas_scales, of_argon_are_those_of_an_ideal_gas) {
   const gas_scales s = argon_at(10.0, 300.0, 1e-3);
   EXPECT_NEAR(s.density(), 66.3e-27 * 10.0 / (k_B * 300.0), 1e-18);
   EXPECT_NEAR(s.speed(), std::sqrt(k_B * 300.0 / 66.3e-27), 1e-9);
-  // p = n k T, and the viscosity of argon at 300 K is 22.7 µPa s (Lemmon & Jacobsen 2004); the power law
-  // through that at 273 K has an error below 1 %.
+  // p = n k T. The viscosity of argon at 300 K is 22.7 µPa s (Lemmon & Jacobsen 2004). The power law through
+  // the value at 273 K has an error below 1 %.
   EXPECT_NEAR(s.viscosity(), 22.7e-6, 0.01 * 22.7e-6);
   EXPECT_NEAR(s.unit(apsis::dimensions::pressure), 10.0, 1e-12);
   EXPECT_NEAR(s.unit(apsis::dimensions::time), 1e-3 / s.speed(), 1e-18);
   EXPECT_NEAR(s.unit(apsis::dimensions::mass), s.density() * 1e-9, 1e-24);
   EXPECT_NEAR(s.unit(apsis::dimensions::heat_flux), 10.0 * s.speed(), 1e-9);
   EXPECT_NEAR(s.unit(apsis::dimensions::number_density * apsis::dimensions::length), 1e6, 1e-6);
-  // ε is the time μ/p in which the stress of a BGK gas relaxes, in units of L/√(RT).
+  // ε is the time μ/p in units of L/√(RT). In this time the stress of a BGK gas relaxes.
   EXPECT_NEAR(s.epsilon(), s.viscosity() / 10.0 / s.time(), 1e-12 * s.epsilon());
   EXPECT_NEAR(s.epsilon() * s.unit(apsis::dimensions::viscosity), s.viscosity(), 1e-12 * s.viscosity());
 }
 
 TEST(gas_scales, mean_free_path_of_variable_hard_spheres_is_that_of_their_diameter) {
-  // Bird 1994, table A2: diameters at 273 K with three digits, so that d² has an error up to 0.5 %.
+  // Bird 1994, table A2, has diameters at 273 K with three digits, so d² has an error of up to 0.5 %.
   const std::map<std::string, double> diameters = {
       {"air", 4.19e-10},  {"argon", 4.17e-10},    {"helium", 2.33e-10}, {"krypton", 4.76e-10},
       {"neon", 2.77e-10}, {"nitrogen", 4.17e-10}, {"xenon", 5.74e-10}};
@@ -103,11 +103,12 @@ TEST(gas_scales, other_mean_free_paths_follow_from_the_distribution_of_speeds) {
   for (const gas_species& gas : apsis::known_gases()) {
     const gas_scales s(gas, p, T, L);
     const double mean = mean_speed(gas.mass, T), mu = s.viscosity(), rho = gas.mass * p / (k_B * T);
-    // μ = ρ c̄ λ/2, and the mean speed over the collision frequency p/μ of the BGK model.
+    // One mean free path follows from μ = ρ c̄ λ/2. The other is the mean speed over the collision frequency
+    // p/μ of the BGK model.
     const double from_viscosity = 2.0 * mu / (rho * mean), from_frequency = mean / (p / mu);
     EXPECT_NEAR(quantity(s, "knudsen_viscosity"), from_viscosity / L, 1e-10 * from_viscosity / L);
     EXPECT_NEAR(quantity(s, "knudsen_mean-speed"), from_frequency / L, 1e-10 * from_frequency / L);
-    // Difference quotients of a maximum have half of the digits.
+    // Difference quotients locate a maximum with half of the digits.
     const double v0 = most_probable_speed(gas.mass, T), k = mu * v0 / (p * L);
     EXPECT_NEAR(quantity(s, "knudsen_equivalent"), k, 1e-7 * k);
     EXPECT_NEAR(quantity(s, "rarefaction"), 1.0 / k, 1e-7 / k);

@@ -1,4 +1,4 @@
-// Sums over all points of a velocity grid, in every instruction set, compared with long double.
+// Sums over all points of a velocity grid agree with long double in every instruction set.
 #include <apsis/model/grid_sums.hpp>
 
 #include <apsis/model/maxwellian.hpp>
@@ -19,7 +19,7 @@ namespace {
 
 using apsis::velocity_grid;
 
-/// Lines of different lengths with unequal spacing and weights.
+/// Returns a grid of lines with different lengths, unequal spacing and weights.
 velocity_grid graded(int dimensions) {
   std::vector<apsis::velocity_line> lines;
   for (int k = 0; k < dimensions; ++k) {
@@ -67,7 +67,8 @@ TEST(grid_sums, give_the_moments_of_long_double_on_every_grid) {
       }
       std::array<double, 5> omega{};
       apsis::kinetic_moments(grid, f.data(), omega.data());
-      // A term takes part in 5 roundings, and in one of each addition above it: 16 lines, halves, and chains.
+      // A term is part of 5 roundings, and of one more for each addition above it: 16 lines,
+      // halves, and chains.
       for (std::size_t k = 0; k < static_cast<std::size_t>(d) + 2; ++k)
         EXPECT_NEAR(omega[k], static_cast<double>(exact[k]), 4e-15 * static_cast<double>(size[k])) << d << k;
       EXPECT_NEAR(apsis::kinetic_mass(grid, f.data()), omega[0], 4e-15 * omega[0]);
@@ -76,7 +77,7 @@ TEST(grid_sums, give_the_moments_of_long_double_on_every_grid) {
 }
 
 TEST(grid_sums, of_many_small_terms_beside_large_ones_lose_none) {
-  // 4096 lines whose sum is 2 + 4096 · 2^-54: added one by one, all terms after the first would vanish.
+  // The sum of 4097 lines is 2 + 4096 · 2^-54. Added one by one, all terms after the first would vanish.
   constexpr int lines = 4097, n = 3;
   std::vector<double> f(lines * n, 0x1p-54), a(lines, 1.0);
   for (int j = 0; j < n; ++j) f[static_cast<std::size_t>(j)] = 2.0;
@@ -84,7 +85,7 @@ TEST(grid_sums, of_many_small_terms_beside_large_ones_lose_none) {
   for_each_instruction_set([&] {
     apsis::grid_sums::powers sums{};
     apsis::grid_sums::sum({n, v.data(), nullptr}, lines, f.data(), 0.0, a.data(), 1, &sums);
-    EXPECT_NEAR(sums[0] / n - 2.0, 4096 * 0x1p-54, 64 * 0x1p-54);  // a chain may be lost, and roundings of 6
+    EXPECT_NEAR(sums[0] / n - 2.0, 4096 * 0x1p-54, 64 * 0x1p-54);  // one chain and 6 roundings may be lost
   });
 }
 
@@ -120,7 +121,7 @@ TEST(grid_sums, give_the_entropy_of_long_double) {
         f_log_f += of_mass * std::log(static_cast<long double>(g.back()));
         both += of_mass * degrees * std::log(static_cast<long double>(g.back()) / std::max(h.back(), least));
       }
-      // Logarithms are below 710 and accurate to two units in the last place.
+      // Logarithms are below 710, and accurate to two units in the last place.
       const double rounding = 1e-15 * 710.0 * static_cast<double>(mass);
       EXPECT_NEAR(apsis::grid_sums::entropy(w.data(), g.data(), nullptr, degrees, n),
                   static_cast<double>(f_log_f), rounding);

@@ -1,4 +1,4 @@
-// Adversarial formulas: each has a value or one short message with its place, and none crashes.
+// Adversarial formulas have a value, or one short message with its place. None crashes.
 #include <apsis/model/expression.hpp>
 
 #include <cmath>
@@ -23,7 +23,7 @@ std::string repeated(const std::string& part, int times) {
   return out;
 }
 
-/// The message, or "" if the formula has a value at 0.5 (possibly NaN).
+/// Returns the message, or "" if the formula has a value at 0.5 (possibly NaN).
 std::string message_of(const std::string& text) {
   try {
     const expression f(text, {"c.toml", 3, 12});
@@ -101,7 +101,7 @@ TEST(hostile_expression, random_tokens_never_end_the_program) {
     else
       EXPECT_THAT(message, StartsWith("c.toml:3:")) << text;
   }
-  // Some random texts are formulas; otherwise the test is vacuous.
+  // Some random texts must be formulas, otherwise the test is vacuous.
   EXPECT_GT(good, 100);
 }
 

@@ -1,4 +1,4 @@
-// Kernels along a line of velocities against their formulas on single numbers, as in formulas.cpp.
+// Kernels along a line of velocities have the bits of their formulas on single numbers, as in formulas.cpp.
 #include "drawn_velocity.hpp"
 
 #include <apsis/core/random_source.hpp>
@@ -27,7 +27,7 @@ namespace {
 using apsis::random_source;
 namespace scalar = apsis::scalar;
 
-/// The total of one member of the sums of all lanes.
+/// Returns the total of one member of the sums of all lanes.
 template <class Sums, class Member>
 double total(const std::vector<Sums>& lanes, Member member) {
   using N = std::decay_t<decltype(lanes[0].*member)>;
@@ -85,8 +85,8 @@ TEST(line_formulas, sums_over_a_line_are_those_of_single_numbers) {
 
 namespace {
 
-/// Calls add(chain, lane, k) for every place of a row, those behind n included: two chains while two vectors
-/// are left.
+/// Calls add(chain, lane, k) for every place of a row, including those behind n. There are two chains while
+/// two vectors remain.
 template <class Add>
 void in_two_chains(std::size_t n, std::size_t lanes, const Add& add) {
   std::size_t k = 0;
@@ -96,7 +96,7 @@ void in_two_chains(std::size_t n, std::size_t lanes, const Add& add) {
     for (std::size_t lane = 0; lane < lanes; ++lane) add(0, lane, k + lane);
 }
 
-/// The sum over lanes of the sums of two chains.
+/// Returns the sum over lanes of the sums of two chains.
 template <class Sums, class Member>
 double total_of_chains(const std::array<std::vector<Sums>, 2>& chains, Member member) {
   using N = std::decay_t<decltype(chains[0][0].*member)>;
@@ -124,7 +124,7 @@ TEST(line_formulas, moments_on_a_line_are_those_of_single_numbers) {
       apsis::velocity_rows::moments(f.data(), static_cast<std::ptrdiff_t>(n), rows, v.data(), half.data(),
                                     static_cast<int>(n), sums.data());
       for (std::size_t r = 0; r < sums.size(); ++r) {
-        constexpr std::size_t width = 8;  // whatever a vector holds
+        constexpr std::size_t width = 8;  // for any length of a vector
         std::array<std::vector<moments>, 2> of{std::vector<moments>(width), std::vector<moments>(width)};
         in_two_chains(n, width, [&](std::size_t chain, std::size_t lane, std::size_t k) {
           const N value(k < n ? f[r * n + k] : 0.0);
@@ -140,7 +140,7 @@ TEST(line_formulas, moments_on_a_line_are_those_of_single_numbers) {
 
 namespace {
 
-/// Chains of additions of line_powers, point j in chain j mod 8.
+/// Number of chains of additions in line_powers. Point j is in chain j mod 8.
 constexpr std::size_t chains = 8;
 
 }  // namespace
@@ -182,7 +182,7 @@ TEST(line_formulas, powers_on_a_line_and_their_changes_are_those_of_single_numbe
 
 namespace {
 
-/// A Gaussian at all points, by the formulas on single numbers and vectors of so many points.
+/// Returns a Gaussian at all points, by the formulas on single numbers, for vectors of `length` numbers.
 template <class N>
 std::vector<double> gaussian(const apsis::velocity_rows::points& line,
                              const apsis::velocity_rows::gaussian& of, int length) {

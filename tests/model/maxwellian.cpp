@@ -58,7 +58,8 @@ TEST(maxwellian, formula_agrees_with_the_exponential_of_the_standard_library) {
   for (std::size_t j = 0; j < 150; ++j) {
     const double v = grid.line(0).v()[j];
     const double exact = s.rho / std::sqrt(2 * M_PI * s.T) * std::exp(-(v - 0.4) * (v - 0.4) / (2 * s.T));
-    // The exponent has a relative rounding error of 1e-16, amplified by its magnitude (up to 80).
+    // The exponent, of magnitude up to 80, has a relative rounding error of 1e-16. Its magnitude amplifies
+    // this error.
     EXPECT_NEAR(m[j] / exact, 1.0, 1e-13);
   }
 }
@@ -101,7 +102,7 @@ TEST(maxwellian, discrete_maxwellian_is_positive_and_equals_the_formula_on_fine_
 TEST(maxwellian, reports_moments_without_a_discrete_maxwellian) {
   const velocity_grid grid(1, 12, 6.0);
   apsis::aligned_vector<double> m(12);
-  // The mean lies midway between grid points at distance 0.5: the variance is at least 1/4.
+  // The mean lies midway between grid points at distance 0.5, so the variance is at least 1/4.
   EXPECT_FALSE(apsis::discrete_maxwellian(grid, {1.0, {0.0, 0, 0}, 0.1}, m.data()));
   // The mean lies beyond the grid.
   EXPECT_FALSE(apsis::discrete_maxwellian(grid, {1.0, {7.0, 0, 0}, 1.0}, m.data()));
@@ -125,8 +126,8 @@ TEST(velocity_grid, is_symmetric_and_refuses_invalid_extents) {
 }
 
 TEST(maxwellian, sums_in_two_and_three_dimensions_keep_the_tails) {
-  // A naive sum drops every term below half a unit in the last place of the partial sum: 9 of 10 terms here,
-  // a loss of 1e-15 to 1e-14 with the same sign for every state.
+  // A naive sum drops every term below half a unit in the last place of the partial sum. Here these are 9 of
+  // 10 terms. The loss of 1e-15 to 1e-14 has the same sign for every state.
   for (const int d : {2, 3}) {
     const velocity_grid grid(d, d == 2 ? 150 : 32, d == 2 ? 15.0 : 10.0);
     fluid_state state;
@@ -143,7 +144,7 @@ TEST(maxwellian, sums_in_two_and_three_dimensions_keep_the_tails) {
         mass += m[j];
         energy += static_cast<long double>(grid.half_square()[j]) * m[j];
       }
-      // A few rounding errors of 1.1e-16; a long double has 11 more bits.
+      // The tolerance covers a few rounding errors of 1.1e-16. A long double has 11 more bits.
       EXPECT_NEAR(omega[0], static_cast<double>(mass * grid.weight()), 4.5e-16) << d << " " << u;
       EXPECT_NEAR(omega[d + 1] / static_cast<double>(energy * grid.weight()), 1.0, 6e-16) << d << " " << u;
     }

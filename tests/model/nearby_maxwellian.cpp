@@ -1,4 +1,4 @@
-// The discrete Maxwellian from a nearby Gaussian: its form, its moments, and where it is refused.
+// The discrete Maxwellian near a Gaussian: its form, its moments, and its refusals.
 #include <apsis/model/nearby_maxwellian.hpp>
 
 #include <apsis/model/gas_target.hpp>
@@ -25,7 +25,7 @@ using apsis::velocity_grid;
 using apsis::velocity_line;
 using row = apsis::aligned_vector<double>;
 
-/// Gauss points of both half lines: no integral of a shifted Gaussian is exact.
+/// Returns Gauss points of both half lines, for which no integral of a shifted Gaussian is exact.
 velocity_line half_ranges(int of_half) {
   const auto rule = apsis::half_range_gauss_hermite(of_half);
   std::vector<double> points, weights;
@@ -52,7 +52,7 @@ fluid_state any_state(int d) {
   return s;
 }
 
-/// Σ w m Π_k c_k^p_k in extended precision.
+/// Returns Σ w m Π_k c_k^p_k in extended precision.
 long double moment(const velocity_grid& grid, const row& m, const fluid_state& s, std::array<int, 3> p) {
   long double sum = 0.0L;
   for (std::size_t j = 0; j < m.size(); ++j) {
@@ -67,8 +67,8 @@ long double moment(const velocity_grid& grid, const row& m, const fluid_state& s
 
 }  // namespace
 
-/// The two conditions define the discrete Maxwellian: moments of the state, and log m a parabola in v, the
-/// same along all directions but for a linear term.
+/// Two conditions define the discrete Maxwellian. It has the moments of the state, and log m is a parabola in
+/// v. Along all directions the parabola is the same, except for its linear term.
 TEST(nearby_maxwellian, has_the_moments_and_the_form_of_a_discrete_maxwellian) {
   int found = 0;
   rc::check("form", [&] {
@@ -89,11 +89,13 @@ TEST(nearby_maxwellian, has_the_moments_and_the_form_of_a_discrete_maxwellian) {
         const auto exact = moment(grid, m, s, powers);
         if (p == 1) RC_ASSERT(std::abs(exact) < 4e-15L * s.rho * std::sqrt(s.T));
         if (p == 2) square += exact;
-        // Of the largest terms, of size 6^p, as sums of two dozen of them have rounding errors.
+        // The tolerance is relative to the largest terms, of size 6^p. Their sums of two dozen terms have
+        // rounding errors.
         RC_ASSERT(std::abs(exact / mass - of_m.of[k][p]) < 1e-14L * std::pow(6.0L * std::sqrt(s.T), p));
       }
     RC_ASSERT(std::abs(square - d * s.rho * s.T) < 1e-14L * s.rho * s.T);
-    // log m less that of the Gaussian is γ|v|² + β·v + α with one γ: from three points along each line.
+    // The difference of log m and that of the Gaussian is γ|v|² + β·v + α with one γ. Three points along each
+    // line give γ.
     double gamma[3] = {};
     std::size_t apart = static_cast<std::size_t>(grid.size());
     for (std::size_t k = 0; k < static_cast<std::size_t>(d); ++k) {
@@ -104,7 +106,7 @@ TEST(nearby_maxwellian, has_the_moments_and_the_form_of_a_discrete_maxwellian) {
       const double left = (log_at(b) - log_at(a)) / (v[b] - v[a]),
                    right = (log_at(c) - log_at(b)) / (v[c] - v[b]);
       gamma[k] = (right - left) / (v[c] - v[a]);
-      // The logarithms, up to 50, have rounding errors of 1e-14 each.
+      // The logarithms are up to 50 and have rounding errors of 1e-14 each.
       if (k > 0) RC_ASSERT(std::abs(gamma[k] - gamma[0]) < 1e-12);
     }
     RC_ASSERT(std::abs(gamma[0] + 0.5 / s.T) < 0.1);
@@ -115,8 +117,8 @@ TEST(nearby_maxwellian, has_the_moments_and_the_form_of_a_discrete_maxwellian) {
 TEST(nearby_maxwellian, is_refused_far_from_a_gaussian) {
   const velocity_grid grid(1, 12, 6.0);
   row m(12);
-  // Points Δv = 1 apart: the Gaussian of T = 0.1 has other moments by a factor; beyond u = 5 it is cut in
-  // two.
+  // The points are Δv = 1 apart. The Gaussian of T = 0.1 has moments that are wrong by a factor. Beyond u = 5
+  // it is cut in two.
   EXPECT_FALSE(apsis::nearby_maxwellian(grid, {1.0, {0.4, 0, 0}, 0.1}, m.data()));
   EXPECT_FALSE(apsis::nearby_maxwellian(grid, {1.0, {5.2, 0, 0}, 1.0}, m.data()));
   EXPECT_FALSE(apsis::nearby_maxwellian(grid, {1e-290, {0, 0, 0}, 1.0}, m.data()));
@@ -139,14 +141,14 @@ TEST(nearby_maxwellian, is_the_row_of_the_general_method) {
     RC_PRE(apsis::nearby_maxwellian(grid, s, nearby.data()));
     RC_ASSERT(apsis::general_maxwellian(grid, omega.data(), general.data()));
     const double largest = *std::max_element(general.begin(), general.end());
-    // Parameters with relative errors of 1e-14 in exponents that are at most 10 where values matter.
+    // The parameters have relative errors of 1e-14. Their exponents are at most 10 where values matter.
     for (std::size_t j = 0; j < nearby.size(); ++j)
       RC_ASSERT(std::abs(nearby[j] - general[j]) < 1e-12 * largest);
   });
 }
 
-/// With the moments of lines a target takes no pass over the row to restore its moments; without them it is
-/// iterated. Both are the same target.
+/// With the moments of lines a target needs no pass over the row to restore its moments. Without them it is
+/// iterated. Both targets must agree.
 TEST(nearby_maxwellian, targets_by_moments_of_lines_are_those_by_iteration) {
   for (int d = 1; d <= 3; ++d) {
     auto parts = apsis::default_config(apsis::find_model("shakhov"));

@@ -1,5 +1,5 @@
-// The collision contract: closed form and Newton's method solve the same stages; stage means are weighted
-// sums.
+// The collision contract: closed form and Newton's method solve the same stages. Stage means
+// are weighted sums.
 #include <apsis/core/errors.hpp>
 #include <apsis/core/random_source.hpp>
 #include <apsis/model/general_model.hpp>
@@ -54,8 +54,8 @@ TEST(point_collision, newton_and_closed_form_solve_the_same_stage_at_every_epsil
       auto u = positive_rows(points, 3, random), v = u;
       closed->make_collision({.points = points, .pitch = 3})->solve_stage(a, b, at, u.data());
       general.make_collision({.points = points, .pitch = 3})->solve_stage(a, b, at, v.data());
-      // Newton's method stops at a residual of rounding size; with conserved moments, (1 + μ)(v − E) = u − E
-      // loses the rounding error of μE relative to u, which is 1e-16 μ/(1 + μ).
+      // Newton's method stops at a residual of rounding size. With conserved moments, (1 + μ)(v − E) = u − E.
+      // The rounding error of μE relative to u is thus 1e-16 μ/(1 + μ).
       for (std::size_t k = 0; k < u.size(); ++k) EXPECT_NEAR(v[k], u[k], 1e-9) << epsilon << " " << a;
     }
   }
@@ -117,7 +117,7 @@ TEST(point_collision, changes_lead_to_the_solutions_and_never_below_zero) {
     for (int round = 0; round < 40; ++round) {
       std::vector<double> epsilons(points), u(points * width), change(points * width, -1.0);
       for (double& epsilon : epsilons) epsilon = std::pow(10.0, random.uniform(-14.0, 2.0));
-      // A third of the components is large, others are down to 1e-12 and zero: far from equilibrium.
+      // A third of the components is large. Others are down to 1e-12 and zero, far from equilibrium.
       for (std::size_t k = 0; k < u.size(); ++k)
         u[k] = k % 3 == 0   ? random.uniform(0.5, 1.0)
                : k % 7 == 1 ? 0.0
@@ -127,7 +127,7 @@ TEST(point_collision, changes_lead_to_the_solutions_and_never_below_zero) {
       solver->solve_stage(0.1, -0.02, at, v.data());
       solver->solve_stage_changes(0.1, -0.02, at, u.data(), change.data());
       for (std::size_t k = 0; k < u.size(); ++k) {
-        // Differences of numbers of this size; v itself has some roundings.
+        // Differences of numbers of this size are rounded. v itself has some rounding errors.
         EXPECT_NEAR(change[k], v[k] - u[k], 1e-15 * (u[k] + std::abs(v[k]))) << name;
         if (v[k] >= 0.0) {
           EXPECT_GE(u[k] + change[k], 0.0) << name;
@@ -144,7 +144,7 @@ TEST(point_collision, in_the_limit_yields_the_equilibrium_or_fails_with_the_cell
   const std::vector<double> epsilons = {1.0, 0.0};
   const point_batch at{.count = 2, .pitch = 3, .epsilon = epsilons.data(), .first_cell = 7};
   closed->make_collision({.points = 2, .pitch = 3})->solve_stage(0.1, -0.02, at, u.data());
-  // E of ω = (0.8, 0) is (ρ/4, ρ/4, ρ/4) = 0.2 everywhere: the row is its own equilibrium.
+  // For ω = (0.8, 0), E is 0.2 everywhere, so the row is its own equilibrium.
   for (int k = 3; k < 6; ++k) EXPECT_DOUBLE_EQ(u[static_cast<std::size_t>(k)], 0.2);
   const auto newton = general.make_collision({.points = 2, .pitch = 3});
   EXPECT_THAT(failure_of([&] { newton->solve_stage(0.1, -0.02, at, v.data()); }, 8),

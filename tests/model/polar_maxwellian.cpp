@@ -1,4 +1,4 @@
-// Velocities on rings about an axis, and the discrete Maxwellian on them.
+// Velocities on rings about an axis, and the discrete Maxwellian at these velocities.
 #include <apsis/model/polar_maxwellian.hpp>
 
 #include <apsis/core/errors.hpp>
@@ -39,7 +39,7 @@ std::array<double, 5> moments_of(const velocity_grid& grid, const row& f) {
   return omega;
 }
 
-/// Largest difference of moments in units of ρ, of ρ√⟨v²⟩ and of the energy.
+/// Returns the largest difference of moments in units of ρ, of ρ√⟨v²⟩ and of the energy.
 double difference(const std::array<double, 5>& a, const std::array<double, 5>& b) {
   const double speed = std::sqrt(2.0 * b[4] / b[0]);
   double largest = std::max(std::abs(a[0] - b[0]) / b[0], std::abs(a[4] - b[4]) / b[4]);
@@ -47,7 +47,8 @@ double difference(const std::array<double, 5>& a, const std::array<double, 5>& b
   return largest;
 }
 
-/// The difference of the moments of a row and of its equilibrium, which must exist and be nonnegative.
+/// Returns the difference between the moments of a row and of its equilibrium. The equilibrium must exist and
+/// be nonnegative.
 double change_of_moments(const velocity_grid& grid, const row& f) {
   const auto omega = moments_of(grid, f);
   row m(f.size());
@@ -57,7 +58,7 @@ double change_of_moments(const velocity_grid& grid, const row& f) {
   return difference(moments_of(grid, m), omega);
 }
 
-/// The Gaussian at the velocities, whose sums are not the moments of the state.
+/// Returns the Gaussian at the velocities. Its sums are not the moments of the state.
 row gaussian(const velocity_grid& grid, const apsis::fluid_state& state) {
   row f(static_cast<std::size_t>(grid.size()));
   apsis::formula_maxwellian(grid, state, f.data());

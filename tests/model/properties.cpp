@@ -1,5 +1,5 @@
-// Inputs that models refuse, and bit-for-bit agreement of batches. Properties 2–5 of the paper are in
-// tests/study/model_properties.cpp.
+// Inputs that models refuse, and the same bits of batches and single rows. Properties 2–5 of the paper
+// are in tests/study/model_properties.cpp.
 #include <apsis/model/model_registry.hpp>
 
 #include <algorithm>
@@ -77,7 +77,7 @@ TEST(models, batches_of_rows_give_the_bits_of_single_rows) {
 }
 
 TEST(models, consistent_data_are_the_equilibrium_of_their_namesake) {
-  // "smooth-consistent" of "smooth": the same moments, and E of them is the row itself.
+  // "smooth-consistent" has the same moments as "smooth", and it is E of them.
   int found = 0;
   for (const auto& m : relaxation_models()) {
     const auto& all = m.relaxation->initial();
@@ -98,7 +98,7 @@ TEST(models, consistent_data_are_the_equilibrium_of_their_namesake) {
         m.relaxation->moments(u.data(), omega_u.data());
         m.relaxation->moments(v.data(), omega_v.data());
         ASSERT_TRUE(m.relaxation->equilibrium(omega_v.data(), e.data()));
-        // Sums of forty terms of size 1.
+        // The moments are sums of forty terms of size 1.
         for (std::size_t k = 0; k < count; ++k) EXPECT_NEAR(omega_u[k], omega_v[k], 1e-14) << m.entry->name;
         for (std::size_t k = 0; k < size; ++k) EXPECT_NEAR(e[k], v[k], 1e-13) << m.entry->name;
       }

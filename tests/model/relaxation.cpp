@@ -1,4 +1,4 @@
-// Fluxes of the relaxation system, and the system checked against its equations.
+// The relaxation system satisfies its equations. Slopes of its fluxes are accurate.
 #include <apsis/model/model_registry.hpp>
 #include <apsis/model/scalar_flux.hpp>
 
@@ -40,7 +40,8 @@ TEST(scalar_flux, slopes_are_the_limits_of_difference_quotients) {
     const apsis::scalar_flux F(text, 0.7, 0.25);
     check_property(text, [&] {
       const double u = 1e-3 * *rc::gen::inRange(-2000, 2001), h = 1e-5;
-      // Second order: h² F'''/6, with F''' up to a few hundred for the steepest of them.
+      // The difference quotient has second order: h² F'''/6, with F''' up to a few hundred for
+      // the steepest flux.
       RC_ASSERT(std::abs(F.derivative(u) - (F(u + h) - F(u - h)) / (2.0 * h)) < 1e-7);
     });
   }
@@ -56,7 +57,7 @@ TEST(scalar_flux, a_formula_equals_the_flux_of_the_same_name) {
 }
 
 TEST(scalar_flux, the_fastest_wave_inside_an_interval_is_found) {
-  // For Buckley–Leverett |F'| is 0 at both ends; the cubic F'' = 0 is solved by bisection here.
+  // For Buckley–Leverett |F'| is 0 at both ends. Bisection solves the cubic equation F'' = 0 here.
   const double M = 0.5;
   const auto curvature = [M](double u) {
     const double d = u * u + M * (1 - u) * (1 - u);
@@ -73,7 +74,7 @@ TEST(scalar_flux, the_fastest_wave_inside_an_interval_is_found) {
 }
 
 TEST(scalar_flux, slopes_of_formulas_have_steps_of_the_size_of_the_data) {
-  // Data of any units: F(u) = s Φ(u/s) has the slope Φ'(u/s).
+  // Data may have any unit: F(u) = s Φ(u/s) has the slope Φ'(u/s).
   for (const double s : {1e-200, 1e-12, 1.0, 1e9}) {
     const apsis::scalar_flux F("s*(u/s)^2/((u/s)^2 + 0.5*(1 - u/s)^2)", 0.0, 0.0, {{"s", s}}),
         unit("buckley-leverett", 0.0, 0.5);
@@ -81,7 +82,7 @@ TEST(scalar_flux, slopes_of_formulas_have_steps_of_the_size_of_the_data) {
     EXPECT_NEAR(found.speed, expected.speed, 1e-9) << s;
     EXPECT_NEAR(found.u / s, expected.u, 1e-4) << s;  // flat at the maximum
   }
-  // 1 | 0 data with tails that underflow.
+  // The data are 1 and 0 with tails that underflow.
   EXPECT_NEAR(apsis::scalar_flux("u^2/2", 0.0, 0.0).fastest(2.96e-323, 1.0).speed, 1.0, 1e-10);
 }
 
@@ -100,12 +101,12 @@ TEST(relaxation, transport_and_collision_are_those_of_the_paper_in_u1_and_u2) {
       m.macroscopic(f.data(), u.data());
       return u;
     };
-    // −v f_x, back in (u1, u2): −(u2_x, a² u1_x).
+    // −v f_x in (u1, u2) is −(u2_x, a² u1_x).
     auto moved = to_f(u1_x, u2_x);
     for (std::size_t k = 0; k < 2; ++k) moved[k] *= -m.speeds(0)[k];
     RC_ASSERT(std::abs(from_f(moved)[0] + u2_x) < 1e-15);
     RC_ASSERT(std::abs(from_f(moved)[1] + a * a * u1_x) < 1e-14);
-    // C (E − f): (0, F − u2).
+    // C (E − f) in (u1, u2) is (0, F − u2).
     const auto f = to_f(u1, u2);
     double omega;
     std::vector<double> q(2);
@@ -124,7 +125,7 @@ TEST(relaxation, refuses_fluxes_that_violate_the_subcharacteristic_condition) {
       complaint("burgers", 1.0, -1.01, 0.5),
       "model.speed: model.speed = 1 is too small for the flux \"burgers\" (|F'(u)| = 1.01 at u = -1.01, "
       "which the data reach, and the subcharacteristic condition is |F'| <= speed); give at least 1.01");
-  // The maximum is inside the interval; |F'| = 0 at its ends.
+  // The maximum is inside the interval, with |F'| = 0 at its ends.
   EXPECT_NE(complaint("buckley-leverett", 2.0, 0.0, 1.0).find("give at least 2.081"), std::string::npos);
   EXPECT_NE(complaint("log(u)", 1.0, -1.0, 1.0).find("model.flux: "), std::string::npos);
   EXPECT_NE(complaint("1/u", 1.0, -1.0, 1.0), "");

@@ -1,5 +1,5 @@
-// Stage solves of models whose target has moments that relax (Shakhov, ES-BGK), against the equation that
-// defines a stage, with the derivative Q̇ = Q'Q as a difference quotient.
+// Stage solves of models with relaxing moments in their target (Shakhov, ES-BGK) satisfy the equation that
+// defines a stage. The derivative Q̇ = Q'Q is a difference quotient.
 #include <apsis/model/gas_target.hpp>
 #include <apsis/model/model_registry.hpp>
 
@@ -26,10 +26,10 @@ struct gas_and_model {
   }
 };
 
-/// Lines in 1 to 3 dimensions, and rings about the third or the first component.
+/// Kinds 1 to 3 are lines in 1 to 3 dimensions, kinds 4 and 5 rings about the third or the first component.
 constexpr int first_of_rings = 4, kinds = 5;
 
-/// A gas of one of these kinds of velocities; `points` of every line.
+/// Returns a gas of one kind of velocities with `points` points of every line.
 gas_and_model make(const char* name, int kind, int points, double max = 8.0,
                    const char* tails = "nonnegative") {
   auto parts = apsis::default_config(apsis::find_model(name));
@@ -50,7 +50,7 @@ double number(int low, int high) {
   return *rc::gen::inRange(low, high) / 100.0;
 }
 
-/// Two beams: heat flux and stress of a tenth of the pressure or more.
+/// Returns two beams. Their heat flux and stress are a tenth of the pressure or more.
 row random_row(const apsis::gas& of) {
   row sum(static_cast<std::size_t>(of.velocities().components()), 0.0), beam(sum.size());
   for (int k = 0; k < 2; ++k) {
@@ -79,7 +79,8 @@ row solved(const apsis::model& m, row u, double a, double b, double epsilon) {
   return u;
 }
 
-/// Relative error of moments of Gaussians: tails beyond the lines, or the midpoint rule over rings.
+/// Returns the relative error of moments of Gaussians by tails beyond the lines or the midpoint
+/// rule on rings.
 double error_of_sums(int kind) {
   return kind < first_of_rings ? 1e-7 : 2e-5;
 }
@@ -101,7 +102,7 @@ void expect_stage_equation(const char* name) {
   const double epsilon = *rc::gen::element(1.0, 0.3, 0.05), a = number(0, 50), b = -number(0, 20);
   const row v = solved(*m.equation, u, a, b, epsilon);
   const row q = collide(*m.equation, v, epsilon);
-  // Central difference along Q: truncation h², rounding 1e-16/h.
+  // The central difference along Q has a truncation error h² and a rounding error 1e-16/h.
   const double h = 1e-5 * epsilon;
   row ahead = v, behind = v;
   for (std::size_t j = 0; j < v.size(); ++j) {
@@ -114,7 +115,7 @@ void expect_stage_equation(const char* name) {
     const double derivative = (q_ahead[j] - q_behind[j]) / (2.0 * h);
     worst = std::max(worst, std::abs(v[j] - u[j] - a * q[j] - b * derivative));
   }
-  // Errors of sums are corrected in the target but not in its derivative. A wrong coefficient gives 1e-2.
+  // The target corrects errors of sums, but its derivative does not. A wrong coefficient gives 1e-2.
   const double weights = std::abs(a) / epsilon + std::abs(b) / (epsilon * epsilon);
   RC_ASSERT(worst <= (1e-9 + error_of_sums(kind) * weights) * largest(u));
 }
@@ -122,7 +123,7 @@ void expect_stage_equation(const char* name) {
 void expect_conservation_and_positivity(const char* name) {
   const int kind = *rc::gen::inRange(1, kinds + 1);
   const auto m = make(name, kind, kind >= 3 ? 10 : 16, 6.0);
-  // A few molecules anywhere, with energies in h of any size.
+  // There are a few molecules anywhere, with energies in h of any size.
   row u(static_cast<std::size_t>(m.equation->components()), 0.0);
   const double scale = std::pow(10.0, *rc::gen::inRange(-4, 5));
   const auto n = static_cast<std::size_t>(m.gas->grid().size());
@@ -142,7 +143,7 @@ void expect_conservation_and_positivity(const char* name) {
     RC_ASSERT(std::abs(after[k] - before[k]) <= 3e-14 * scales[k]);
 }
 
-/// A stage of a gas with molecules of these numbers at some velocities conserves its invariants.
+/// Expects that a stage conserves the invariants of a gas with these numbers of molecules at some velocities.
 void expect_conservation(const char* name, int kind,
                          const std::vector<std::pair<std::size_t, double>>& molecules, double a, double b,
                          double epsilon) {
@@ -154,12 +155,12 @@ void expect_conservation(const char* name, int kind,
   m.equation->invariant_densities(u.data(), before.data());
   m.equation->invariant_densities(v.data(), after.data());
   m.equation->invariant_scales(before, scales.data());
-  // As for random molecules above.
+  // The tolerance is that for random molecules above.
   for (std::size_t k = 0; k < before.size(); ++k)
     EXPECT_LE(std::abs(after[k] - before[k]), 3e-14 * scales[k]) << name << " " << k;
 }
 
-/// Decay of the stress and the heat flux in a homogeneous gas over one exact stage, against the closed form.
+/// Compares the decay of stress and heat flux in a homogeneous gas over one exact stage with the closed form.
 void expect_rates(const char* name, double prandtl, double rate_of_stress, double rate_of_heat) {
   for (int kind = 1; kind <= kinds; ++kind) {
     const auto m = make(name, kind, points_for(kind), 8.0, "signed");
@@ -180,7 +181,7 @@ void expect_rates(const char* name, double prandtl, double rate_of_stress, doubl
     const auto before = compute_central_moments(*m.gas, u.data(), state),
                after = compute_central_moments(*m.gas, v.data(), state);
     const auto decay = [&](double rate) { return 1.0 / (1.0 + rate * A + rate * rate * B); };
-    // Heat and stress of an equilibrium are those of sums.
+    // The heat flux and stress of an equilibrium have the errors of sums.
     EXPECT_NEAR((after.stress[0][0] - state.T) / (before.stress[0][0] - state.T), decay(rate_of_stress),
                 error_of_sums(kind))
         << name << kind << prandtl;
@@ -189,7 +190,7 @@ void expect_rates(const char* name, double prandtl, double rate_of_stress, doubl
   }
 }
 
-/// The sum of squares of the relaxing moments of a row, or of the difference of two.
+/// Returns the 2-norm of the relaxing moments of a row except the last, or of the difference of two rows.
 double size_of_moments(const gas_and_model& m, const row& omega, const row& u, const row* less = nullptr) {
   const auto count = static_cast<std::size_t>(m.relaxation().relaxing_count());
   row s(count), t(count, 0.0);
@@ -200,8 +201,8 @@ double size_of_moments(const gas_and_model& m, const row& omega, const row& u, c
   return std::sqrt(sum);
 }
 
-/// The cut that a solver measures in a stage (a > 0), or in Q/ε (a = 0), and the same from the results of the
-/// bounded and of the published target.
+/// Returns the cut that a solver measures in a stage (a > 0) or in Q/ε (a = 0), and the expected cut. The
+/// latter follows from the results of the bounded and of the published target.
 std::pair<double, double> measured_and_expected_cut(const char* name, int kind, const row& u, double a,
                                                     double b, double lambda) {
   const auto cut = make(name, kind, points_for(kind), 8.0, "nonnegative"),
@@ -242,7 +243,8 @@ RC_GTEST_PROP(relaxing_targets, the_cut_is_the_change_of_the_relaxation_of_the_m
   const double a = *rc::gen::element(0.0, 0.05, 0.5, 5.0), b = a == 0.0 ? 0.0 : -number(0, 200);
   const auto [measured, expected] =
       measured_and_expected_cut(name, kind, u, a, b, std::string(name) == "shakhov" ? 2.0 / 3.0 : 1.5);
-  // Moments beyond the grid, of 1e-9, over those of the row and the weights of a stage of a twentieth.
+  // The moments beyond the grid are 1e-9. They are divided by those of the row and by the weights of a stage,
+  // which are at least a twentieth.
   RC_ASSERT(std::abs(measured - expected) <= 1e-4 * (1.0 + expected));
 }
 
@@ -275,9 +277,9 @@ RC_GTEST_PROP(relaxing_targets, es_bgk_stages_satisfy_their_equation, ()) {
 }
 
 TEST(relaxing_targets, of_few_molecules_conserve) {
-  // Two molecules have a stress in one direction alone. For Pr = 2/3 the Gaussian of ES-BGK is then flat.
+  // Two molecules have a stress in one direction only. For Pr = 2/3 the Gaussian of ES-BGK is then flat.
   expect_conservation("es-bgk", 3, {{55, 0.07}, {476, 0.09}}, 10.0, -10.0, 1e6);
-  // One molecule has the temperature 0, up to the rounding of sums.
+  // A single molecule has the temperature 0, up to the rounding of sums.
   expect_conservation("shakhov", first_of_rings, {{1, 0.01}}, 0.0, -0.1, 0.0);
 }
 

@@ -1,4 +1,4 @@
-// Matrices of few rows, against Eigen.
+// Matrices with few rows agree with Eigen.
 #include <apsis/model/formulas/small_matrix.hpp>
 
 #include <cmath>
@@ -15,7 +15,7 @@ double number(double from, double to) {
   return from + (to - from) * *rc::gen::inRange(0, 10'001) / 1e4;
 }
 
-/// R Rᵀ plus a multiple of I, whose condition is at most 260.
+/// Returns R Rᵀ plus a multiple of I. Its condition is at most 260.
 template <int N>
 Eigen::Matrix<double, N, N> positive_definite() {
   Eigen::Matrix<double, N, N> root;
@@ -32,7 +32,8 @@ apsis::scalar::small_matrix<N> small(const Eigen::Matrix<double, N, N>& of) {
   return same;
 }
 
-/// Rounding of a dozen operations, times the square of the condition, which an inverse by cofactors may lose.
+/// The tolerance is the rounding of a dozen operations times the square of the condition. An inverse by
+/// cofactors may lose this factor.
 constexpr double close = 1e-11;
 
 template <int N>
@@ -57,7 +58,7 @@ void check_inverse() {
   RC_ASSERT(std::abs(product.trace() - N) <= N * close);
 }
 
-/// Whether the factorization says what the eigenvalues do, unless one of them is rounding.
+/// Compares the factorization with the signs of the eigenvalues, unless one of them is a rounding error.
 template <int N>
 void check_definiteness() {
   Eigen::Matrix<double, N, N> a = positive_definite<N>();

@@ -1,4 +1,4 @@
-// Fluxes of systems given as formulas: numerical characteristic speeds against those known in closed form.
+// Fluxes of systems given as formulas: numerical characteristic speeds agree with closed forms.
 #include <apsis/model/system_flux.hpp>
 
 #include <apsis/core/errors.hpp>
@@ -35,20 +35,20 @@ void make(const std::vector<std::string>& variables, const std::vector<std::stri
   const system_flux made(variables, formulas, constants);
 }
 
-/// A positive number whose logarithm is uniform.
+/// Returns a positive number whose logarithm is uniform.
 double between(double lowest, double highest) {
   return lowest * std::pow(highest / lowest, 1e-6 * *rc::gen::inRange(0, 1000001));
 }
 
-/// A number in [-size, size], 0 with probability 1/3.
+/// Returns a number in [-size, size], 0 with probability 1/3.
 double signed_up_to(double size) {
   return size * *rc::gen::element(0, 1, -1) * 1e-6 * *rc::gen::inRange(0, 1000001);
 }
 
 }  // namespace
 
-// The derivative has an error of 1e-11 or less in smooth formulas, and where one variable is much smaller
-// than the others its rounding is larger; 1e-8 is a hundredth of what the subcharacteristic condition allows.
+// In smooth formulas the derivative has an error of at most 1e-11. If one variable is much smaller than the
+// others, the rounding error is larger. 1e-8 is a hundredth of the margin in the subcharacteristic condition.
 constexpr double tolerance = 1e-8;
 
 TEST(system_flux, has_the_characteristic_speeds_of_shallow_water_from_films_to_oceans) {
@@ -73,7 +73,7 @@ TEST(system_flux, has_the_characteristic_speeds_of_a_gas_in_any_units) {
 }
 
 TEST(system_flux, has_the_characteristic_speeds_of_more_than_three_variables) {
-  // A gas that carries two tracers: further eigenvalues v, of multiplicity three with that of the contact.
+  // A gas carries two tracers. With that of the contact, the eigenvalue v has multiplicity three.
   const system_flux flux({"rho", "a", "m", "E", "b"}, {"m", "a*m/rho", "m^2/rho + 0.4*(E - m^2/(2*rho))",
                                                        "m/rho*(E + 0.4*(E - m^2/(2*rho)))", "b*m/rho"});
   check_property("|v| + sqrt(gamma p/rho)", [&] {
@@ -87,14 +87,14 @@ TEST(system_flux, has_the_characteristic_speeds_of_more_than_three_variables) {
 }
 
 TEST(system_flux, finds_where_a_law_is_not_hyperbolic) {
-  // p-system with a pressure that increases with the volume (van der Waals): λ² = -p'(v).
+  // A p-system with a pressure that increases with the volume (van der Waals) has λ² = -p'(v).
   const system_flux flux({"v", "w"}, {"-w", "3*v^2"});
   const double u[] = {0.5, 0.2};
   const auto found = flux.characteristic_speeds(u);
   EXPECT_NEAR(found.imaginary, std::sqrt(3.0), 1e-10);
   const double hyperbolic[] = {-0.5, 0.2};
   EXPECT_EQ(flux.characteristic_speeds(hyperbolic).imaginary, 0.0);
-  // In three variables as well: a rotation of two of them.
+  // The third variable has its own wave. The other two form a rotation.
   const system_flux three({"a", "b", "c"}, {"b", "-a", "5*c"});
   const double any[] = {1.0, 2.0, 3.0};
   EXPECT_NEAR(three.characteristic_speeds(any).imaginary, 1.0, 1e-10);
@@ -111,15 +111,15 @@ TEST(system_flux, differentiates_where_slopes_vanish_or_formulas_end) {
   EXPECT_NEAR(speed("u^2/2", 3.0), 3.0, 1e-11);
   EXPECT_NEAR(speed("exp(u)", 2.0), std::exp(2.0), 1e-9);
   EXPECT_NEAR(speed("1/u", 1e-9), 1e18, 1e9);
-  // Manning's formula for a film of water that has run dry: the slope 5/3 u^(2/3) at 0, from one side; its
-  // difference over steps of 1e-6 is 1e-4.
+  // In Manning's formula for a film of water that has run dry, the slope at 0 is 5/3 u^(2/3) from one side.
+  // Its difference over steps of 1e-6 is 1e-4.
   EXPECT_NEAR(speed("u^(5/3)", 0.0), 0.0, 2e-4);
   EXPECT_TRUE(std::isnan(speed("sqrt(u)", -1.0)));
   EXPECT_TRUE(std::isnan(speed("u", std::nan(""))));
 }
 
 TEST(system_flux, differentiates_at_values_that_are_rounding_beside_the_data) {
-  // The slope at u → 0 is that at 0, whatever the size of u; the speed of the data is 1.
+  // The slope at u → 0 is that at 0, whatever the size of u. The speed of the data is 1.
   const auto slope = [](const std::string& formula, double u) {
     return system_flux({"u"}, {formula}).characteristic_speeds(&u, 1.0).speed;
   };
@@ -127,12 +127,12 @@ TEST(system_flux, differentiates_at_values_that_are_rounding_beside_the_data) {
     EXPECT_NEAR(slope("u^2/2", u), 0.0, 1e-12) << u;
     EXPECT_NEAR(slope("u^3", u), 0.0, 1e-12) << u;
     EXPECT_NEAR(slope("u + u^2", u), 1.0, 1e-10) << u;
-    // F itself is of size 1: differences over a part of u would be its rounding.
+    // F itself has size 1, so a difference over a part of u would be a rounding error.
     EXPECT_NEAR(slope("(u + 1)^2/2", u), 1.0, 1e-10) << u;
     EXPECT_NEAR(slope("exp(u)", u), 1.0, 1e-10) << u;
     EXPECT_NEAR(slope("u^2/(u^2 + 0.5*(1 - u)^2)", u), 0.0, 1e-10) << u;
   }
-  // A film of water that has nearly run dry, at rest: sqrt(g h).
+  // A film of water at rest that has nearly run dry has the speed sqrt(g h).
   for (const double h : {1e-12, 1e-100, 1e-140}) {
     const double u[] = {h, 0.0};
     EXPECT_NEAR(shallow_water().characteristic_speeds(u, 3.0).speed / std::sqrt(9.81 * h), 1.0, 1e-6) << h;
@@ -152,7 +152,7 @@ TEST(system_flux, of_several_states_equals_that_of_each) {
 }
 
 TEST(system_flux, has_the_same_speeds_for_many_states_as_for_each) {
-  // Some of them are at rest, nearly dry, not finite or outside of the law.
+  // Some states are at rest, nearly dry, not finite or outside the domain of the law.
   std::vector<std::vector<double>> states;
   for (int k = 0; k < 40; ++k)
     states.push_back(

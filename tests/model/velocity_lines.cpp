@@ -1,5 +1,5 @@
-// Velocity lines: quadrature, discrete conservation on all of them, and refusals. The table of
-// docs/velocities.md is that of the case gas/couette.
+// Velocity lines: quadrature, discrete conservation and refusals. The table of docs/velocities.md uses the
+// case gas/couette.
 #include "support/folder.hpp"
 
 #include <apsis/core/errors.hpp>
@@ -58,7 +58,7 @@ velocity_config config_of(std::vector<std::string> set, apsis::point_counts poin
   return of;
 }
 
-/// Random rows f ≥ 0, also of few values and of any size.
+/// Returns random rows f ≥ 0. Some have few values, and values have any size.
 std::vector<double> random_row(int size) {
   std::vector<double> f(static_cast<std::size_t>(size));
   const int kind = *rc::gen::inRange(0, 3);
@@ -73,7 +73,8 @@ std::vector<double> random_row(int size) {
 }  // namespace
 
 TEST(velocity_line, integrates_maxwellians) {
-  // Moments up to the fourth of a Gaussian of temperature 1: 1, 0, 1, 0, 3; its mass beyond 8 is 1e-15.
+  // The moments of a Gaussian of temperature 1 up to the fourth are 1, 0, 1, 0, 3. Its mass beyond
+  // 8 is 1e-15.
   for (const auto& name : names()) {
     const velocity_line line = find_velocity_line(name).make(40, 8.0);
     const double exact[] = {1.0, 0.0, 1.0, 0.0, 3.0};
@@ -84,7 +85,8 @@ TEST(velocity_line, integrates_maxwellians) {
 }
 
 TEST(velocity_line, for_walls_integrates_halves_of_maxwellians) {
-  // ∫_0^∞ v M dv = 1/√(2π), ∫_0^∞ v² M dv = ½: a uniform set with 0 between its points has an error Δv²/24.
+  // ∫_0^∞ v M dv = 1/√(2π) and ∫_0^∞ v² M dv = ½. A uniform set with 0 between its points has
+  // an error Δv²/24.
   const auto half = [](const velocity_line& line, int power) {
     return integral(line, [power](double v) { return v > 0.0 ? std::pow(v, power) * gaussian(v) : 0.0; });
   };
@@ -108,7 +110,8 @@ TEST(velocity_line, graded_has_sixth_order_for_a_jump_at_0) {
 }
 
 TEST(gauss_rule, is_exact_for_polynomials_times_the_weight) {
-  // ∫ x^{2k} e^{−x²/2} = √(2π) (2k − 1)!!, and half of it, resp. 2^{(k−1)/2} Γ((k+1)/2), on x > 0.
+  // ∫ x^{2k} e^{−x²/2} = √(2π) (2k − 1)!!. On x > 0 the even powers have half of this, and ∫ x^k e^{−x²/2} =
+  // 2^{(k−1)/2} Γ((k+1)/2).
   for (const int n : {4, 9, 30}) {
     const auto whole = apsis::gauss_hermite(n), half = apsis::half_range_gauss_hermite(n);
     for (int k = 0; k < std::min(2 * n, 24); ++k) {
@@ -142,7 +145,8 @@ RC_GTEST_PROP(velocity_grid, every_row_has_a_maxwellian_with_its_moments_on_ever
   RC_ASSERT(discrete_maxwellian(grid, omega.data(), m.data()));
   RC_ASSERT(*std::min_element(m.begin(), m.end()) >= 0.0);
   kinetic_moments(grid, m.data(), own.data());
-  // Relative to the largest terms of the sums; the end of Newton's method at rounding of sums over the grid.
+  // The tolerance is relative to the largest terms of the sums. Newton's method ends at the rounding of sums
+  // over the grid.
   const double speed = grid.max(), rho = omega[0], tolerance = 1e-12;
   RC_ASSERT(std::abs(own[0] - rho) <= tolerance * rho);
   for (std::size_t k = 1; k <= static_cast<std::size_t>(d); ++k)

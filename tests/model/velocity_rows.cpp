@@ -1,4 +1,4 @@
-// Sums and Gaussians over velocity points, in every instruction set, compared with long double.
+// Sums and Gaussians over velocity points agree with long double in every instruction set.
 #include <apsis/model/velocity_rows.hpp>
 
 #include <apsis/model/maxwellian.hpp>
@@ -14,7 +14,7 @@ namespace velocity_rows_test {
 
 namespace {
 
-/// Distance in units in the last place of the larger value.
+/// Returns the distance relative to the exact value.
 double relative(double value, long double exact) {
   return static_cast<double>(std::abs((static_cast<long double>(value) - exact) / exact));
 }
@@ -38,7 +38,7 @@ TEST(velocity_rows, sums_are_those_of_long_double) {
       }
       apsis::velocity_rows::sums sums{};
       apsis::velocity_rows::moments(f.data(), 0, 1, v.data(), half.data(), n, &sums);
-      // Partial sums of nonnegative terms: at most n/8 rounding errors.
+      // Partial sums of nonnegative terms have at most n/8 rounding errors.
       const double rounding = 1e-16 * (8.0 + n / 4.0);
       EXPECT_NEAR(sums.mass, static_cast<double>(mass), rounding * static_cast<double>(mass)) << n;
       EXPECT_NEAR(sums.momentum, static_cast<double>(momentum), rounding * static_cast<double>(size)) << n;
@@ -69,9 +69,9 @@ TEST(velocity_rows, a_gaussian_is_accurate_for_every_centre_and_width) {
               EXPECT_LT(value, 2e-299) << u << " " << T;
               EXPECT_GE(value, 0.0);
             } else {
-              // The exponential of a rounded argument x has a relative error of about 1e-16 (1 + x), x < 700.
+              // The exponential of a rounded argument x < 700 has a relative error of about 1e-16 (1 + x).
               EXPECT_LT(relative(value, exact(j)), 1e-12) << n << " " << u << " " << T << " " << j;
-              // The difference v − u has the rounding errors of v and u, which the exponent amplifies.
+              // The difference v − u has the rounding errors of v and u. The exponent amplifies them.
               const double v = 0.5 * line.spacing * (2.0 * j + 1 - n);
               const double moved = 3e-16 * (std::abs(v) + std::abs(u)) * std::abs(v - u) / T;
               const double exponent = static_cast<double>(-std::log(largest / 2));
@@ -85,8 +85,8 @@ TEST(velocity_rows, a_gaussian_is_accurate_for_every_centre_and_width) {
   });
 }
 
-/// Eight chains and walks by eight velocities, whatever a vector holds. Instruction sets without fused
-/// operations round once more.
+/// There are eight chains, and walks by eight velocities, for any length of a vector. Instruction sets
+/// without fused operations round once more.
 TEST(velocity_rows, sums_and_gaussians_have_the_same_bits_on_every_instruction_set_with_fused_operations) {
   for (const int n : {5, 8, 40, 45, 150, 151, 700}) {
     const apsis::velocity_rows::points line{n, 16.0 / n};
@@ -100,7 +100,7 @@ TEST(velocity_rows, sums_and_gaussians_have_the_same_bits_on_every_instruction_s
     }
     std::vector<std::vector<double>> found;
     for_each_instruction_set([&] {
-      if (hwy::SupportedTargets() > HWY_AVX2) return;  // smaller numbers are better sets
+      if (hwy::SupportedTargets() > HWY_AVX2) return;  // smaller numbers denote better instruction sets
       std::vector<double> numbers(rows * pitch);
       apsis::velocity_rows::gaussians(line, curves.data(), static_cast<int>(rows), numbers.data(),
                                       static_cast<std::ptrdiff_t>(pitch));
@@ -157,7 +157,7 @@ TEST(velocity_rows, moments_of_the_formula_are_exact_where_claimed) {
       }
       ++exact;
       apsis::formula_maxwellian(grid, state, m.data());
-      // Rounding error of a sum of 150 terms, relative to (ρ, ρ√T, ρT).
+      // The tolerance covers the rounding error of a sum of 150 terms, relative to (ρ, ρ√T, ρT).
       EXPECT_LT(apsis::moment_defect(grid, m.data(), omega, state), 4e-14) << u << " " << T;
     }
   EXPECT_GT(exact, 20);

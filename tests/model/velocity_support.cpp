@@ -1,5 +1,5 @@
-// The part of a Maxwellian that velocities miss: against the normal distribution, and the cheap bounds
-// against the sums.
+// The part of a Maxwellian that velocities miss agrees with the normal distribution. Cheap bounds agree with
+// the sums.
 #include <apsis/model/velocity_support.hpp>
 
 #include <apsis/model/gas_model.hpp>
@@ -60,14 +60,14 @@ TEST(velocity_support, misses_what_lies_beyond_the_ends) {
     const auto fit = support->fit(at_rest(T));
     EXPECT_TRUE(fit.ends);
     EXPECT_NEAR(fit.beyond, mass, 1e-12);
-    // The midpoint rule ends with an error Δv²/24 times the slope of c² G.
+    // The midpoint rule has an error of Δv²/24 times the slope of c² G at its end.
     EXPECT_NEAR(fit.missed, energy, 2e-3 * energy) << T;
   }
 }
 
 TEST(velocity_support, misses_what_the_spacing_does_not_resolve) {
-  // By Poisson's sum formula the energy at u = 0 misses 2 (4π²T/Δv² − 1) exp(−2π²T/Δv²), for an even number
-  // of points with the sign of a cosine.
+  // By Poisson's sum formula the energy at u = 0 misses 2 (4π²T/Δv² − 1) exp(−2π²T/Δv²). For an even number
+  // of points it has the sign of a cosine.
   const auto gas = gas_on("uniform", 20, 20.0);  // Δv = 2
   const auto support = apsis::support_of(*gas);
   for (const double T : {1.5, 2.0, 2.5}) {
@@ -109,7 +109,7 @@ RC_GTEST_PROP(velocity_support, safe_margins_need_no_sums, ()) {
   const auto fit = support->fit(state);
   if (apsis::velocity_support::is_safe(margins))
     RC_ASSERT(fit.missed < (set == "uniform" ? 3e-7 : apsis::velocity_limits::good));
-  // The share beyond the nearer end follows from the room alone.
+  // The room alone determines the share beyond the nearer end.
   const double nearer = 0.5 * std::erfc(std::sqrt(0.5 * margins.room));
   RC_ASSERT(margins.room == 0.0 ||
             (fit.beyond >= nearer * (1.0 - 1e-9) && fit.beyond <= 2.0 * nearer + 1e-15));

@@ -1,6 +1,8 @@
-// collective NAME RANK HOW: the process of this rank does not take part in a collective operation for which
-// the others wait. HOW: "fails", with an error; "hangs", and the next process fails; "is-missed", it hangs,
-// and the others receive a signal while they wait.
+// collective NAME RANK HOW: the process of this rank does not take part in a collective operation, and the
+// others wait for it. HOW is one of:
+// - "fails": the process fails with an error
+// - "hangs": it hangs, and the next process fails
+// - "is-missed": it hangs, and the others receive a signal while they wait
 #include <apsis/core/errors.hpp>
 #include <apsis/exec/agreement.hpp>
 
@@ -30,7 +32,7 @@ void expect(bool right) {
 }
 
 void exchange_in_a_ring(communicator& all) {
-  // Long enough for a message that waits for its receiver.
+  // The message is so long that it waits for its receiver.
   std::vector<double> mine(1 << 18, all.rank()), theirs(mine.size());
   const int next = (all.rank() + 1) % all.size(), last = (all.rank() + all.size() - 1) % all.size();
   const std::vector<apsis::message> sent = {{next, mine}}, received = {{last, theirs}};
@@ -87,7 +89,7 @@ extern "C" void note(int) {
 int take_part(communicator& all, const job& operation, int absent, const std::string& how) {
   std::signal(SIGTERM, note);
   all.limit_waiting([] { return asked != 0; }, 0.2);
-  operation(all);  // works while nobody fails
+  operation(all);  // succeeds as no process fails
   if (how != "fails" && all.rank() == absent) hang();
   if ((how == "fails" && all.rank() == absent) || (how == "hangs" && all.rank() == (absent + 1) % all.size()))
     throw apsis::numerical_error("this process fails");
@@ -104,7 +106,7 @@ int main(int count, char** arguments) {
     return count == 1 ? 0 : 2;
   }
   const std::string how = arguments[3];
-  // Processes that fail together need as long as the machine makes them wait for their turn.
+  // If all processes take their turns to fail, the machine may make them wait.
   const double patience = how == "fails" ? 60.0 : 0.5;
   try {
     return apsis::app::on_all_processes(

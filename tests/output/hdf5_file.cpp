@@ -1,5 +1,5 @@
-// HDF5 files: numbers, texts and attributes come back unchanged, parts of several writers form one dataset,
-// and what was not written is noticed.
+// HDF5 files return numbers, texts and attributes unchanged. Parts of several writers form one dataset.
+// Missing parts are noticed.
 #include <apsis/output/hdf5_file.hpp>
 
 #include "support/folder.hpp"

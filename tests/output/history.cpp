@@ -17,7 +17,7 @@ namespace {
 
 const std::vector<std::string> columns = {"step", "walk", "noise", "falling", "never"};
 
-/// Columns of different kinds: a random walk, a jump, a monotone decrease, NaN.
+/// Returns rows with columns of different kinds: a random walk, a jump, a monotone decrease, NaN.
 std::vector<row> some_rows(long steps) {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> any(-1.0, 1.0);
@@ -56,7 +56,7 @@ TEST(a_history, keeps_the_first_the_last_and_the_extreme_rows_in_a_bounded_numbe
                        *std::max_element(rows.begin(), rows.end(), less)));
     }
   }
-  // Between 50 and 100 rows are regular: 20000/256 = 78.
+  // Between 50 and 100 rows have regular steps: 20000/256 = 78.
   EXPECT_EQ(kept.stride(), 256);
   for (const auto& one : kept.rows().rows) EXPECT_TRUE(same(one, all[static_cast<std::size_t>(one[0])]));
 }

@@ -1,4 +1,4 @@
-// Blocks of the filter "lzf": written by hand, and damaged in any way.
+// Blocks of the filter "lzf": blocks written by hand and damaged blocks.
 #include <apsis/output/lzf_filter.hpp>
 
 #include <algorithm>
@@ -37,7 +37,7 @@ TEST(lzf, damaged_blocks_are_refused) {
   EXPECT_EQ(expanded({0, 'a', 7U << 5U, 3, 0}, 12), "") << "no room";
 }
 
-/// Writes beyond `out` are found by the address sanitizer.
+/// The address sanitizer finds writes beyond `out`.
 RC_GTEST_PROP(lzf, any_bytes_stay_within_the_room, (const bytes& block)) {
   const auto room = *rc::gen::inRange<std::size_t>(0, 100);
   RC_ASSERT(expanded(block, room).size() <= room);

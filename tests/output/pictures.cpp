@@ -1,4 +1,4 @@
-// Pictures, descriptions for ParaView and texts of JSON: valid for any numbers and names.
+// Pictures, descriptions for ParaView and JSON texts are valid for any numbers and names.
 #include <apsis/output/json_text.hpp>
 #include <apsis/output/picture.hpp>
 #include <apsis/output/xdmf_text.hpp>

@@ -14,7 +14,7 @@ using namespace apsis;
 
 namespace {
 
-/// An affine function of the position on a mesh of 5 × 4 × 3 cells of the unit cube.
+/// Returns an affine function of the position on a mesh of 5 × 4 × 3 cells of the unit cube.
 field_series affine(const std::vector<double>& slopes, bool periodic = false) {
   field_series fields;
   const std::vector<int> cells = {5, 4, 3};
@@ -57,7 +57,7 @@ TEST(a_probe, is_exact_for_affine_functions_also_in_the_outer_half_of_cells_at_t
         expected += slopes[k] * x;
         square += (x - line.from[k]) * (x - line.from[k]);
       }
-      // Differences of numbers near 1, extrapolated over half a cell.
+      // The values are differences of numbers near 1, extrapolated over half a cell.
       RC_ASSERT(std::abs(table.rows[row].back() - expected) < 1e-13);
       RC_ASSERT(std::abs(table.rows[row][0] - std::sqrt(square)) < 1e-15);
     }
@@ -66,8 +66,8 @@ TEST(a_probe, is_exact_for_affine_functions_also_in_the_outer_half_of_cells_at_t
 }
 
 TEST(a_probe, continues_across_a_periodic_end) {
-  // Between the last cell, centre 0.9, and the first one at 1.1: 1 + 0.9 s and 1 + 0.1 s have the mean 1.5 at
-  // x = 1 and at x = 0.
+  // Between the last cell, with centre 0.9, and the first one at 1.1 the mean of 1 + 0.9 s and 1 + 0.1 s is
+  // 1.5, at x = 1 and at x = 0.
   const field_series fields = affine({1.0}, true);
   const auto table = to_table(fields, line_probe{"p", {0.0}, {1.0}, 11});
   EXPECT_NEAR(table.rows.front().back(), 1.5, 1e-14);
@@ -82,7 +82,7 @@ TEST(a_probe, beside_cells_without_values_has_those_of_the_nearer_cells) {
   const auto table = to_table(fields, line_probe{"p", {0.0, 0.3}, {1.0, 0.3}, 101});
   for (const auto& row : table.rows) {
     const double x = row[1];
-    if (std::abs(x - 0.4) < 1e-9 || std::abs(x - 0.6) < 1e-9) continue;  // on the side of a cell
+    if (std::abs(x - 0.4) < 1e-9 || std::abs(x - 0.6) < 1e-9) continue;  // the point is on the side of a cell
     EXPECT_EQ(std::isnan(row.back()), x > 0.4 && x < 0.6) << x;
     if (std::isnan(row.back())) continue;
     EXPECT_NEAR(row.back(), 1.0, 1e-15);
@@ -101,7 +101,7 @@ TEST(a_slice, is_exact_for_affine_functions) {
       for (std::size_t cell = 0; cell < values.size(); ++cell) {
         const double x = centre_of_cell(cut.axes, cell, 0), y = centre_of_cell(cut.axes, cell, 1),
                      z = centre_of_cell(cut.axes, cell, 2);
-        // Numbers near 1, some of them extrapolated over half a cell.
+        // The values are numbers near 1. Some are extrapolated over half a cell.
         EXPECT_NEAR(values[cell], 1.0 + 0.25 * x - 0.5 * y + 0.125 * z, 1e-14) << direction << " " << at;
       }
     }

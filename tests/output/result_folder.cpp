@@ -1,4 +1,4 @@
-// Results appear complete or not at all, and one run at a time writes them.
+// Results appear completely or not at all, and only one run writes them.
 #include <apsis/output/result_folder.hpp>
 
 #include "support/folder.hpp"

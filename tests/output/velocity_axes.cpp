@@ -18,7 +18,8 @@ using testing::ElementsAre;
 using testing::IsEmpty;
 using testing::SizeIs;
 
-/// Tensor product of different nodes with unequal weights along the second axis; the first axis is slowest.
+/// Returns a tensor product of different nodes with unequal weights along the second axis. The first
+/// axis is slowest.
 velocity_set plane() {
   return {{{2.0, 2.0, 2.0, -1.0, -1.0, -1.0}, {0.0, 1.0, 3.0, 0.0, 1.0, 3.0}},
           {0.5, 1.0, 0.25, 1.0, 2.0, 0.5}};
@@ -33,7 +34,7 @@ TEST(velocity_axes, of_a_tensor_product_are_its_nodes) {
   EXPECT_EQ(axes[1].name, "v_y");
   EXPECT_THAT(axes[0].nodes, ElementsAre(2.0, -1.0));
   EXPECT_THAT(axes[1].nodes, ElementsAre(0.0, 1.0, 3.0));
-  // The weights are in the ratios of the weights of the points; each end has half an interval.
+  // Axis weights have the ratios of the weights of the points. Each end has half an interval.
   EXPECT_THAT(axes[0].weights, ElementsAre(DoubleEq(2.0), DoubleEq(4.0)));
   EXPECT_THAT(axes[1].weights, ElementsAre(DoubleEq(4.5 * 2 / 7), DoubleEq(4.5 * 4 / 7), DoubleEq(4.5 / 7)));
 }
@@ -84,7 +85,7 @@ TEST(marginals, integrate_to_the_density_along_every_axis) {
       EXPECT_NEAR(sum, density, 1e-14 * density) << one.axis.name << " " << cell;
     }
   }
-  // Σ w f / w_x of the first node of the first cell: (0.5 + 2 + 0.75)/2.
+  // In the first cell the value at the first node is Σ w f / w_x = (0.5 + 2 + 0.75)/2.
   EXPECT_THAT(found[0].values[0], DoubleNear(1.625, 1e-15));
 }
 

@@ -1,5 +1,5 @@
-// The references of the limit scheme: limit systems written out by hand, their smooth solutions, and the
-// exact Riemann solution of the Broadwell limit.
+// References of the limit scheme: limit systems written out by hand, their smooth solutions, and the exact
+// Riemann solution of the Broadwell limit.
 #include <apsis/core/errors.hpp>
 
 #include <algorithm>
@@ -24,8 +24,8 @@ namespace {
 const limit_equations burgers = {
     "Burgers", 1, [](const double* u, double* f) { f[0] = 0.5 * u[0] * u[0]; }, {}};
 
-/// Solution of Burgers' equation by its characteristics: u = g(x − ut), by bisection (g is decreasing in no
-/// place steeply enough for a shock).
+/// Returns the solution u = g(x − ut) of Burgers' equation on characteristics, by bisection. g is nowhere
+/// steep enough for a shock.
 double burgers_exact(double x, double t) {
   double low = 0.0, high = 1.0;
   for (int k = 0; k < 100; ++k) {
@@ -45,7 +45,7 @@ broadwell_riemann::state conserved_flux(broadwell_riemann::state w) {
   return {w.m, (w.rho * w.rho + w.m * w.m) / (2.0 * w.rho)};
 }
 
-/// Integral of the solution at t = 1 over −1 < x < 1, piece by piece.
+/// Returns the integral of the solution at t = 1 over −1 < x < 1, piece by piece.
 broadwell_riemann::state integral(const broadwell_riemann& solution) {
   std::array<double, 6> ends = {-1.0,
                                 solution.slow_wave()[0],
@@ -54,9 +54,9 @@ broadwell_riemann::state integral(const broadwell_riemann& solution) {
                                 solution.fast_wave()[1],
                                 1.0};
   broadwell_riemann::state sum{0.0, 0.0};
-  // The ends are where it is nearly singular: at λ = ±1, where u = ±1.
-  // The tolerance of the rule is that of the refinement before the last; with the default, the square root of
-  // the machine epsilon, one state in thousands is integrated to 1e-9 only.
+  // The solution is nearly singular only at the ends of pieces: at λ = ±1, where u = ±1. The tolerance of the
+  // rule is that of the refinement before the last. With the default, the square root of the machine epsilon,
+  // one state in thousands has an error of 1e-9.
   boost::math::quadrature::tanh_sinh<double> rule;
   constexpr double tolerance = 1e-12;
   for (std::size_t k = 0; k + 1 < ends.size(); ++k) {
@@ -74,7 +74,7 @@ TEST(fourier_solution, is_exact_for_burgers_equation_before_the_shock) {
   const auto solution = solve_burgers(129, 1000);
   const double h = 0.1;
   for (const double x : {0.03, 0.5, 1.1, 1.97}) {
-    // Rounding of 1000 steps; the modes are below it.
+    // The tolerance covers the rounding errors of 1000 steps. The neglected modes are smaller.
     EXPECT_NEAR(solution.value(0, x), burgers_exact(x, 0.4), 2e-13);
     const double mean = boost::math::quadrature::gauss<double, 15>::integrate(
                             [](double y) { return burgers_exact(y, 0.4); }, x - 0.5 * h, x + 0.5 * h) /
@@ -120,8 +120,7 @@ TEST(broadwell_riemann, conserves_and_orders_its_waves_for_random_states) {
               fast[1] < 1.0);
     const auto total = integral(solution);
     const auto in = conserved_flux(left), out = conserved_flux(right);
-    // Weak solution on a box; rounding relative to the
-    // larger density.
+    // The solution is a weak solution on a box. The tolerance is relative to the largest density.
     const double tolerance = 1e-11 * std::max({left.rho, right.rho, solution.middle().rho});
     RC_ASSERT(std::abs(total.rho - (left.rho + right.rho + in.rho - out.rho)) < tolerance);
     RC_ASSERT(std::abs(total.m - (left.m + right.m + in.m - out.m)) < tolerance);

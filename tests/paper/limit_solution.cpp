@@ -1,4 +1,4 @@
-// Runs with ε = 0 against the limit systems written out by hand.
+// Runs with ε = 0 agree with the limit systems written out by hand.
 #include <paper/limit_solution.hpp>
 
 #include <apsis/core/errors.hpp>
@@ -19,7 +19,7 @@ using namespace apsis::paper;
 
 namespace {
 
-/// The moments of transported equilibria, at the data of the case, against the written system.
+/// Compares the moments of transported equilibria, at the data of the case, with the written system.
 void expect_same(const case_config& config) {
   const auto system = written_limit(config);
   ASSERT_TRUE(system.has_value());
@@ -38,14 +38,14 @@ void expect_same(const case_config& config) {
     equation.moments(moved.data(), got.data());
     (system->flux ? system->flux : system->source)(omega.data(), expected.data());
     for (std::size_t k = 0; k < omega.size(); ++k)
-      // The midpoint rule over velocities is exact to rounding; energy fluxes sum terms of size 10.
+      // The midpoint rule over velocities is exact up to rounding. Energy fluxes sum terms of size 10.
       EXPECT_NEAR(got[k], expected[k], 1e-12) << config.model.name << ", moment " << k << ", cell " << i;
   }
 }
 
 }  // namespace
 
-// Ties the written systems to the models: a misprint in either fails here.
+// A misprint in the written systems or in the models fails here.
 TEST(limit_equations, are_the_moments_of_transported_equilibria) {
   int written = 0;
   for (const auto& name : relaxation_model_names()) {
@@ -63,7 +63,7 @@ TEST(limit_equations, are_the_moments_of_transported_equilibria) {
 TEST(limit_equations, of_a_gas_with_three_velocity_dimensions_has_gamma_five_thirds) {
   const auto system =
       written_limit(apsis::small_case("bgk", {"model.velocity_dimensions=3", "velocity.points=20"}));
-  // ρ = 2, u = (1, ½, 0), p = 3: 𝓔 = 3p/2 + ½ρ|u|².
+  // For ρ = 2, u = (1, ½, 0) and p = 3, 𝓔 = 3p/2 + ½ρ|u|².
   const double omega[5] = {2.0, 2.0, 1.0, 0.0, 4.5 + 1.25};
   double flux[5];
   system->flux(omega, flux);
@@ -75,8 +75,8 @@ TEST(limit_equations, of_a_gas_with_three_velocity_dimensions_has_gamma_five_thi
 }
 
 TEST(limit_solution, is_met_in_the_order_of_the_method) {
-  // One halving on meshes where the temporal error of the second-order method dominates; claim C17 covers
-  // the rest.
+  // One halving on meshes where the temporal error of the second-order method dominates. Claim C17 covers
+  // further meshes.
   const std::vector<std::string> common = {"time.method=md-imex-3-2", "space.reconstruction=weno5-z"};
   const auto error = [&](const char* cells, const fourier_solution* solution) {
     auto overrides = common;

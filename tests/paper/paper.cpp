@@ -1,4 +1,4 @@
-// Every claim of the registry, as `apsis reproduce` checks it. Slow ones run with `make test-all`.
+// Every claim of the registry, as `apsis reproduce` checks it. `make test-all` includes the slow ones.
 #include <apsis/core/errors.hpp>
 #include <apsis/exec/parallel.hpp>
 

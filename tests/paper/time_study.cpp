@@ -1,4 +1,4 @@
-// Temporal accuracy of a discretised case against its exact solution in time.
+// The temporal error of a discretised case refers to its exact solution in time.
 #include <apsis/study/time_study.hpp>
 
 #include <apsis/core/errors.hpp>
@@ -16,8 +16,8 @@ using namespace apsis::paper;
 
 TEST(time_study, reference_is_what_fine_steps_of_every_method_converge_to) {
   for (const auto& model : relaxation_model_names()) {
-    // First-order upwinding is linear; WENO weights that switch where data are flat would reduce the order
-    // in time.
+    // First-order upwinding is linear. WENO weights that switch where data are flat would reduce the
+    // order in time.
     const bool space = model != "ode";
     const time_study study(small_case(model, space ? std::vector<std::string>{"space.reconstruction=upwind1"}
                                                    : std::vector<std::string>{}),
@@ -26,7 +26,8 @@ TEST(time_study, reference_is_what_fine_steps_of_every_method_converge_to) {
     for (const std::string name : {"md-imex-6-3", "ars-443"}) {
       const double coarse = largest_difference(study.solve(find_method(name), 128), exact);
       const double fine = largest_difference(study.solve(find_method(name), 256), exact);
-      // Third order; ε/C is about 20 steps, and at 256 steps the error is still three times the reference's.
+      // The method has order 3. ε/C is about 20 steps, and the error at 256 steps is still three times that
+      // of the reference.
       EXPECT_GT(std::log2(coarse / fine), 2.6) << model << " " << name << " " << coarse;
     }
   }
@@ -68,7 +69,7 @@ TEST(time_study, refuses_models_without_equilibrium) {
 }
 
 TEST(plateaus, a_wrong_prediction_is_detected) {
-  // The constants of one method differ strongly from those measured for another.
+  // The constants of one method differ strongly from those observed for another.
   const auto second = analyse_intermediate_regime(find_method("md-imex-3-2").coefficients<double>());
   const auto seen = measured_ode_plateau(find_method("md-imex-6-3"), ode_data::inconsistent);
   EXPECT_GT(std::abs(predicted_ode_plateau(second, ode_data::inconsistent)[0] - seen[0]), 0.1);

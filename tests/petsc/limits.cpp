@@ -22,8 +22,8 @@ double sum_of(const std::vector<double>& u) {
   return std::accumulate(u.begin(), u.end(), 0.0);
 }
 
-/// Returns the errors of 32 and 64 steps, up to 8e9 times as long as ε, against the same problem in small
-/// steps.
+/// Returns the errors of 32 and 64 steps. The steps are up to 8e9 times as long as ε. The reference solves
+/// the same problem in small steps.
 std::pair<double, double> errors_of(double epsilon) {
   const auto by = [&](int steps) {
     return solve_exchange(std::string(third_order) + " -snes_stol 1e-12 -ksp_rtol 1e-8", epsilon, steps).u;
@@ -39,7 +39,7 @@ TEST(small_epsilon, leaves_the_order_and_the_size_of_the_error) {
     const auto [of_32, of_64] = errors_of(epsilon);
     // The reference has 1/512 of the error of 64 steps.
     EXPECT_NEAR(std::log2(of_32 / of_64), 3, 0.3) << epsilon;
-    // Terms of size ε are below 1e-6, and their errors below that times the error.
+    // Terms of size ε are below 1e-6. They change the error by less than that times the error.
     EXPECT_NEAR(of_64, expected_64, 0.05 * expected_64) << epsilon;
   }
 }
@@ -52,7 +52,7 @@ TEST(conserved_quantities, stay_at_their_values_to_the_tolerance_of_stage_solves
   }
 }
 
-// Both forms of the preconditioner, and colored differences in place of the Jacobian.
+// The options are both forms of the preconditioner, and other linear solvers and line searches.
 TEST(solvers_of_stages, lead_to_the_same_solution) {
   for (const double epsilon : {1e-1, 1e-4, 1e-8}) {
     const std::string text = std::string(third_order) + " -snes_stol 1e-11";
@@ -62,13 +62,13 @@ TEST(solvers_of_stages, lead_to_the_same_solution) {
           " -ksp_type preonly -pc_type bjacobi -sub_pc_type lu", " -snes_lag_preconditioner 2",
           " -snes_linesearch_type bt -snes_max_it 60 -snes_rtol 1e-10"}) {
       if (epsilon < 1e-4 && std::string(more).find("linesearch") != std::string::npos)
-        continue;  // residuals mislead
+        continue;  // large residuals mislead the line search
       EXPECT_LT(distance(solve_exchange(text + more, epsilon, 64).u, expected), 1e-8) << epsilon << more;
     }
   }
 }
 
-// Differences of Q have errors of about 1e-8 of Q', which enter Q̇ = Q'Q.
+// Differences of Q have errors of about 1e-8 of Q'. The product Q̇ = Q'Q contains them.
 TEST(differences_in_place_of_the_jacobian, change_the_solution_little) {
   const auto expected = solve_exchange(third_order, 1e-4, 64).u;
   for (const char* more : {" -snes_fd_color", " -snes_mf_operator", " -snes_mf"})
@@ -83,7 +83,7 @@ TEST(differences_in_place_of_the_jacobian, are_taken_without_one) {
   EXPECT_LT(distance(one.solve(0.25, 0.25 / 64).u, solve_exchange(third_order, 1e-4, 64).u), 1e-6);
 }
 
-// Two Krylov iterations a Newton iteration, on the average, however stiff Q is.
+// On average a Newton iteration takes two Krylov iterations, however stiff Q is.
 TEST(krylov_iterations, do_not_grow_with_stiffness) {
   for (const double epsilon : {1e-3, 1e-5, 1e-7, 1e-9}) {
     const auto done = solve_exchange(third_order, epsilon, 64);
@@ -105,7 +105,7 @@ TEST(linear_problems, take_one_newton_iteration_a_stage) {
   EXPECT_LT(distance(linear.u, newton.u), 1e-8);
 }
 
-/// Diffusion in a plane, by hundreds of unknowns: 1 − γJ with algebraic multigrid.
+/// Diffusion in a plane with hundreds of unknowns. 1 − γJ has algebraic multigrid as preconditioner.
 PetscErrorCode diffuse(TS ts, PetscReal, Vec u, Vec rate, Vec out, void* context) {
   const double factor = *static_cast<double*>(context);
   with_ghosts(ts, u, [&](DM dm, Vec local) {
@@ -146,7 +146,7 @@ TEST(algebraic_multigrid, preconditions_stages_of_diffusion) {
     return one.solve(0.1, 0.1 / 8);
   };
   const auto done = solve(" -pc_type gamg"), simple = solve(" -pc_type jacobi");
-  // The fastest rate is 8192, 100 times that of a step.
+  // The fastest rate is 8192, 100 times the rate 1/Δt.
   EXPECT_LT(done.krylov, 12 * done.newton);
   EXPECT_LT(2 * done.krylov, simple.krylov);
   EXPECT_LT(distance(done.u, simple.u), 1e-7);

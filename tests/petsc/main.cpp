@@ -9,7 +9,7 @@ int main(int argc, char** argv) {
   if (PetscInitialize(&argc, &argv, nullptr, nullptr) != 0 || TSApsisRegister() != 0) return 2;
   int rank = 0;
   MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
-  // Only failures of the other processes are printed.
+  // Other processes print only failures.
   if (rank != 0) {
     auto& listeners = testing::UnitTest::GetInstance()->listeners();
     delete listeners.Release(listeners.default_result_printer());
@@ -22,7 +22,7 @@ int main(int argc, char** argv) {
     listeners.Append(new failures);
   }
   const int failed = RUN_ALL_TESTS();
-  // For a check of the check that no object is left.
+  // The option checks that a remaining object is detected.
   PetscBool leave = PETSC_FALSE;
   if (PetscOptionsHasName(nullptr, nullptr, "-leave_an_object", &leave) != 0) return 2;
   if (leave == PETSC_TRUE) {

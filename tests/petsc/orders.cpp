@@ -6,7 +6,7 @@ namespace petsc_orders {
 
 using namespace petsc_runs;
 
-/// Tolerances that leave less than 1e-11 of errors of stage solves.
+/// Tolerances of stage solves that leave errors below 1e-11.
 constexpr const char* accurate = " -snes_stol 1e-12 -ksp_rtol 1e-10";
 
 std::vector<double> solve_exchange(const std::string& more, double epsilon, int steps) {
@@ -30,7 +30,7 @@ struct expectation {
 
 class exchanges : public testing::TestWithParam<expectation> {};
 
-// Steps that resolve ε = 0.3; the reference by another integrator of PETSc with an error below 1e-11.
+// The steps resolve ε = 0.3. Another integrator of PETSc computes the reference with an error below 1e-11.
 TEST_P(exchanges, of_moderate_stiffness_are_integrated_with_the_order_of_the_method) {
   static const auto reference =
       solve_exchange(" -ts_type arkimex -ts_arkimex_type 5 -snes_rtol 1e-13", 0.3, 1000);
@@ -39,7 +39,8 @@ TEST_P(exchanges, of_moderate_stiffness_are_integrated_with_the_order_of_the_met
     return solve_exchange(std::string(" -ts_apsis_method ") + method, 0.3, steps);
   };
   const double found = observed_order(solve, 32, reference);
-  // Steps are finite: 0.3 below the order, as elsewhere in tests of orders; above it, some methods gain one.
+  // Because steps are finite, the observed order may be 0.3 too low, as in other tests of orders. Some
+  // methods gain an order.
   EXPECT_GT(found, order - 0.3) << method;
   EXPECT_LT(found, order + 1.2) << method;
 }
@@ -64,7 +65,7 @@ TEST(brusselators, are_integrated_with_order_3_where_steps_do_not_resolve_diffus
   };
   const auto reference = solve(" -ts_type arkimex -ts_arkimex_type 5 -snes_rtol 1e-13", 1500);
   const auto by_method = [&](int steps) { return solve(" -ts_apsis_method md-imex-8-3-mixed", steps); };
-  // 1/64 times the fastest rate of diffusion, 4 · 40²/50, is 2.
+  // The product of the step 1/64 and the fastest rate of diffusion, 4 · 40²/50, is 2.
   EXPECT_NEAR(observed_order(by_method, 64, reference), 3, 0.3);
 }
 
@@ -84,7 +85,7 @@ TEST(heat_equations, are_solved_by_methods_for_stiff_parts_with_the_constant_jac
   EXPECT_NEAR(std::log2(error(4) / error(8)), 3, 0.3);
 }
 
-/// u' = λ(u − cos t) − sin t, with the solution cos t, as IFunction.
+/// u' = λ(u − cos t) − sin t as IFunction, with the solution cos t.
 PetscErrorCode follow_cosine(TS, PetscReal t, Vec u, Vec rate, Vec out, void*) {
   const double lambda = -50;
   require(VecWAXPY(out, -lambda, u, rate));
@@ -97,7 +98,7 @@ PetscErrorCode derivative_of_following(TS, PetscReal, Vec, Vec, PetscReal shift,
   return 0;
 }
 
-// Without ∂Q/∂t in the stages, the order would be 1.
+// Without ∂Q/∂t in the stages the order would be 1.
 TEST(methods_for_stiff_parts, have_their_order_if_the_stiff_part_depends_on_time) {
   const auto error = [](int steps) {
     const options now("-ts_adapt_type none -ts_apsis_method imdrk-3-3 -snes_stol 1e-13");
@@ -110,7 +111,7 @@ TEST(methods_for_stiff_parts, have_their_order_if_the_stiff_part_depends_on_time
   EXPECT_GT(std::log2(error(40) / error(80)), 2.7);
 }
 
-// In implicit-explicit methods, time is integrated with T.
+// Implicit-explicit methods integrate time with T.
 TEST(implicit_explicit_methods, have_their_order_if_the_stiff_part_depends_on_time) {
   const auto error = [](int steps) {
     const options now("-ts_adapt_type none -ts_apsis_method md-imex-8-3-mixed -snes_stol 1e-13");

@@ -36,7 +36,7 @@ struct own_points {
   }
 };
 
-/// Calls body(dm, u with ghost points).
+/// Calls body(dm, u) for u with ghost points.
 template <class Body>
 void with_ghosts(TS ts, Vec u, const Body& body) {
   DM dm = nullptr;
@@ -48,8 +48,8 @@ void with_ghosts(TS ts, Vec u, const Body& body) {
   require(DMRestoreLocalVector(dm, &local));
 }
 
-/// u_t + u_x = q/ε, v_t = −q/ε, q = v − u² (nonlinear) or v − 2u, on a periodic line; upwind differences. u +
-/// v is conserved. The limit ε → 0 is the conservation law of u + v with the flux u.
+/// u_t + u_x = q/ε, v_t = −q/ε with q = v − u² (nonlinear) or v − 2u, by upwind differences on a periodic
+/// line. u + v is conserved. The limit ε → 0 is the conservation law of u + v with the flux u.
 struct exchange {
   double epsilon = 1e-2;
   bool nonlinear = true;
@@ -108,7 +108,7 @@ struct exchange {
     return 0;
   }
 
-  /// Sets functions and initial values: at equilibrium, or v = 0.
+  /// Sets functions and initial values. v is in equilibrium, or 0.
   void enter(run& to, bool at_equilibrium = true, bool with_jacobian = true) {
     require(TSSetRHSFunction(to.ts(), nullptr, transport, this));
     require(TSSetIFunction(to.ts(), nullptr, collision, this));
@@ -122,8 +122,8 @@ struct exchange {
   }
 };
 
-/// The Brusselator u_t = 1 − 4u + u²v + αu_xx, v_t = 3u − u²v + αv_xx, u = 1 and v = 3 at both ends: reaction
-/// as RHSFunction, diffusion as IFunction.
+/// The Brusselator u_t = 1 − 4u + u²v + αu_xx, v_t = 3u − u²v + αv_xx with u = 1 and v = 3 at both ends. The
+/// reaction is the RHSFunction, the diffusion the IFunction.
 struct brusselator {
   double alpha = 1.0 / 50;
 
@@ -200,8 +200,8 @@ struct brusselator {
   }
 };
 
-/// The heat equation u_t = u_xx, u = 0 at both ends, in central differences: u' = Au as RHSFunction with the
-/// constant RHSJacobian A. The solution from sin πx is exp(λt) sin πx exactly.
+/// The heat equation u_t = u_xx with u = 0 at both ends in central differences. u' = Au is the RHSFunction
+/// with the constant RHSJacobian A. From sin πx the solution is exactly exp(λt) sin πx.
 struct heat {
   Mat a = nullptr;
   double lambda = 0;

@@ -10,7 +10,7 @@ namespace petsc_refusals {
 using namespace petsc_runs;
 using testing::HasSubstr;
 
-/// Returns the message with which TSSolve() fails for a TS that `change` prepares; "" if it does not.
+/// Returns the message with which TSSolve() fails for a TS that `change` prepares, or "" if it succeeds.
 std::string refusal(const std::string& text, const std::function<void(run&, exchange&)>& change) {
   const options now(text);
   run one(line(24, 2, DM_BOUNDARY_PERIODIC));
@@ -136,7 +136,7 @@ TEST(methods, are_set_and_read_by_functions) {
   EXPECT_THAT(messages.first(), HasSubstr("its type is not 'apsis'"));
 }
 
-// The matrices, the convergence test and the preconditioner of its SNES are those of the program again.
+// After the run, its SNES has the matrices, the convergence test and the preconditioner of the program again.
 TEST(other_types, continue_a_run) {
   const options now("-ts_adapt_type none");
   run one(line(24, 2, DM_BOUNDARY_PERIODIC));

@@ -24,12 +24,12 @@ TEST(adaptive_steps, reach_the_tolerance) {
       run one(line(24, 2, DM_BOUNDARY_PERIODIC));
       exchange problem{.epsilon = 0.01};
       problem.enter(one, false);
-      // The first step is much too long.
+      // The first step is much too long for the tolerance.
       const auto done = one.solve(0.25, 0.05);
       EXPECT_EQ(done.reason, TS_CONVERGED_TIME);
       EXPECT_DOUBLE_EQ(done.t, 0.25);
       EXPECT_GT(done.rejected, 0) << method;
-      // Errors of steps add up.
+      // Errors of steps add up to less than 20 tolerances.
       EXPECT_LT(distance(done.u, expected), 20 * tolerance) << method;
       EXPECT_GT(done.steps, before) << method;
       before = done.steps;
@@ -38,7 +38,7 @@ TEST(adaptive_steps, reach_the_tolerance) {
 }
 
 TEST(rejected_steps, leave_no_trace) {
-  // A step that is rejected once gives the bits of the shorter one.
+  // A rejected step must give the bits of the shorter step.
   const auto solve = [](const std::string& more, double dt) {
     const options now("-ts_max_steps 1 -ts_exact_final_time stepover" + more);
     run one(line(24, 2, DM_BOUNDARY_PERIODIC));
@@ -91,7 +91,7 @@ TEST(interpolation, gives_the_solution_at_the_final_time) {
   EXPECT_LT(distance(done.u, reference(0.01, 0.25)), 1e-3);
 }
 
-/// The event u_0 = 0.9, and its time.
+/// Finds the time of the event u_0 = 0.9, and counts events.
 struct crossing {
   double t = 0;
   int count = 0;
@@ -129,7 +129,7 @@ TEST(events, are_located) {
   const double expected =
       locate("-ts_type arkimex -ts_arkimex_type 5 -ts_adapt_type none -snes_rtol 1e-13", 1.0 / 1024);
   EXPECT_GT(t, 0.0);
-  // The error of 512 steps.
+  // The tolerance covers the error of 512 steps.
   EXPECT_NEAR(t, expected, 1e-4);
 }
 
@@ -159,7 +159,7 @@ TEST(reset, lets_a_run_begin_anew_with_another_number_of_points) {
   run few(line(24, 2, DM_BOUNDARY_PERIODIC)), many(line(30, 2, DM_BOUNDARY_PERIODIC));
   solve(few);
   const auto expected = solve(many);
-  // The first TS with a DM like the second one.
+  // The first TS gets a DM like that of the second.
   DM dm = line(30, 2, DM_BOUNDARY_PERIODIC);
   require(TSReset(few.ts()));
   require(TSSetDM(few.ts(), dm));
@@ -167,12 +167,12 @@ TEST(reset, lets_a_run_begin_anew_with_another_number_of_points) {
   require(TSSetTime(few.ts(), 0));
   require(TSSetStepNumber(few.ts(), 0));
   require(TSSetTimeStep(few.ts(), 0.01));
-  problem.enter(many);  // its initial values
+  problem.enter(many);  // sets the initial values again
   require(TSSolve(few.ts(), many.u()));
   EXPECT_LT(distance(gathered(many.u()), expected.u), 1e-12);
 }
 
-/// Rejects states with an entry above the limit, as a problem without such states does.
+/// Rejects states with an entry above the limit, as a problem that is undefined there would.
 PetscErrorCode limit_states(TS, PetscReal, Vec u, PetscBool* accepted) {
   PetscReal largest = 0;
   require(VecMax(u, nullptr, &largest));
@@ -252,7 +252,7 @@ double smallest_entry(const std::string& text, double dt, double epsilon = 10,
   return *std::min_element(done.u.begin(), done.u.end());
 }
 
-// Forward Euler steps of upwind differences are positive up to Δt_FE = 1/40; the method has r = 1.25.
+// Forward Euler steps of upwind differences are positive up to Δt_FE = 1/40. The method has r = 1.25.
 TEST(positivity, holds_up_to_r_forward_euler_steps_and_not_far_above) {
   for (const double epsilon : {10.0, 0.1, 1e-4, 1e-8})
     EXPECT_GE(smallest_entry("", 1.25 / 40, epsilon), -1e-15) << epsilon;

@@ -13,15 +13,15 @@
 #include <petscdm.h>
 #include <petscdmda.h>
 
-/// Runs of PETSc whose errors are tests' failures, or expected.
+/// Runs of PETSc. Their errors fail a test or are expected.
 namespace petsc_runs {
 
-/// Fails the test where PETSc returns an error; the same on all processes.
+/// Throws if PETSc returns an error, which is the same on all processes.
 inline void require(PetscErrorCode code) {
   if (code != 0) throw std::runtime_error("PETSc returned the error " + std::to_string(code));
 }
 
-/// Options of the program while the object exists.
+/// Sets options of the program during the lifetime of the object.
 class options {
  public:
   explicit options(const std::string& text) {
@@ -40,7 +40,7 @@ class options {
   PetscOptions now_ = nullptr;
 };
 
-/// Collects the messages of errors, which PETSc would print.
+/// Collects the messages of errors instead of printing them.
 class error_messages {
  public:
   error_messages() { require(PetscPushErrorHandler(collect, this)); }
@@ -96,7 +96,7 @@ inline double distance(const std::vector<double>& a, const std::vector<double>& 
 /// A TS on a DM, of type "apsis" unless options choose another.
 class run {
  public:
-  /// Takes over the DM.
+  /// Takes ownership of the DM.
   explicit run(DM dm) : dm_(dm) {
     require(TSCreate(PetscObjectComm(reinterpret_cast<PetscObject>(dm)), &ts_));
     require(TSSetDM(ts_, dm_));
@@ -123,7 +123,7 @@ class run {
     require(TSSolve(ts_, u_));
     return result();
   }
-  /// Returns the present state as an outcome.
+  /// Returns the current state as an outcome.
   outcome result() const {
     outcome out;
     PetscInt steps = 0, rejected = 0, newton = 0, krylov = 0;
@@ -147,13 +147,13 @@ class run {
   Vec u_ = nullptr;
 };
 
-/// The processes of new runs.
+/// Returns the communicator of new runs.
 inline MPI_Comm& processes() {
   static MPI_Comm now = PETSC_COMM_WORLD;
   return now;
 }
 
-/// Returns body(), whose runs every process does alone: references, without waiting for other processes.
+/// Returns body(), whose runs every process does alone, without waiting for other processes. Use: references.
 template <class Body>
 auto alone(const Body& body) {
   processes() = PETSC_COMM_SELF;

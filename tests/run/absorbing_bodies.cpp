@@ -18,7 +18,7 @@ namespace {
 
 using namespace apsis;
 
-/// A gas at rest around a body, between planes of symmetry.
+/// Returns a case of a gas at rest around a body, between planes of symmetry.
 std::string gas_around(const std::string& body, int dimensions) {
   const bool plane = dimensions == 2;
   return "[model]\nname = \"bgk\"\nepsilon = 1e6\n[initial]\nrho = 1\nT = 1\n[space]\nboundary = "
@@ -33,7 +33,7 @@ std::string gas_around(const std::string& body, int dimensions) {
 const std::string circle = "shape = \"circle\"\ncentre = [0.1, -0.05]\nradius = 0.55\n",
                   ball = "shape = \"sphere\"\ncentre = [0.1, -0.05, 0.02]\nradius = 0.6\n";
 
-/// A column of the table of the body, in the last step.
+/// Returns a column of the table of the body in the last step.
 std::vector<double> column(const surface_table& table, const std::string& name) {
   const auto& names = table.numbers.columns;
   const auto k = static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
@@ -53,7 +53,8 @@ TEST(absorbing_body, takes_the_mass_flux_of_free_molecules) {
     const auto mass = column(tables[0], "mass"), leaving = column(tables[0], "mass_leaving");
     const double efflux = 1.0 / std::sqrt(2.0 * std::numbers::pi);
     for (std::size_t k = 0; k < mass.size(); ++k) {
-      // Within the error of the half range, Δv²/24 = 1 % and 3 %, and the rarefaction of the first step.
+      // The tolerance covers the error of half of the velocities, Δv²/24 = 1 % and 3 %, and the rarefaction
+      // during the first step.
       EXPECT_NEAR(mass[k], efflux, 0.15 * efflux) << dimensions << ' ' << k;
       EXPECT_EQ(leaving[k], 0.0);
     }
@@ -67,7 +68,7 @@ TEST(absorbing_body, removes_what_the_gas_loses) {
                                 {std::string("space.limiter=") + limiter}));
       const double before = run.initial_record().total.at(0);
       while (!run.finished()) run.advance();
-      // The budget of mass, momentum and energy, with what the body has received.
+      // The budget of mass, momentum and energy includes the amounts that the body has received.
       EXPECT_LT(run.summary().conservation_defect, 1e-13) << limiter;
       const double lost = before - run.last().total.at(0);
       EXPECT_GT(lost, 0.02 * before);

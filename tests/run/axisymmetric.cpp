@@ -1,4 +1,4 @@
-// Runs of axisymmetric cases: uniform gas, budgets of rings, fields, restarts, and cases that are refused.
+// Runs of axisymmetric cases: uniform gas, budgets of rings, fields, restarts, and refused cases.
 #include <apsis/config/case.hpp>
 #include <apsis/core/errors.hpp>
 #include <apsis/run/body_loads.hpp>
@@ -18,7 +18,7 @@
 namespace axisymmetric_test {
 namespace {
 
-/// A tube about the axis: gas between two planes and a cylinder.
+/// Returns a case of a tube about the axis: gas between two planes and a cylinder.
 std::string tube(const std::string& sides, const std::string& initial = "rho = 1\nT = 1") {
   return R"(
 [model]
@@ -61,7 +61,7 @@ void advance(apsis::simulation& run, int steps) {
   for (int step = 0; step < steps && !run.finished(); ++step) run.advance();
 }
 
-/// Largest |a − b| over the largest |a|.
+/// Returns the largest |a − b| over the largest |a|.
 double difference(const std::vector<double>& a, const std::vector<double>& b) {
   double largest = 0.0, size = 0.0;
   for (std::size_t k = 0; k < a.size(); ++k) {
@@ -90,8 +90,8 @@ TEST(axisymmetric_run, gas_at_rest_stays_as_it_is_past_a_sphere) {
              "space.limiter=\"" + limiter + "\""}));
         const std::vector<double> before = run.state();
         advance(run, 3);
-        // Differences of F = r f are of the first size, and r of the first cell is a sixteenth. The Gaussian
-        // of es-bgk has the stress of the sums over six rings, which the Maxwellian has not.
+        // Differences of F = r f are of size 1, and the first cell has r = 1/16. The Gaussian of es-bgk
+        // contains the stress from sums over six rings, but the Maxwellian does not.
         EXPECT_LT(difference(before, run.state()), model == "es-bgk" ? 1e-4 : 3e-14)
             << model << scheme << limiter;
       }
@@ -105,7 +105,7 @@ TEST(axisymmetric_run, mass_and_energy_are_those_of_the_ring_and_are_conserved) 
         tube("boundary = \"symmetry\"\n[boundary.top]\nkind = \"diffuse\"\nT = 1\naccommodation = 0\n",
              initial),
         {"space.limiter=\"" + limiter + "\""}));
-    // 2π ∫∫ (1 + xr/2) r dr dx = 2π (3/4 + 3/16); the sum over cells is a midpoint rule.
+    // The mass is 2π ∫∫ (1 + xr/2) r dr dx = 2π (3/4 + 3/16). The sum over cells is a midpoint rule.
     EXPECT_NEAR(run.last().total.front(), 2.0 * std::numbers::pi * (0.75 + 0.1875), 1e-2);
     const std::vector<double> before = run.last().total;
     advance(run, 10);
@@ -139,15 +139,15 @@ TEST(axisymmetric_run, the_balance_past_a_body_includes_all_that_its_wall_gives)
     drag += row[place("area")] * row[place("momentum_x")];
     turning += row[place("area")] * row[place("y")] * row[place("momentum_z")];
   }
-  // The last piece ends after the half circle.
+  // The table ends after the half circle.
   EXPECT_NEAR(table.numbers.rows.back().front(), std::numbers::pi * 0.45, 0.1);
-  // Of chords of a circle with five cells per radius.
+  // The area is that of the chords of a circle with five cells per radius.
   EXPECT_NEAR(area, 4.0 * std::numbers::pi * 0.45 * 0.45, 0.03 * area);
   const apsis::body_load load = apsis::body_loads(run.setup(), run.last()).front();
   EXPECT_GT(drag, 0.1);
   EXPECT_NEAR(load.force[0], drag, 1e-12 * drag);
   EXPECT_EQ(load.force[1], 0.0);
-  // The gas holds the ball back: the torque about the axis is negative.
+  // The gas slows the rotation of the ball, so the torque about the axis is negative.
   EXPECT_LT(turning, 0.0);
   EXPECT_NEAR(load.torque.front(), turning, 1e-12 * std::abs(turning));
 }
@@ -165,7 +165,7 @@ TEST(axisymmetric_run, adiabatic_bodies_receive_no_heat_and_ends_at_equilibrium_
   EXPECT_GT(load.force[0], 0.1);
   EXPECT_NEAR(load.heat, 0.0, 1e-13 * load.force[0]);  // sums of thousands of terms
   for (const std::string end : {"kind = \"far-field\"\nrho = 1\nT = 1", "kind = \"pressure\"\np = 1"}) {
-    // On both kinds of faces: x = const and r = const.
+    // The end is at both kinds of faces, x = const and r = const.
     apsis::simulation open(
         make_case(tube("boundary = \"diffuse\"\n[boundary.left]\nT = 1\n[boundary.right]\n" + end +
                        "\n[boundary.top]\n" + end)));
@@ -185,7 +185,7 @@ TEST(axisymmetric_run, fields_and_f_are_those_of_the_gas_and_not_of_r_f) {
     EXPECT_NEAR(rho[k], 1.0 + fields.y[k], 1e-13);
     EXPECT_NEAR(u[k], 0.3 * fields.y[k], 1e-13);
     EXPECT_NEAR(T[k], 0.9, 1e-13);
-    // ∂_r u_r + u_r/r and ∂_r u_θ + u_θ/r of rigid rotation and uniform expansion.
+    // For rigid rotation and uniform expansion, ∂_r u_r + u_r/r and ∂_r u_θ + u_θ/r are constants.
     EXPECT_NEAR(column(fields, "divergence")[k], 0.6, 1e-12);
     EXPECT_NEAR(column(fields, "vorticity_x")[k], 0.4, 1e-12);
   }
@@ -233,7 +233,8 @@ end = 0.3
 safety = 1
 )"));
   double before = run.last().entropy;
-  // Σ f log f r with ρ = 1 or 0.2 and a Gaussian of variance 1, over 2π: ρ (log ρ − (3/2) log 2πe).
+  // The entropy is Σ f log f r over 2π, ρ (log ρ − (3/2) log 2πe), for ρ = 1 or 0.2 and a Gaussian of
+  // variance 1.
   const double gaussian = 1.5 * std::log(2.0 * std::numbers::pi * std::numbers::e);
   EXPECT_NEAR(before,
               2.0 * std::numbers::pi * (0.125 * (0.0 - gaussian) + 0.375 * 0.2 * (std::log(0.2) - gaussian)),

@@ -1,4 +1,4 @@
-// Cases that are refused before their first step: the tables of the folder bad_input.
+// The cases of the tables in the folder bad_input are refused before their first step.
 #include <support/bad_input.hpp>
 
 #include <apsis/run/simulation.hpp>

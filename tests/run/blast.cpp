@@ -1,4 +1,5 @@
-// A blast from a point in the plane and in space: the flow is a function of the radius, whatever the axes.
+// A blast from a point in the plane and in space. The flow is a function of the radius, independent
+// of the axes.
 #include "laws.hpp"
 
 #include <algorithm>
@@ -44,8 +45,9 @@ const overrides eighth_of_space = {"time.end=0.03",
                                    "space.domain=[[0,1],[0,1],[0,1]]",
                                    "velocity.points=12"};
 
-/// The mean deviation of density, radial velocity and temperature from their means over cells with the same
-/// distance from the origin, and the mean of the velocity across the radius, where the radius is below 0.7.
+/// Returns the mean deviation of density, radial velocity and temperature from their means over cells with
+/// the same distance from the origin. It adds the mean velocity across the radius. Only cells with a radius
+/// below 0.7 count.
 double anisotropy(const apsis::simulation& run) {
   const auto fields = run.fields();
   const auto d = fields.shape.size();
@@ -82,7 +84,8 @@ double anisotropy(const apsis::simulation& run) {
   return sum / count;
 }
 
-/// Expects that the anisotropy decreases with an order when the cells along each direction are doubled.
+/// Expects that the anisotropy decreases with an order when twice as many cells along each
+/// direction are used.
 void expect_order(double order, int cells, int dimensions, const std::string& epsilon,
                   const overrides& changes = {}) {
   const auto of_mesh = [&](int n) {
@@ -98,8 +101,8 @@ void expect_order(double order, int cells, int dimensions, const std::string& ep
   EXPECT_GT(std::log2(coarse / fine), order) << epsilon << ": " << coarse << " " << fine;
 }
 
-/// The largest change of the fields when cells and components of the velocity are exchanged: `image` maps the
-/// numbers (i, j) of a cell, and components of u are exchanged where `swaps`, and have the signs.
+/// A symmetry of the fields. `image` maps the numbers (i, j) of a cell. If `swaps`, the components of u are
+/// exchanged. They get the signs.
 struct symmetry {
   const char* name;
   std::pair<int, int> (*image)(int i, int j, int last);
@@ -136,7 +139,7 @@ TEST(blast, in_the_plane_becomes_a_function_of_the_radius_with_the_order_of_the_
 }
 
 TEST(blast, in_space_becomes_a_function_of_the_radius) {
-  // Six cells do not resolve the blast.
+  // Six cells are too few to resolve the blast fully.
   overrides small = eighth_of_space;
   small.emplace_back("velocity.points=10");
   expect_order(1.5, 6, 3, "0", small);
@@ -152,7 +155,7 @@ TEST(blast, has_the_symmetries_of_the_mesh_to_rounding) {
                                                "space.boundary=outflow", "space.limiter=positivity",
                                                "model.degrees_of_freedom=3", "model.epsilon=" + epsilon})
                             .fields();
-    // Sums over velocities in another order, and WENO weights that divide by squares of differences.
+    // Sums over velocities have another order, and WENO weights divide by squares of differences.
     for (const symmetry& one : symmetries)
       EXPECT_LT(difference_from(one, fields), 1e-13) << one.name << epsilon;
   }

@@ -1,4 +1,4 @@
-// Runs past bodies: drag in free molecules, tables of walls, totals of the history, restarts, promises.
+// Runs past bodies: drag in free molecular flow, tables of walls, totals of the history, restarts, promises.
 #include <apsis/config/case.hpp>
 #include <apsis/core/errors.hpp>
 #include <apsis/mesh/cut_cells.hpp>
@@ -78,15 +78,15 @@ std::vector<double> column(const apsis::surface_table& table, const std::string&
   return values;
 }
 
-/// Free-molecular pressure and heat flux at a wall that makes the angle with the stream, over ρ, for u = 2.5
-/// and T = 1 on both sides. S: speed along the normal over √(2T).
+/// Free-molecular pressure and heat flux over ρ at a wall whose normal has this cosine with the stream. The
+/// stream has u = 2.5; gas and wall have T = 1. S is the speed along the normal over √(2T).
 struct free_molecular {
   double pressure, heat, arriving;
   explicit free_molecular(double cosine) {
     const double s = 2.5 / std::sqrt(2.0), S = s * cosine, root = std::sqrt(std::numbers::pi);
     const double chi = std::exp(-S * S) + root * S * (1.0 + std::erf(S));
     arriving = chi / std::sqrt(2.0 * std::numbers::pi);
-    // Bird, Molecular Gas Dynamics (1994), section 7: of diffuse walls.
+    // Diffuse walls by Bird, Molecular Gas Dynamics (1994), section 7.
     pressure = (S * std::exp(-S * S) + root * (0.5 + S * S) * (1.0 + std::erf(S))) / root +
                0.5 * std::sqrt(2.0 * std::numbers::pi) * arriving;
     heat = arriving * (s * s + 2.5 - 2.0) - 0.5 * std::exp(-S * S) / std::sqrt(2.0 * std::numbers::pi);
@@ -107,12 +107,12 @@ TEST(runs_past_bodies, have_free_molecular_pressure_and_heat_at_every_piece_of_w
   for (std::size_t k = 0; k < x.size(); ++k) {
     EXPECT_NEAR(std::hypot(x[k], y[k]), 1.0, 1e-9);
     const free_molecular exact(-x[k]);
-    // Of ρU² and ρU³/2: the wall is a polygon with sides of a tenth of its radius.
+    // The tolerances are 2 % of ρU² and ρU³/2. The wall is a polygon with sides of a tenth of its radius.
     EXPECT_NEAR(p[k], exact.pressure, 0.02 * 6.25) << x[k];
     EXPECT_NEAR(q[k], exact.heat, 0.02 * 7.8) << x[k];
     if (k > 0) {
       EXPECT_GT(s[k], s[k - 1]);
-      // From the right end of the half cylinder to its left one.
+      // Pieces are listed from the right end of the half cylinder to the left one.
       EXPECT_LT(x[k], x[k - 1]);
     }
   }
@@ -127,10 +127,11 @@ TEST(runs_past_bodies, have_the_free_molecular_recovery_temperature_at_every_adi
              m = column(wall, "mass"), E = column(wall, "energy_arriving");
   ASSERT_GT(x.size(), 12U);
   for (std::size_t k = 0; k < x.size(); ++k) {
-    // Sums of a thousand terms of each stage.
+    // The amounts are sums of a thousand terms at each stage.
     EXPECT_NEAR(m[k], 0.0, 1e-13);
     EXPECT_NEAR(q[k], 0.0, 1e-13 * (1.0 + E[k]));
-    // 2 T_w per mass leaves. Where almost nothing arrives, far fewer velocities make up the sums.
+    // Molecules leave with the energy 2 T_w per mass. Where almost nothing arrives, the sums have
+    // far fewer velocities.
     const free_molecular exact(-x[k]);
     if (x[k] < 0.3) {
       EXPECT_NEAR(T[k], 1.0 + 0.5 * exact.heat / exact.arriving, 0.02 * T[k]) << x[k];
@@ -200,7 +201,7 @@ TEST(runs_past_bodies, are_warned_once_about_edges_that_are_cut_off) {
   const auto [of_circle, none] = warnings_of(wedge);
   EXPECT_EQ(none, 0);
   EXPECT_THAT(of_circle, testing::Not(testing::HasSubstr("cut off")));
-  // The tip ends between the corners of a cell.
+  // The tip ends between corners of a cell.
   wedge.replace(wedge.find(circle), circle.size(),
                 "shape = \"polygon\"\npoints = [[-0.87, 0.585], [0.9, 0.275], [0.9, 0.895]]\n");
   const auto [of_wedge, thin] = warnings_of(wedge);
@@ -211,7 +212,7 @@ TEST(runs_past_bodies, are_warned_once_about_edges_that_are_cut_off) {
 }
 
 TEST(runs_past_bodies, in_space_have_the_temperature_of_a_formula_in_x_z_and_t_at_every_piece) {
-  // The half of a sphere above y = 0 in a gas at rest without collisions.
+  // The case is the half of a sphere above y = 0 in a gas at rest without collisions.
   const apsis::simulation run = finished(R"(
 [model]
 name = "bgk"
@@ -263,8 +264,8 @@ surfaces = ["ball"]
   for (std::size_t k = 0; k < x.size(); ++k) {
     EXPECT_NEAR(std::hypot(x[k], y[k], z[k]), 1.0, 1e-9);
     EXPECT_NEAR(T[k], 1.2 + 0.3 * x[k] - 0.2 * z[k], 1e-12);
-    // The flux √(1/2π) that arrives has the energy 2 per mass; a convex wall returns it with 2 T_w. Fluxes
-    // are means over a step, and T_w was smaller in the middle of it. Single pieces are 8e-3 off, most 1e-3.
+    // The flux √(1/2π) that arrives has the energy 2 per mass. A convex wall returns it with 2 T_w. Fluxes
+    // are means over a step. T_w was smaller in its middle. Single pieces are wrong by 8e-3, most by 1e-3.
     const double in_step = T[k] - run.last().dt;
     EXPECT_NEAR(q[k], std::sqrt(2.0 / std::numbers::pi) * (1.0 - in_step), 0.01) << x[k] << " " << z[k];
   }

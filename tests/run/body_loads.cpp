@@ -1,4 +1,4 @@
-// Loads of bodies: sums over their pieces, coefficients, history, restarts.
+// Loads of bodies: sums over pieces of wall, coefficients, history, restarts.
 #include <apsis/run/body_loads.hpp>
 
 #include "cases_in_space.hpp"
@@ -28,7 +28,7 @@ position cross(const position& a, const position& b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 
-/// Returns ∫ (x − from) × n dA of a piece with these corners, n into the gas.
+/// Returns ∫ (x − from) × n dA of a piece with these corners. The normal n points into the gas.
 position moment_of_normal(const std::vector<position>& corners, const position& from) {
   std::vector<position> x = corners;
   for (position& one : x)
@@ -52,8 +52,8 @@ position moment_of_normal(const std::vector<position>& corners, const position& 
   return sum;
 }
 
-/// Returns the torque Σ (x × F + p ∫ (x' − x) × n dA) of a table, with the force F and the pressure p of its
-/// rows.
+/// Returns the torque Σ (x × F + p ∫ (x' − x) × n dA) of a table. F and p are the force and the pressure of
+/// its rows.
 position torque_of(const surface_table& table) {
   const columns wall = columns_of(table);
   const auto value = [&](const std::string& name, std::size_t k) {
@@ -87,7 +87,7 @@ TEST(loads_of_bodies, are_sums_over_the_pieces_of_their_walls) {
                    [&](const columns& c, std::size_t k) { return c.at(std::string("momentum_") + axis)[k]; });
       };
       const position torque = torque_of(table_of(run, body.name));
-      // Sums of some fifty terms of the size of the pressure.
+      // The loads are sums of some fifty terms of the size of the pressure.
       constexpr double rounding = 1e-13;
       EXPECT_NEAR(body.force[0], force("x"), rounding);
       EXPECT_NEAR(body.force[1], force("y"), rounding);
@@ -109,7 +109,7 @@ TEST(loads_of_bodies, are_sums_over_the_pieces_of_their_walls) {
 }
 
 TEST(loads_of_bodies, in_a_stream_have_the_coefficients_of_their_definition) {
-  // U = (3, 4)/2: |U| = 2.5, ρU²/2 = 6.25.
+  // U = (3, 4)/2, so |U| = 2.5 and ρU²/2 = 6.25.
   const reference_values plane{
       .density = 2, .temperature = 1, .length = 0.5, .velocity = {1.5, 2}, .centre = {1, -1}, .up = {}};
   const auto found = values_of({"a", {5, 10}, {7}, 25}, plane);
@@ -156,7 +156,7 @@ TEST(loads_of_bodies, are_in_the_history_and_the_summary_in_units_of_the_results
       EXPECT_EQ(listed[name], value) << name;
     }
   }
-  // Without a stream there are force, torque and heat.
+  // Without a stream the history has force, torque and heat.
   const std::string text = flat.substr(0, flat.find("[output.reference]"));
   const simulation without = finished(text, {"time.end=0.05"});
   const auto short_json = to_json(without, run_records(without));
@@ -168,7 +168,7 @@ TEST(loads_of_bodies, are_in_the_history_and_the_summary_in_units_of_the_results
 }
 
 TEST(loads_of_bodies, are_those_of_a_turned_flow) {
-  // x → y, y → −x: the same numbers with turned vectors.
+  // The map x → y, y → −x turns vectors and leaves numbers unchanged.
   const std::string turned = gas_tables({}) + R"toml(
 [initial]
 rho = 1

@@ -1,5 +1,5 @@
-// Nonnegativity and conservation of gases past random bodies in the plane and in space, for every convex
-// method, over more than 1e9 point·stages.
+// Gases past random bodies in the plane and in space stay nonnegative and conserve, for every convex method.
+// Runs have more than 1e9 point·stages.
 #include "longest_steps.hpp"
 
 #include <apsis/config/case.hpp>
@@ -22,8 +22,8 @@
 namespace body_positivity_test {
 namespace {
 
-/// Cases with random bodies, walls, ends, rarefactions, and some with a force. The gas is nearly a vacuum in
-/// parts of the domain. No expression draws twice, so that all compilers draw the same cases.
+/// Draws cases with random bodies, walls, ends and rarefactions, and some with a force. In parts of the
+/// domain the gas is nearly a vacuum. No expression draws twice, so all compilers draw the same cases.
 class random_bodies {
  public:
   explicit random_bodies(unsigned seed) : generator_(seed) {}
@@ -68,7 +68,7 @@ class random_bodies {
     return (plane ? "shape = \"ellipse\"\n" : "shape = \"ellipsoid\"\n") + centre + axes +
            (plane ? fmt::format("angle = {:.1f}\n", number(0.0, 180.0)) : "");
   }
-  /// A box that is turned in half of the cases, or a polygon, extruded in space.
+  /// Returns a box, turned in half of the cases, or a polygon. Polygons are extruded in space.
   std::string with_edges(int d) {
     const bool plane = d == 2;
     const std::string turn = plane ? "rotate = " : "rotate = [0.5, -1, 0.8, ";
@@ -106,7 +106,7 @@ class random_bodies {
   std::mt19937 generator_;
 };
 
-/// Every other case has steps r Δt_FE, and those between them the longest that are linearly stable.
+/// Every other case has steps r Δt_FE. The cases in between have the longest steps that are linearly stable.
 void expect_nonnegative(int dimensions, int steps, double point_stages, unsigned seed) {
   random_bodies cases(seed);
   const auto methods = methods_where(is_convex_at_every_epsilon);
@@ -128,7 +128,7 @@ void expect_nonnegative(int dimensions, int steps, double point_stages, unsigned
       done += static_cast<double>(run.step()) * static_cast<double>(run.state().size()) *
               static_cast<double>(apsis::find_method(method).stages());
     } catch (const apsis::numerical_error& failure) {
-      // A gas or a wall that becomes too hot or too cold for the velocities ends a run.
+      // A run ends if its gas or a wall becomes too hot or too cold for the velocities.
       ASSERT_THAT(failure.what(), testing::AnyOf(testing::HasSubstr("no Maxwellian has the state outside"),
                                                  testing::HasSubstr("is too small for the gas"),
                                                  testing::HasSubstr("has no temperature that balances")))

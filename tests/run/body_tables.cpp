@@ -1,4 +1,5 @@
-// Tables of the walls of bodies: one-way fluxes, coefficients of pieces, and their order along the wall.
+// Tables of the walls of bodies: one-way fluxes, coefficients of pieces, and the order of pieces
+// along the wall.
 #include "streams_past_bodies.hpp"
 
 #include <cmath>
@@ -26,7 +27,7 @@ TEST(one_way_fluxes, of_mass_are_equal_at_every_wall_and_their_difference_is_wha
         EXPECT_GE(wall.at("energy_leaving")[k], 0.0);
         if (!is_wall) continue;
         EXPECT_GT(arriving, 0.05);
-        // Sums over some hundred velocities.
+        // The fluxes are sums over some hundred velocities.
         EXPECT_NEAR(arriving, leaving, 1e-13) << table.name;
         if (table.name != "bottom") continue;
         EXPECT_NEAR(wall.at("energy_arriving")[k], wall.at("energy_leaving")[k], 1e-13);
@@ -44,7 +45,7 @@ TEST(coefficients_of_pieces, are_the_columns_over_the_pressure_of_the_stream) {
     EXPECT_NEAR(wall.at("C_f")[k], wall.at("shear_stress")[k] / q, 1e-14);
     EXPECT_NEAR(wall.at("C_h")[k], wall.at("heat_flux")[k] / (q * speed), 1e-14);
     EXPECT_NEAR(std::hypot(wall.at("n_x")[k], wall.at("n_y")[k]), 1.0, 1e-14);
-    // Into the gas: away from the centre of the disc, but for the chord of a cell.
+    // The normal points into the gas, away from the centre of the disc, except for the deviation of a chord.
     EXPECT_GT(wall.at("n_x")[k] * (wall.at("x")[k] + 0.4) + wall.at("n_y")[k] * (wall.at("y")[k] - 0.1),
               0.75);
   }
@@ -72,7 +73,7 @@ TEST(a_body_on_edges_of_cells, has_the_loads_and_the_arc_length_of_a_solid_box) 
 }
 
 TEST(tables_of_concave_bodies, follow_the_wall_from_piece_to_piece) {
-  // A slot that opens to the right, and a disc on the floor.
+  // The bodies are a slot that opens to the right and a disc on the floor.
   const std::string bodies = R"toml(
 [[space.body]]
 name = "slotted"
@@ -93,7 +94,7 @@ radius = 0.6
       EXPECT_NEAR(wall.at("s")[k] - wall.at("s")[k - 1], 0.5 * (wall.at("area")[k] + wall.at("area")[k - 1]),
                   1e-14);
     }
-    // Outside of the middle on the right, upwards.
+    // The first piece is on the right outside, and the pieces run upwards.
     EXPECT_GT(wall.at("n_x").front(), 0.3);
     EXPECT_GT(wall.at("y")[1], wall.at("y")[0]);
   }

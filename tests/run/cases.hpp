@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-/// The paper's mixed-regime case with some keys changed.
+/// Returns the paper's mixed-regime case with some keys changed.
 inline apsis::case_config mixed(const std::string& data, const std::string& method, const std::string& how) {
   apsis::case_config c;
   c.model.name = "bgk";
@@ -28,7 +28,7 @@ inline apsis::case_config mixed(const std::string& data, const std::string& meth
   return c;
 }
 
-/// A coarse velocity grid, so that a step costs little.
+/// Returns a case with a coarse velocity grid, so that steps are cheap.
 inline apsis::case_config small(const std::string& method, const std::string& how) {
   apsis::case_config c = mixed("mixed-v", method, how);
   c.space.cells = {20};
@@ -37,7 +37,7 @@ inline apsis::case_config small(const std::string& method, const std::string& ho
   return c;
 }
 
-/// Returns how many cells in each direction suffice: the thin parts of an STL surface need 8, a wing
+/// Returns the number of cells in each direction that suffices. Thin parts of an STL surface need 8, a wing
 /// section 16.
 inline int enough_cells(const apsis::case_config& c, int usual) {
   for (const auto& body : c.bodies) {

@@ -9,7 +9,7 @@
 
 #include <gtest/gtest.h>
 
-/// Small gases in the plane and in space, whose initial density is an affine function of the position.
+/// Small gases in the plane and in space. Their initial density is an affine function of the position.
 namespace in_several_dimensions {
 
 inline const std::string in_plane = R"toml(

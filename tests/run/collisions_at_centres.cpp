@@ -38,7 +38,7 @@ TEST(collisions_at_centres, make_temporal_errors_of_the_mixed_regime_half_as_lar
     };
     return distance(at("1000"), at("8000"));
   };
-  // 0.39 of them against an exact reference (docs/study.md), 0.51 against this one.
+  // The ratio is 0.39 with an exact reference (docs/study.md), and 0.51 with this one.
   EXPECT_LT(error("centres"), 0.6 * error("gauss"));
 }
 
@@ -47,7 +47,7 @@ TEST(collisions_at_centres, are_asymptotic_preserving) {
     return state_at_end({"space.collisions=centres", "time.method=md-imex-6-3", "time.end=0.05",
                          fmt::format("model.epsilon={}", epsilon)});
   };
-  // A step does not know epsilon: the distance to epsilon = 0 is of first order in epsilon.
+  // A step does not depend on the size of epsilon. The distance to epsilon = 0 is of first order in epsilon.
   const auto limit = with(0.0);
   const double order = std::log10(distance(with(1e-6), limit) / distance(with(1e-8), limit)) / 2.0;
   EXPECT_NEAR(order, 1.0, 0.05);
@@ -61,7 +61,8 @@ TEST(collisions_at_centres, have_no_limiter_for_methods_without_signs) {
   };
   const auto fine = at("2000");
   const double size = distance(fine, std::vector<double>(fine.size()));
-  // 2.7e-8 without the limiter, 6e-5 with it: Q of a limited average is not that of its stage.
+  // The error is 2.7e-8 without the limiter and 6e-5 with it, because Q of a limited average is not that of
+  // its stage.
   EXPECT_LT(distance(at("1000"), fine), 1e-6 * size);
 }
 

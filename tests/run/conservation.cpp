@@ -1,4 +1,4 @@
-// Conserved quantities change by rounding only, and larger defects are detected.
+// Conserved quantities change by rounding errors only. Larger defects are detected.
 #include "cases.hpp"
 
 #include <apsis/core/errors.hpp>
@@ -23,7 +23,8 @@ apsis::case_config in_dimensions(int dimensions, int points, double v_max) {
   return c;
 }
 
-/// The message of a run whose state is multiplied by 1 + defect after each step; "" if no step fails.
+/// Returns the message of a run whose state is multiplied by 1 + defect after each step, or "" if
+/// no step fails.
 std::string message_of(const apsis::case_config& c, double defect, int steps) {
   apsis::simulation run(c);
   try {
@@ -47,8 +48,8 @@ TEST(conservation, does_not_drift_in_three_velocity_dimensions) {
   apsis::simulation run(c);
   constexpr int steps = 8;
   for (int step = 0; step < steps; ++step) run.advance();
-  // Mass: a rounding error for each of 6 stages per step, 5e-15. With naive sums, which drop the tails, it is
-  // 8e-14.
+  // The mass has a rounding error for each of 6 stages per step, 5e-15 in total. Naive sums, which drop the
+  // tails, would give 8e-14.
   EXPECT_LE(run.last().conservation_defect[0], 5e-15);
 }
 
@@ -108,15 +109,15 @@ TEST(conservation, detects_a_defect_of_every_step_in_the_first) {
 }
 
 TEST(conservation, does_not_drift_by_the_rounding_of_weights) {
-  // Weights of u and E whose sum is 1 ± 1e-17 would multiply the mass by as much in every stage, always in
-  // the same direction: with them these runs end at 8e-15 to 8e-14.
+  // Weights of u and E with the sum 1 ± 1e-17 would change the mass by this factor in every stage, always in
+  // the same direction. The runs would end at 8e-15 to 8e-14.
   for (const char* method : {"md-imex-3-2", "md-imex-6-3", "md-imex-8-3-mixed"}) {
     auto c = small(method, "finite-difference");
     c.model.epsilon = "0.7";
     c.time.end = 10.0;
     apsis::simulation run(c);
     for (int step = 0; step < 1200; ++step) run.advance();
-    // Random errors of sums of some thousand numbers.
+    // Sums of some thousand numbers have random errors.
     EXPECT_LT(run.last().conservation_defect[0], 2e-15) << method;
   }
 }
@@ -142,7 +143,7 @@ TEST(SLOW_conservation, holds_on_grids_where_a_fixed_bound_fails) {
     for (int step = 0; step < r.steps; ++step) run.advance();
     const auto& defects = run.last().conservation_defect;
     const double worst = *std::max_element(defects.begin(), defects.end());
-    // Two rounding errors per stage, in the worst case all of the same sign.
+    // There are two rounding errors per stage, which in the worst case have the same sign.
     const auto stages = static_cast<double>(apsis::find_method(r.method).stages());
     EXPECT_LT(worst, 2.3e-16 * stages * r.steps)
         << r.dimensions << " " << r.points << " " << r.method << " " << r.epsilon;

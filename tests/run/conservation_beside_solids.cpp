@@ -1,5 +1,5 @@
-// Conservation where the limiter of a cell beside a solid box acts on a flux that another sweep computes too:
-// across a periodic face, and across the border of two boxes of cells that are swept one after the other.
+// The limiter of a cell beside a solid box changes a flux that another sweep computes too. Mass must be
+// conserved across a periodic face, and across the border of two boxes of cells that are swept in turn.
 #include "laws.hpp"
 
 #include <string>
@@ -36,7 +36,7 @@ safety = 1
 end = 0.02
 )toml";
 
-/// The defect of a run with a solid box.
+/// Returns the conservation defect of a run with a solid box.
 double defect(const std::string& from, const std::string& to) {
   return finished_run(beside_a_box, {"space.solid.1.from=" + from, "space.solid.1.to=" + to})
       .summary()
@@ -45,7 +45,7 @@ double defect(const std::string& from, const std::string& to) {
 
 }  // namespace
 
-// Of order 30 steps of 3 stages; the unlimited and the limited flux differ by 1e-7 of the mass.
+// About 30 steps of 3 stages. The unlimited and the limited flux differ by 1e-7 of the mass.
 constexpr double rounding = 1e-13;
 
 TEST(conservation_beside_solids, holds_one_cell_from_a_periodic_face) {
@@ -54,7 +54,7 @@ TEST(conservation_beside_solids, holds_one_cell_from_a_periodic_face) {
 }
 
 TEST(conservation_beside_solids, holds_one_cell_from_the_middle_of_the_mesh) {
-  // 30 cells are swept as two boxes of 15.
+  // The 30 cells are swept as two boxes of 15.
   EXPECT_LT(defect("[0.6, 0.2]", "[1.4, 0.6]"), rounding);
   EXPECT_LT(defect("[1.6, 0.2]", "[2.4, 0.6]"), rounding);
 }

@@ -1,4 +1,4 @@
-// Runs with tables in time, ends of given mass flux, walls without a given temperature, and profiles of
+// Runs with tables in time, ends of given mass flux, walls without a given temperature, and profiles from
 // earlier results.
 #include "cases_in_space.hpp"
 
@@ -54,7 +54,7 @@ simulation run_of(const std::string& text, const std::vector<std::string>& more 
   return run;
 }
 
-/// Flux of an invariant, the last being the energy, through an open face.
+/// Returns the flux of an invariant through an open face. The last invariant is the energy.
 double flux_of(const simulation& run, std::size_t face, std::size_t invariant) {
   const std::size_t count = run.setup().equation->invariants().size();
   return run.last().flux.at(face * count + invariant);
@@ -77,7 +77,7 @@ TEST(ends_of_flows, of_given_flux_have_it_in_every_formulation_and_model) {
         const simulation run = run_of(
             line + ends, {fmt::format("model.name={}", model), fmt::format("model.epsilon={}", epsilon),
                           fmt::format("space.formulation={}", formulation)});
-        // Sums of some ten terms of size 1 in each of 6 stages.
+        // The flux is a sum of some ten terms of size 1 in each of 6 stages.
         EXPECT_NEAR(flux_of(run, 0, 0), 0.25, 1e-13) << model << formulation << epsilon;
         EXPECT_NEAR(flux_of(run, 1, 0), -0.15, 1e-13) << model << formulation << epsilon;
         EXPECT_LT(run.summary().conservation_defect, 1e-12);
@@ -126,7 +126,7 @@ TEST(ends_of_flows, at_walls_without_a_given_temperature_balance_heat) {
       EXPECT_NEAR(flux_of(run, 0, 2), 0.0, 1e-13);
       EXPECT_GT(flux_of(run, 1, 2), 1e-2);
     }
-  // Between a radiating plate and a warm one, the steady heat flux is what the plate radiates.
+  // Between a radiating plate and a warm one, the steady heat flux equals the radiation of the plate.
   const simulation run = run_of(line +
                                     "[boundary.left]\nkind = \"radiating\"\nsigma = 0.3\nsurroundings = 0.8\n"
                                     "[boundary.right]\nkind = \"diffuse\"\nT = 1.4\n[steady]\n",
@@ -183,7 +183,7 @@ void read(const std::string& text) {
 }  // namespace
 
 TEST(ends_of_flows, take_profiles_in_space_from_earlier_results) {
-  // A solid box covers a part of the right side: its cells have the values of the nearest gas.
+  // A solid box covers a part of the right side. Its cells get the values of the nearest gas.
   const std::string text =
       in_several_dimensions::in_space + "[[space.solid]]\nfrom = [0.75, 0, 0]\nto = [1, \"2/7\", \"4/9\"]\n";
   const test_folder folder;
@@ -212,7 +212,7 @@ TEST(ends_of_flows, take_profiles_in_space_from_earlier_results) {
       EXPECT_EQ(value_at(rho, j, k), of_cell("rho", j, k)) << j << " " << k;
       EXPECT_EQ(value_at(T, j, k), of_cell("T", j, k)) << j << " " << k;
     }
-  // Cells are 1/7 along y and 2/9 along z: the gas beyond the box in y is nearer.
+  // Cells have the sizes 1/7 along y and 2/9 along z, so the gas beyond the box in y is nearer.
   EXPECT_EQ(value_at(rho, 1, 0), of_cell("rho", 2, 0));
   EXPECT_EQ(value_at(rho, 0, 1), of_cell("rho", 0, 2));
   EXPECT_EQ(to_toml(parse_case(to_toml(config), "again")), to_toml(config));
@@ -237,7 +237,7 @@ TEST(ends_of_flows, take_profiles_from_earlier_results) {
   const auto& rho = config.faces[0].values.at("rho").front();
   EXPECT_THAT(rho, testing::StartsWith("table(y, 0.1, "));
   ASSERT_EQ(config.faces[0].values.at("u").size(), 2U);
-  // The values in the cells at x = 11/12 of the earlier result.
+  // The profile has the values in the cells at x = 11/12 of the earlier result.
   const simulation earlier = run_of(plane);
   const auto fields = earlier.fields();
   EXPECT_THAT(rho, HasSubstr(fmt::format("0.1, {}, ", fields.values.front().at(25))));

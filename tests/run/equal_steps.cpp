@@ -1,4 +1,4 @@
-// Runs whose time.method takes several equal steps: the results of integrate(), observed orders, restarts,
+// Runs with methods of several equal steps: the results of integrate(), observed orders, restarts,
 // conservation between walls, changes of the step and promises.
 #include "gas_between_walls.hpp"
 #include "same_results.hpp"
@@ -34,7 +34,7 @@ case_config gas(const std::string& method, const std::string& time, const std::s
   return between_walls::case_of({.method = method, .time = time, .more = more});
 }
 
-/// Relaxation of one cell, ε = 0.3, so that the errors are those of time alone.
+/// Relaxation of one cell with ε = 0.3. All errors are errors in time.
 case_config decay(const std::string& method, long steps) {
   return load_case("paper/ode", {"model.epsilon=0.3", "time.method=" + method, "time.end=1",
                                  fmt::format("time.dt={:.17g}", 1.0 / static_cast<double>(steps))});
@@ -67,7 +67,7 @@ TEST(equal_steps, observed_order_is_the_claimed_one) {
   const auto exact = end_of(decay("extrapolated-euler-8", 512));
   for (const auto& name : names_of_several_steps()) {
     const int order = find_integrator(name).order;
-    // Coarse enough that errors stay above the rounding, fine enough for the first term to lead.
+    // The steps are so long that errors stay above rounding, and so short that the first term dominates.
     const long steps = order <= 3 ? 640 : 160;
     const double coarse = distance(end_of(decay(name, steps)), exact),
                  fine = distance(end_of(decay(name, 2 * steps)), exact);
@@ -123,7 +123,7 @@ TEST(equal_steps, conserves_what_does_not_cross_the_walls_to_rounding) {
     simulation run(gas(name, "dt = 0.002\nend = 0.2\n"));
     ASSERT_TRUE(run.promises().conservation) << name;
     while (!run.finished()) run.advance();
-    // A hundred steps of a few roundings each; energy through the walls is 1e-2.
+    // There are a hundred steps of a few roundings each. The energy through the walls is 1e-2.
     EXPECT_LT(run.summary().conservation_defect, 1e-13) << name;
     double received = 0.0;
     for (const double amount : run.last().received) received = std::max(received, std::abs(amount));
@@ -141,9 +141,10 @@ TEST(equal_steps, begins_again_where_the_length_of_steps_changes) {
                                       find_integrator(name).starter().name)));
     testing::internal::CaptureStderr();
     const auto even = end_of(gas(name, "cfl = 0.1\nend = 0.05\n"));
-    // The last step, which ends at time.end, is shorter too, but nothing comes after it.
+    // The last step, which ends at time.end, is shorter too, but no step follows.
     EXPECT_THAT(testing::internal::GetCapturedStderr(), testing::Not(HasSubstr("begins again")));
-    // Both are third-order approximations; coefficients for equal steps in unequal ones leave 5e-6.
+    // Both are third-order approximations. Coefficients for equal steps in unequal ones would give a
+    // difference of 5e-6.
     EXPECT_LT(distance(uneven, even) / distance(even, std::vector<double>(even.size(), 0.0)), 2e-6) << name;
   }
 }

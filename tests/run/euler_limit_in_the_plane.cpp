@@ -1,4 +1,4 @@
-// Gases at ε = 0 in the plane, against the limit scheme written out by hand on the same mesh.
+// Gases at ε = 0 in the plane agree with the limit scheme written out by hand on the same mesh.
 #include "plane_euler_limit.hpp"
 
 #include <apsis/config/case.hpp>
@@ -48,7 +48,7 @@ moments initial(double x, double y, int degrees) {
   return {rho, rho * ux, rho * uy, 0.5 * rho * (ux * ux + uy * uy + degrees * T)};
 }
 
-/// The moments of a run, by plain sums.
+/// Returns the moments of a run by plain sums.
 std::vector<moments> moments_of(const apsis::simulation& run) {
   const auto v = run.setup().equation->velocities();
   const auto points = static_cast<std::size_t>(v.size());
@@ -69,7 +69,7 @@ std::vector<moments> moments_of(const apsis::simulation& run) {
   return all;
 }
 
-/// The largest distance of the moments at t = 0.015, after five steps.
+/// Returns the largest distance of the moments at t = 0.015, after five steps.
 double distance(const std::string& method, int degrees, const std::string& epsilon) {
   apsis::simulation run(
       apsis::parse_case(gas, "gas.toml",
@@ -97,13 +97,14 @@ TEST(euler_limit_in_the_plane, is_the_limit_scheme_written_out_by_hand) {
     for (const int degrees : {2, 3}) {
       const double found = distance(method, degrees, "0");
       RecordProperty(fmt::format("{}_{}", method, degrees), fmt::format("{:.2g}", found));
-      // Roundings of moments up to 5 in five steps; the steps themselves change them by 0.1.
+      // The moments are up to 5, and are rounded in five steps. The steps change them by 0.1.
       EXPECT_LT(found, 2e-14) << method << " " << degrees;
     }
 }
 
 TEST(euler_limit_in_the_plane, is_approached_in_proportion_to_epsilon) {
-  // A method with the viscosity of the equation; the terms of size ε of md-imex-3-2 vanish in steps beyond ε.
+  // The method has the viscosity of the equation. In steps beyond ε the terms of size ε of
+  // md-imex-3-2 would vanish.
   const std::string method = "md-imex-8-3-mixed";
   const double coarse = distance(method, 2, "1e-6"), fine = distance(method, 2, "1e-7");
   EXPECT_NEAR(coarse / fine, 10.0, 0.1);

@@ -1,5 +1,5 @@
-// Every kind of boundary on every face and around solid boxes, with values that are formulas of the position
-// along the face and of time, corners included.
+// Every kind of boundary on every face and around solid boxes. The values are formulas of time and of the
+// position along the face, including corners.
 #include "laws.hpp"
 #include "placed_case.hpp"
 
@@ -18,7 +18,7 @@ namespace every_face_test {
 
 namespace {
 
-/// A monatomic gas.
+/// Returns the keys of a monatomic gas.
 std::string gas_with(const std::string& velocity, const std::string& step) {
   return fmt::format(
       "[model]\nname = \"bgk\"\nepsilon = 0.05\ndegrees_of_freedom = 3\n[velocity]\n{}\n[time]\n"
@@ -62,7 +62,7 @@ const placed_wall start = {
 const placed_wall box = {
     "diffuse", {{"T", "1.1 + 0.2*{X} - 0.3*{Y}*cos(30*t)"}, {"accommodation", "0.7 + 0.2*{X}"}}, "", {}};
 
-/// The incoming distribution by a formula, with an axis of its own.
+/// Returns a wall with the incoming distribution as a formula that distinguishes all axes.
 placed_wall given(std::size_t dimensions) {
   const std::string f = "0.05*(1 + 0.3*sin(3*{Y} + 40*t))*exp(-0.6*({VX} - 0.2)^2 - 0.4*({VY} + 0.3*{X})^2";
   if (dimensions == 3) return {"given", {{"f", f + " - 0.5*{VZ}^2)"}}, "", {}};
@@ -79,12 +79,12 @@ placed_case in_space(const std::vector<placed_wall>& faces, const std::string& s
           {{{-0.3, 0.3}, {-0.2, 0.6}, {-1.4, -0.2}}}, box};
 }
 
-/// Compares a case with its images, whose state has `sets` sets of points^d components.
+/// Compares a case with its images. The state has `sets` sets of points^d components.
 void expect_images(const placed_case& of, const std::vector<placement>& images, std::size_t points,
                    std::size_t sets) {
   const auto before = finished_run(of.text({}), {}).state();
   for (const placement& to : images)
-    // Sums over velocities in another order, and WENO weights that divide by squares of differences.
+    // Sums over velocities have another order, and WENO weights divide by squares of differences.
     EXPECT_LT(of.difference(before, finished_run(of.text(to), {}).state(), to, points, sets), 1e-13)
         << of.text(to);
 }
@@ -94,14 +94,14 @@ const std::vector<placement> of_the_plane = {
     {{1, 0, 2}, {1, -1, 1}}, {{0, 1, 2}, {-1, -1, 1}}, {{1, 0, 2}, {-1, 1, 1}}, {{0, 1, 2}, {-1, 1, 1}},
     {{0, 1, 2}, {1, -1, 1}}, {{1, 0, 2}, {1, 1, 1}},   {{1, 0, 2}, {-1, -1, 1}}};
 
-/// Mappings that take each face of a box to each of the others.
+/// Mappings of a box that map each face to each other face.
 const std::vector<placement> of_space = {{{1, 2, 0}, {1, 1, 1}},
                                          {{2, 0, 1}, {1, 1, 1}},
                                          {{0, 1, 2}, {-1, -1, -1}},
                                          {{1, 2, 0}, {-1, -1, -1}},
                                          {{2, 0, 1}, {-1, -1, -1}}};
 
-/// A gas at rest with a solid box at two of its faces and another one inside.
+/// Returns a gas at rest with a solid box at two of its faces and another one inside.
 std::string at_rest(int dimensions, const std::string& kind, const std::string& values) {
   std::string text = dimensions == 2
                          ? "[model]\nname = \"bgk\"\ndegrees_of_freedom = 3\n[initial]\nrho = 1.3\nT = 0.9\n"
@@ -127,7 +127,8 @@ std::string at_rest(int dimensions, const std::string& kind, const std::string& 
   return text;
 }
 
-/// Values that match a gas with density 1.3 and temperature 0.9, but are not constants for the program.
+/// Returns values that match a gas with density 1.3 and temperature 0.9, but that the program cannot
+/// recognise as constants.
 std::string matching_values(int dimensions, const std::string& kind) {
   const std::string zero = " + 0*t*x*y\"\n";
   if (kind == "diffuse") return "T = \"0.9" + zero + "accommodation = \"0.7" + zero;
@@ -137,7 +138,7 @@ std::string matching_values(int dimensions, const std::string& kind) {
   if (kind == "pressure") return "p = \"1.3*0.9" + zero + "T = \"0.9" + zero;
   if (kind == "inflow" || kind == "far-field") return "rho = \"1.3" + zero + "u = 0\nT = \"0.9" + zero;
   if (kind != "given") return "";
-  // The discrete Maxwellian exp(a − b v²), from two of its values.
+  // Two values of the discrete Maxwellian determine a and b in exp(a − b v²).
   const apsis::simulation run(apsis::parse_case(at_rest(dimensions, "periodic", ""), "rest"));
   const auto row = run.row(0);
   const auto points = static_cast<std::size_t>(run.setup().equation->velocities().size());
@@ -159,7 +160,7 @@ std::string matching_values(int dimensions, const std::string& kind) {
 TEST(every_face, keeps_a_gas_at_rest_that_matches_it) {
   for (const int dimensions : {2, 3})
     for (const std::string& kind : apsis::boundary_names()) {
-      // No gas matches a vacuum, and an axis needs axisymmetric flow.
+      // No gas at rest matches a vacuum, and an axis needs axisymmetric flow.
       if (kind == "vacuum" || kind == "axis") continue;
       const std::string text = at_rest(dimensions, kind, matching_values(dimensions, kind));
       std::vector<std::string> all = {"0.01"};
@@ -174,7 +175,7 @@ TEST(every_face, keeps_a_gas_at_rest_that_matches_it) {
         for (std::size_t k = 0; k < after.size(); ++k)
           largest = std::max(largest, std::abs(after[k] - before[k]));
         EXPECT_GE(run.step(), 3);
-        // Some roundings of values up to 0.2 per stage, and of the exponent of a given formula.
+        // A stage has some roundings of values up to 0.2, and of the exponent of a given formula.
         EXPECT_LT(largest, 3e-14) << dimensions << " " << kind << " " << epsilon;
       }
     }
@@ -191,7 +192,8 @@ TEST(every_face, of_space_has_every_kind_with_formulas_along_it) {
 }
 
 TEST(every_face, meets_others_in_corners_without_a_loss) {
-  // Plates of different temperatures and accommodation, still or moving, around gas beside a vacuum.
+  // The plates have different temperatures and accommodation. They rest or move. The gas has a
+  // vacuum beside it.
   const placed_wall cold = {"diffuse", {{"T", "0.9 + 0.1*sin(3*{X})"}, {"accommodation", "0.3"}}, "", {}},
                     hot = {"diffuse", {{"T", "1.6 + 0.3*{Y}"}, {"accommodation", "1"}}, "", {}};
   const std::vector<placed_wall> plates = {moving_plate, hot, cold, lid};
@@ -204,7 +206,7 @@ TEST(every_face, meets_others_in_corners_without_a_loss) {
       EXPECT_TRUE(run.promises().positivity && run.promises().conservation);
       finish(run);
       EXPECT_EQ(run.summary().negative_values, 0);
-      // Of order 20 steps of 3 stages, as in the promise.
+      // About 20 steps of 3 stages, as in the promise.
       EXPECT_LT(run.summary().conservation_defect, 1e-13);
       const std::size_t count = run.setup().equation->invariants().size();
       double energy = 0.0;

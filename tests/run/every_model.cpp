@@ -1,5 +1,5 @@
-// Promises of every model of the registry, checked in one production step from random states. A new model is
-// tested without an entry here.
+// Promises of every model of the registry, checked in one production step from random states. The test
+// includes new models automatically.
 #include <apsis/config/case.hpp>
 #include <apsis/config/case_schema.hpp>
 #include <apsis/integrate/stepper.hpp>
@@ -23,7 +23,7 @@ using namespace apsis;
 
 namespace {
 
-/// A small case for a registered model; `dt` is a line of [time].
+/// Returns a small case for a registered model. `dt` is a line of [time].
 case_config case_of(const model_entry& entry, const std::string& method, const std::string& dt,
                     const std::vector<std::string>& overrides) {
   std::string text = "[model]\nname = \"" + entry.name + "\"\n";
@@ -37,8 +37,8 @@ bool is_positive(const model_entry& entry) {
   return make_model(case_of(entry, "imdrk-1-2", "dt = 0.1", {}))->positive();
 }
 
-/// Rows of the initial data in random order, every value multiplied by a random number up to 1.7 and some by
-/// 0; nonnegative where the model requires it. No row vanishes.
+/// Puts rows of the initial data in random order. Multiplies every value by a random number up to 1.7, and
+/// some by 0. Makes values nonnegative where the model requires it. No row vanishes.
 void disturb(field& u, bool positive, bool with_zeros) {
   std::mt19937 random(*rc::gen::arbitrary<unsigned>());
   std::uniform_real_distribution<> factor(0.3, 1.7);
@@ -57,7 +57,7 @@ struct one_step {
   step_record before, after;
 };
 
-/// One step from a random state, of length r Δt_FE if the model is positive, else Δx/(2v) or 1/16.
+/// Takes one step from a random state. Its length is r Δt_FE if the model is positive, else Δx/(2v) or 1/16.
 one_step step_of(const model_entry& entry, const case_config& c, bool with_zeros, bool uniform = false) {
   const run_setup setup(c);
   budgeted_state now{setup.initial_state(), {}};
@@ -84,7 +84,7 @@ std::string step_key_for(const model_entry& entry) {
   return is_positive(entry) ? "safety = 1.0" : "cfl = 0.5";
 }
 
-/// An IMEX method if there is transport, else an implicit one.
+/// Returns an IMEX method if there is transport, else an implicit one.
 std::string random_method(const model_entry& entry) {
   const auto m = make_model(case_of(entry, "imdrk-1-2", "dt = 0.1", {}));
   if (m->space_dimensions() == 0 && !m->has_source())
@@ -92,7 +92,7 @@ std::string random_method(const model_entry& entry) {
   return *rc::gen::element<std::string>("md-imex-3-2", "md-imex-6-3");
 }
 
-/// Whether parameters are valid together, and few enough velocities for a test.
+/// Returns true if the parameters are valid together and give few enough velocities for a test.
 bool accepts(const model_entry& entry, const std::vector<std::string>& overrides) {
   try {
     return make_model(case_of(entry, "imdrk-1-2", "dt = 0.1", overrides))->components() < 10'000;
@@ -108,14 +108,14 @@ std::vector<std::string> random_overrides(const model_entry& entry, bool positiv
     overrides.push_back("model.epsilon=" + *rc::gen::element<std::string>("0", "1e-12", "1e-4", "1", "1e6"));
   else
     overrides.push_back("model.epsilon=" + *rc::gen::element<std::string>("1e-3", "1", "1e6"));
-  // Further velocity dimensions: the same model, with momenta that are zero up to rounding; more degrees of
-  // freedom.
+  // More velocity dimensions give the same model, with momenta that are zero up to rounding. Others add
+  // degrees of freedom.
   for (auto drawn = overrides; overrides == drawn || !accepts(entry, overrides);) {
     overrides = drawn;
     for (const auto& p : entry.parameters)
       if (p.integer)
         overrides.push_back(fmt::format("model.{}={}", p.name, p.value + *rc::gen::element(0, 0, 0, 1, 3)));
-    if (overrides == drawn) break;  // there are none
+    if (overrides == drawn) break;  // the model has no such parameters
   }
   if (!has_space(entry)) return overrides;
   const bool averages = *rc::gen::arbitrary<bool>();
@@ -139,8 +139,8 @@ TEST(every_model, conserves_its_invariants_through_a_step) {
           case_of(*entry, random_method(*entry), step_key_for(*entry), random_overrides(*entry, positive));
       const one_step step = step_of(*entry, c, false);
       RC_ASSERT(step.after.conservation_defect.size() == make_model(c)->invariants().size());
-      // Twelve cells, six stages, sums over 36 velocities: a few dozen rounding errors of 1e-16. The terms of
-      // a sum over both signs are larger than the sum.
+      // Twelve cells, six stages and sums over 36 velocities give a few dozen rounding errors of 1e-16. If a
+      // sum has terms of both signs, they are larger than the sum.
       const double most = make_model(c)->why_signed().empty() ? 2e-14 : 2e-13;
       for (const double defect : step.after.conservation_defect) RC_ASSERT(defect <= most);
     });
@@ -171,12 +171,13 @@ TEST(every_model, loses_entropy_in_a_step_of_first_order_upwind) {
     check_property(entry->name, [&] {
       auto overrides = random_overrides(*entry, true);
       overrides.emplace_back("space.reconstruction=upwind1");
-      // Mixing by transport would hide a small growth by collisions, so half of the states are uniform.
+      // Mixing by transport would hide a small growth in collisions. Half of the states
+      // are therefore uniform.
       const bool uniform = *rc::gen::arbitrary<bool>();
       const auto c = case_of(*entry, random_method(*entry), step_key_for(*entry), overrides);
       const one_step step = step_of(*entry, c, true, uniform);
-      // A nonlinear sum over twelve rows; random rows are far from equilibrium, so it usually decreases by
-      // percents.
+      // The entropy is a nonlinear sum over twelve rows. Random rows are far from equilibrium, so it usually
+      // decreases by percents.
       RC_ASSERT(step.after.entropy_change <= 1e-14 * (1.0 + std::abs(step.before.entropy)));
     });
   }
@@ -189,7 +190,7 @@ TEST(every_model, reads_its_resolved_case_back_with_any_parameters) {
       case_config c = case_of(*entry, "imdrk-1-2", "dt = 0.1", {});
       for (const auto& p : entry->parameters) {
         const double part = 1e-6 * *rc::gen::inRange(0, 1000001);
-        // A resolved case has the number of dimensions in place of 0.
+        // A resolved case has the actual number of dimensions instead of 0.
         const double lowest = p.of_space ? std::max(p.lowest, 1.0) : p.lowest;
         const double value = std::max(lowest, std::min(p.highest, lowest * (1.0 - part) + p.highest * part));
         c.model.parameters[p.name] = p.integer ? std::floor(value) : value;

@@ -1,4 +1,4 @@
-// Runs by exponential methods: the results of a step, conservation, promises, observed order, the limit ε →
+// Runs with exponential methods: the results of a step, conservation, promises, observed order, the limit ε →
 // 0, and models whose collisions have no known solution.
 #include "gas_between_walls.hpp"
 
@@ -26,7 +26,7 @@ using between_walls::distance, between_walls::end_of;
 
 constexpr const char* name = "exponential-2";
 
-/// ε varies within the cells.
+/// Returns a case in which ε varies within the cells.
 case_config gas(const std::string& space, const std::string& time, const std::string& epsilon = "0.01 + x") {
   return between_walls::case_of({.method = name, .time = time, .space = space, .epsilon = epsilon});
 }
@@ -38,14 +38,14 @@ const std::vector<std::string> spaces = {"formulation = \"finite-difference\"",
 
 }  // namespace
 
-// Two collisions of times s and t are one of time s + t: an identity that only the exact solution has.
+// Two collisions of times s and t equal one of time s + t. Only the exact solution satisfies this identity.
 TEST(exponential_run, collisions_of_a_case_are_exact) {
   const case_config c = gas(spaces[0], "dt = 0.001\nend = 0.01\n");
   const run_setup setup(c);
   const auto problem = setup.make_problem();
   ASSERT_TRUE(problem->collides_exactly());
   field once = setup.initial_state();
-  // Out of equilibrium: transport of a large step.
+  // A large step of transport takes the state out of equilibrium.
   stepper march(find_method(name), *problem);
   march.step(0.0, 0.01, once);
   field twice = once;
@@ -69,7 +69,7 @@ TEST(exponential_run, keeps_conservation_and_positivity_in_every_discretization)
     EXPECT_TRUE(run.promises().conservation) << space;
     EXPECT_TRUE(run.promises().positivity) << space;
     while (!run.finished()) run.advance();
-    // Some hundred steps of a few roundings each; energy through the walls is 1e-2.
+    // There are some hundred steps of a few roundings each. The energy through the walls is 1e-2.
     EXPECT_LT(run.summary().conservation_defect, 1e-12) << space;
     EXPECT_GE(run.summary().min_value, 0.0) << space;
     EXPECT_EQ(run.summary().negative_values, 0) << space;
@@ -83,7 +83,7 @@ TEST(exponential_run, observed_order_is_two) {
                         "0.1 + x"));
     };
     const auto exact = at(1280);
-    // The limiter at the Gauss points of averages leaves errors of 1e-8, which finer steps would meet.
+    // The limiter at the Gauss points of averages leaves errors of 1e-8, which finer steps would reach.
     const double coarse = distance(at(40), exact), fine = distance(at(80), exact);
     // The reference has 1/256 of the error of the finer run.
     EXPECT_NEAR(std::log2(coarse / fine), 2.0, 0.15) << space;
@@ -91,13 +91,13 @@ TEST(exponential_run, observed_order_is_two) {
 }
 
 TEST(exponential_run, becomes_the_explicit_scheme_of_the_limit) {
-  // For ε = 0 every collision is the projection to equilibrium, for a relaxation of any method.
+  // For ε = 0 every collision is the projection to equilibrium, as in any method.
   const auto end = [](const char* epsilon) {
     return end_of(gas(spaces[0], "dt = 0.001\nend = 0.05\n", epsilon));
   };
   const auto limit = end("0");
   EXPECT_EQ(end("1e-300"), limit);
-  // z = Δt/(3ε) = 33 leaves e^{−33} = 3e-15 of every deviation.
+  // z = Δt/(3ε) = 33 reduces every deviation to e^{−33} = 3e-15.
   EXPECT_LT(distance(end("1e-5"), limit), 1e-12);
   EXPECT_GT(distance(end("1e-3"), limit), 1e-4);
 }

@@ -1,4 +1,4 @@
-// Divergence and vorticity of a gas, from central differences of the bulk velocity.
+// Divergence and vorticity of a gas by central differences of the bulk velocity.
 #include <apsis/config/case.hpp>
 #include <apsis/core/errors.hpp>
 #include <apsis/run/simulation.hpp>
@@ -57,8 +57,8 @@ std::vector<double> field_of(const simulation& run, const std::string& name) {
   return table.values[static_cast<std::size_t>(found - table.names.begin())];
 }
 
-/// Central differences multiply the derivative of a sine by sin(h)/h. Velocities that are sampled at 20
-/// points have errors below 1e-9 of the thermal speed.
+/// Central differences multiply the derivative of a sine by sin(h)/h. Velocities sampled at 20 points have
+/// errors below 1e-9 of the thermal speed.
 constexpr double of_sampling = 1e-9;
 
 }  // namespace
@@ -72,7 +72,7 @@ TEST(flow_fields, of_a_vortex_in_the_plane_are_those_of_central_differences) {
     for (int j = 0; j < 16; ++j) {
       const double x = (i + 0.5) * hx, y = (j + 0.5) * hy;
       const auto cell = static_cast<std::size_t>(16 * i + j);
-      // ∂u_y/∂x − ∂u_x/∂y, and ∂u_x/∂x + ∂u_y/∂y.
+      // The expected values are those of ∂u_y/∂x − ∂u_x/∂y and of ∂u_x/∂x + ∂u_y/∂y.
       EXPECT_NEAR(vorticity[cell], 0.2 * (sx + sy) * std::sin(x) * std::sin(y), of_sampling);
       EXPECT_NEAR(divergence[cell], 0.2 * (sx - sy) * std::cos(x) * std::cos(y), of_sampling);
     }
@@ -88,7 +88,7 @@ TEST(flow_fields, have_the_unit_of_a_rate) {
 }
 
 TEST(flow_fields, of_a_flow_with_the_vorticity_u_have_three_components) {
-  // Arnold's, Beltrami's and Childress' flow: ∇×u = u and ∇·u = 0.
+  // In the flow of Arnold, Beltrami and Childress ∇×u = u and ∇·u = 0.
   constexpr int n = 8;
   const simulation run = run_of(
       {"model.velocity_dimensions=3", "space.cells=[8, 8, 8]",
@@ -135,7 +135,7 @@ name = "box"
 from = [4, 4]
 to = [6, 7]
 )toml";
-  // One-sided and central differences of linear functions are exact, but not across the periodic faces.
+  // One-sided and central differences are exact for linear functions, but not across the periodic faces.
   const simulation run(apsis::parse_case(gas + box, "gas.toml",
                                          {"space.domain=[[0, 24], [0, 16]]", "initial.rho=1",
                                           "initial.u=[\"0.01*x - 0.02*y\", \"0.03*x + 0.02*y\"]"}));

@@ -1,4 +1,4 @@
-// Runs with a force: exact solutions of the momentum, order in time, balances.
+// Runs with a force: exact solutions for the momentum, order in time, balances.
 #include <apsis/config/case.hpp>
 #include <apsis/core/errors.hpp>
 #include <apsis/run/body_loads.hpp>
@@ -20,7 +20,7 @@ namespace {
 
 using apsis::simulation;
 
-/// A uniform periodic gas whose molecules all have the same acceleration.
+/// A uniform periodic gas. All its molecules have the same acceleration.
 const std::string accelerated_gas = R"toml(
 title = "Accelerated gas"
 [parameters]
@@ -61,7 +61,8 @@ double velocity_after(const std::vector<std::string>& overrides) {
 }  // namespace
 
 TEST(accelerated_gas, moves_with_the_integral_of_the_acceleration) {
-  // ∫ a cos 2t = (a/2) sin 2t whatever ε is; the rest of order 3 at Δt = 0.01, and the mass beyond the grid.
+  // For any ε the velocity is ∫ a cos 2t = (a/2) sin 2t. The tolerance covers the error of order 3 at Δt =
+  // 0.01 and the mass beyond the grid.
   for (const char* epsilon :
        {"model.epsilon=0", "model.epsilon=1e-6", "model.epsilon=0.01", "model.epsilon=1e12"})
     EXPECT_NEAR(velocity_after({epsilon}), 0.25 * std::sin(1.6), 1e-7) << epsilon;
@@ -75,7 +76,7 @@ TEST(accelerated_gas, has_the_order_of_the_method_in_time) {
 }
 
 TEST(accelerated_gas, is_a_shifted_maxwellian_without_collisions) {
-  // f(t, v) = M(v − ∫a); of fifth order in Δv.
+  // The solution is f(t, v) = M(v − ∫a). The error has order 5 in Δv.
   const auto error = [](const std::string& points) {
     const simulation run =
         run_of({"model.epsilon=1e12", "velocity.points=" + points, "force.acceleration=0.5"});
@@ -91,7 +92,7 @@ TEST(accelerated_gas, is_a_shifted_maxwellian_without_collisions) {
 }
 
 TEST(accelerated_gas, near_the_end_of_the_velocities_reports_what_the_force_does_not_give) {
-  // A stream of u = 2.2 in [−5, 5]: the last velocities have a hundredth of the largest f.
+  // The stream has u = 2.2 in [−5, 5]. f at the last velocities is a hundredth of its maximum.
   const std::vector<std::string> fast = {"initial.u=2.2",   "velocity.max=5",       "velocity.points=40",
                                          "model.epsilon=1", "force.acceleration=1", "time.end=0.2",
                                          "time.dt=0.01"};
@@ -107,12 +108,12 @@ TEST(accelerated_gas, near_the_end_of_the_velocities_reports_what_the_force_does
     share = std::max(share, std::abs(at.lost[0]));
   }
   const std::string warnings = testing::internal::GetCapturedStderr();
-  // ρ = 1 and a = 1: the momentum would grow by 0.2.
+  // As ρ = 1 and a = 1, the momentum would grow by 0.2.
   EXPECT_NEAR(run.last().total[1] - before[1] + momentum, 0.2, 1e-12);
   EXPECT_GT(momentum, 1e-4);
   EXPECT_GT(energy, momentum);  // lost at velocities above 1
   EXPECT_NEAR(run.summary().force_lost_momentum, share, 1e-12);
-  // Less than one percent is no reason for a warning (velocity_range has one).
+  // A loss below one percent gives no warning (velocity_range has a case with one).
   EXPECT_LT(run.summary().force_lost_energy, 0.01);
   EXPECT_EQ(warnings.find("the force gives the gas less "), std::string::npos) << warnings;
   EXPECT_LT(run_of({}).summary().force_lost_momentum, 1e-9);
@@ -128,7 +129,7 @@ TEST(accelerated_gas, has_balances_to_rounding) {
 }
 
 TEST(force_past_a_body, is_the_weight_of_the_gas_that_the_body_displaces) {
-  // At rest ρ = exp(−g y) with g = 0.5, past a disc of radius 1/2.
+  // The gas is at rest with ρ = exp(−g y), g = 0.5, past a disc of radius 1/2.
   simulation run(apsis::parse_case(R"toml(
 [model]
 name = "bgk"
@@ -164,10 +165,10 @@ end = 0.3
   EXPECT_LE(run.summary().conservation_defect, 1e-12);
   EXPECT_TRUE(run.promises().positivity);
   EXPECT_EQ(run.summary().negative_values, 0);
-  // ∫ g exp(−g y) over the disc is π r² g exp(−g y₀) (1 + (g r)²/8 + …).
+  // The weight ∫ g exp(−g y) over the disc is π r² g exp(−g y₀) (1 + (g r)²/8 + …).
   const double weight = std::numbers::pi * 0.125 * std::exp(0.04) * (1.0 + 0.25 * 0.25 / 8.0);
   const apsis::body_load disc = apsis::body_loads(run.setup(), run.last()).front();
-  // Ten cells per diameter leave 0.7 %.
+  // With ten cells per diameter the error is 0.7 %.
   EXPECT_NEAR(disc.force[1], weight, 0.01 * weight);
   EXPECT_NEAR(disc.force[0], 0.0, 0.01 * weight);
   EXPECT_NEAR(disc.heat, 0.0, 0.01 * weight);

@@ -1,5 +1,5 @@
-// Free flight in the plane and in space, f(t, x, v) = f(0, x − v t, v), with waves and velocities that lie
-// along no axis.
+// Free flight in the plane and in space, f(t, x, v) = f(0, x − v t, v). No wave and no velocity is parallel
+// to an axis.
 #include "laws.hpp"
 
 #include <apsis/run/setup.hpp>
@@ -41,11 +41,11 @@ struct wave {
 const std::array<wave, 4> waves = {
     {{{1, 1, 1}, 0.0}, {{1, -1, 1}, 0.1}, {{-1, 1, 1}, 0.3}, {{1, 1, -1}, 0.7}}};
 
-/// Velocities of a molecule that meets another one; the third component counts in space alone.
+/// Two pairs of opposite velocities, which may collide. The third component is used in space only.
 const std::array<std::array<double, 3>, 4> velocities = {
     {{1.0, 0.6, -0.3}, {-1.0, -0.6, 0.3}, {-0.6, 1.0, 0.3}, {0.6, -1.0, -0.3}}};
 
-/// Four velocities of the plane or of space, each with a wave of its own.
+/// Returns four velocities of the plane or of space. Each has its own wave.
 std::string four_waves(int dimensions) {
   std::string list, initial, domain;
   for (std::size_t j = 0; j < 4; ++j) {
@@ -63,9 +63,9 @@ std::string four_waves(int dimensions) {
       list, initial, domain);
 }
 
-/// The largest error at t = 0.1 on n cells along every direction.
+/// Returns the largest error at t = 0.1 on n cells along every direction.
 double error_of_waves(int dimensions, int n) {
-  // A third-order error in time that is as small as one of fifth order.
+  // With this step the third-order error in time is as small as one of fifth order.
   const double dt = 0.02 / std::pow(n / 12.0, 5.0 / 3.0);
   const auto run =
       finished_run(four_waves(dimensions), {dimensions == 2 ? fmt::format("space.cells=[{0},{0}]", n)
@@ -131,7 +131,7 @@ TEST(free_flight, of_a_gas_in_space_carries_every_component_with_its_velocity) {
   double largest = 0.0, density = 0.0;
   const auto first = run.mesh().centre(0);
   for (std::size_t k = 0; k < row; ++k) {
-    // f(0, x, v) = ρ(x) times a function of v alone.
+    // The data f(0, x, v) are ρ(x) times a function of v alone.
     const double shape = initial[k] / rho(first[0], first[1], first[2]);
     std::array<double, 3> v{};
     for (int d = 0; d < 3; ++d)
@@ -143,8 +143,8 @@ TEST(free_flight, of_a_gas_in_space_carries_every_component_with_its_velocity) {
       density = std::max(density, exact);
     }
   }
-  // Waves of 12 cells, one of them crossed by a molecule with |v| = 4: the error of the order above, while a
-  // component with the velocity of another one has an error of 0.1 times the density or more.
+  // A wave has 12 cells, and a molecule with |v| = 4 crosses one wave. The tolerance covers the error of the
+  // order above. A component with a wrong velocity would have an error of 0.1 times the density or more.
   RecordProperty("error", fmt::format("{:.2g}", largest / density));
   EXPECT_LT(largest / density, 2e-4);
 }

@@ -10,10 +10,10 @@
 
 #include <fmt/format.h>
 
-/// A small gas between two walls of different temperature, its result, and refusals of cases.
+/// A small gas between two walls of different temperature, its result, and refused cases.
 namespace between_walls {
 
-/// `space`, `time` and `more`: lines of [space] and [time], and further tables.
+/// `space` and `time` are lines of [space] and [time]; `more` has further tables.
 struct gas {
   std::string method, time, more = "", space = "", epsilon = "0.05";
 };
@@ -34,7 +34,7 @@ inline std::vector<double> end_of(const apsis::case_config& c) {
   return run.state();
 }
 
-/// The 2-norm of a − b.
+/// Returns the 2-norm of a − b.
 inline double distance(const std::vector<double>& a, const std::vector<double>& b) {
   double sum = 0.0;
   for (std::size_t k = 0; k < a.size(); ++k) sum += (a[k] - b[k]) * (a[k] - b[k]);

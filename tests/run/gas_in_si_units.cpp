@@ -1,4 +1,4 @@
-// Runs of a gas in SI units against formulas in SI units, and the local Knudsen number.
+// Runs of a gas in SI units agree with formulas in SI units. Also the local Knudsen number.
 #include <apsis/config/case.hpp>
 #include <apsis/config/case_schema.hpp>
 #include <apsis/run/records.hpp>
@@ -31,7 +31,7 @@ void finish(simulation& run) {
   while (!run.finished()) run.advance();
 }
 
-/// A field at the end of a run in the units of its case.
+/// Returns a field at the end of a run in the units of its case.
 std::vector<double> field_of(const simulation& run, const std::string& name) {
   run_records records(run);
   records.add_snapshot(run);
@@ -40,7 +40,7 @@ std::vector<double> field_of(const simulation& run, const std::string& name) {
   return fields.snapshots.back().values.at(static_cast<std::size_t>(at));
 }
 
-/// The last value of a column of the history in the units of the case.
+/// Returns the last value of a column of the history in the units of the case.
 double last_of(const simulation& run, const std::string& column) {
   run_records records(run);
   records.add_step(run.last());
@@ -83,7 +83,7 @@ fields = ["rho", "T", "p", "stress"]
 )toml";
 
 TEST(gas_in_si_units, stress_relaxes_in_the_time_of_viscosity_over_pressure) {
-  // In a uniform gas σ' = −(p/μ)σ for all three models, and p, T and μ(T) do not change.
+  // In a uniform gas σ' = −(p/μ)σ for all three models, with constant p, T and μ(T).
   for (const char* model : {"bgk", "shakhov", "es-bgk"}) {
     simulation run(parse_case(beams, "beams.toml", {std::string("model.name=") + model}));
     const double before = field_of(run, "stress").front();
@@ -91,15 +91,15 @@ TEST(gas_in_si_units, stress_relaxes_in_the_time_of_viscosity_over_pressure) {
     const double T = field_of(run, "T").front(), p = field_of(run, "p").front();
     EXPECT_NEAR(T, 300.0 * (1.0 + 0.36 / 3.0), 1e-6) << model;
     EXPECT_NEAR(p, field_of(run, "rho").front() * k_B / m_argon * T, 1e-10) << model;
-    // 2/3 ρu² of the beams; the formulas of Maxwellians on the grid have errors of 1e-8.
+    // The stress of the beams is 2/3 ρu². The formulas of Maxwellians on the grid have errors of 1e-8.
     EXPECT_NEAR(before, 2.0 / 3.0 * 10.0 * 0.36, 1e-6) << model;
-    // 1e-5: the error of a third-order method with steps of a 45th of the relaxation time.
+    // The error 1e-5 is that of a third-order method with steps of a 45th of the relaxation time.
     const double decay = std::exp(-1e-6 * p / viscosity_of_argon(T));
     EXPECT_NEAR(field_of(run, "stress").front() / before, decay, 1e-5 * decay) << model;
   }
 }
 
-/// The case of the channel with an initial state near the steady one: linear in T, at constant pressure.
+/// Returns the case of the channel with an initial state near the steady one: T linear, p constant.
 simulation channel(const std::string& pressure, const std::vector<std::string>& more) {
   std::vector<std::string> overrides = {"gas.pressure=" + pressure, "initial.T=(350 - 50*x)/300",
                                         "initial.rho=1/(350 - 50*x)*324.3"};
@@ -107,7 +107,7 @@ simulation channel(const std::string& pressure, const std::vector<std::string>& 
   return simulation(load_case("gas/micro-channel", overrides));
 }
 
-/// Mean of ρ/m over the channel in 1/m^3.
+/// Returns the mean of ρ/m over the channel in 1/m^3.
 double number_density(const simulation& run) {
   const auto rho = field_of(run, "rho");
   double sum = 0.0;
@@ -116,23 +116,23 @@ double number_density(const simulation& run) {
 }
 
 TEST(gas_in_si_units, heat_flux_of_a_channel_is_the_free_molecular_one_at_low_pressure) {
-  // Molecules cross the channel without collisions (λ = 3.6 m): those from a wall of temperature T_k are a
-  // half Maxwellian of density n_k with equal fluxes n_k √T_k, and each carries 2kT_k.
+  // Molecules cross the channel without collisions (λ = 3.6 m). Those from a wall of temperature T_k form a
+  // half Maxwellian of density n_k. The fluxes n_k √T_k are equal, and each molecule carries 2kT_k.
   simulation run = channel("2 mPa", {"space.reconstruction=upwind1", "space.limiter=none", "space.cells=4",
                                      "velocity.points=160", "time.steady=1e-5"});
   finish(run);
   const double root_1 = std::sqrt(350.0), root_2 = std::sqrt(300.0);
   const double n_root = 2.0 * number_density(run) * root_1 * root_2 / (root_1 + root_2);
   const double q = n_root * std::sqrt(k_B / (2.0 * pi * m_argon)) * 2.0 * k_B * (350.0 - 300.0);
-  // Midpoints have an error Δv²/24 at v = 0, where f jumps: 2.3e-4.
+  // The midpoint rule has an error Δv²/24 = 2.3e-4 at v = 0, where f jumps.
   EXPECT_NEAR(last_of(run, "flux_left_energy"), q, 1e-3 * q);
   EXPECT_NEAR(last_of(run, "flux_right_energy"), -q, 1e-3 * q);
 }
 
 TEST(gas_in_si_units, heat_flux_of_a_channel_is_fouriers_with_a_temperature_jump_at_high_pressure) {
-  // q L = ∫ κ dT with κ = (5/2)(k/m) μ/Pr between the walls, over 1 + 2 ζ k, k = μ√(2RT)/(pL): Shakhov's
-  // model has the jump ζ k dT/dx, ζ = 1.95, at each wall (Sharipov, Rarefied Gas Dynamics, 2016). Terms of
-  // size k² ≤ 2e-3 and the error of the mesh remain; measured 7e-4 and 1.9e-3.
+  // q L = ∫ κ dT between the walls, over 1 + 2 ζ k, with κ = (5/2)(k/m) μ/Pr and k = μ√(2RT)/(pL). At each
+  // wall Shakhov's model has the jump ζ k dT/dx with ζ = 1.95 (Sharipov, Rarefied Gas Dynamics, 2016). Terms
+  // of size k² ≤ 2e-3 and the error of the mesh remain. Measured: 7e-4 and 1.9e-3.
   double before = 1.0;
   for (const char* pressure : {"20 kPa", "60 kPa"}) {
     simulation run = channel(pressure, {"space.cells=24", "velocity.points=24", "space.limiter=none",
@@ -148,7 +148,7 @@ TEST(gas_in_si_units, heat_flux_of_a_channel_is_fouriers_with_a_temperature_jump
     EXPECT_LT(q, fourier);
     EXPECT_LT(1.0 - q / fourier, before / 2.0) << "no limit";
     before = 1.0 - q / fourier;
-    // Beyond the cells at the walls, which do not resolve the Knudsen layer.
+    // The cells at the walls do not resolve the Knudsen layer and are excluded.
     const auto inside = field_of(run, "heat_flux");
     for (std::size_t cell = 3; cell + 3 < inside.size(); ++cell) EXPECT_NEAR(inside[cell], q, 5e-3 * q);
   }
@@ -192,7 +192,7 @@ TEST(gas_in_si_units, results_are_those_of_the_dimensionless_run_times_scales) {
   EXPECT_EQ(written.fields.units, (std::vector<std::string>{"kg/m^3", "K", "W/m^2", "Pa", "dimensionless"}));
   EXPECT_NEAR(written.t, 1e-10, 1e-24);
   EXPECT_NEAR(written.fields.axes.at(0).centres.back(), 1e-5 * 23.0 / 24.0, 1e-19);
-  // A checkpoint is dimensionless whatever the results are.
+  // A checkpoint is dimensionless, whatever the units of the results.
   EXPECT_EQ(to_csv(make_checkpoint(si, records).history),
             to_csv(make_checkpoint(plain, run_records(plain)).history));
 }
@@ -220,7 +220,8 @@ safety = 1
 fields = ["rho", "knudsen"]
 )toml";
 
-/// Largest error of the local Knudsen number of a wave with the viscosity factor · ε p^{1 − s'} ….
+/// Returns the largest error of the local Knudsen number of a wave. `by_viscosity` selects the viscosity ε
+/// T^exponent instead of Pr ε p.
 double error_of_knudsen(const std::vector<std::string>& overrides, double prandtl, double exponent,
                         bool by_viscosity, int cells) {
   std::vector<std::string> all = overrides;
@@ -257,7 +258,8 @@ TEST(local_knudsen, is_the_mean_free_path_over_the_length_of_the_density_gradien
   for (const auto& [overrides, prandtl, exponent, by_viscosity] : variants) {
     const double coarse = error_of_knudsen(overrides, prandtl, exponent, by_viscosity, 40),
                  fine = error_of_knudsen(overrides, prandtl, exponent, by_viscosity, 80);
-    // Central differences: the error of the derivative of a sine is (2πΔx)²/6 of it, 1 % of 0.1 on 80 cells.
+    // The derivative of a sine by central differences has a relative error (2πΔx)²/6. On 80 cells this is 1 %
+    // of 0.1.
     EXPECT_LT(fine, 1e-4 * 2.0);
     EXPECT_NEAR(std::log2(coarse / fine), 2.0, 0.15);
   }

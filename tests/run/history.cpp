@@ -1,4 +1,4 @@
-// The history of a run is bounded by the limit of its case.
+// The limit of a case bounds the history of its run.
 #include <apsis/config/case.hpp>
 #include <apsis/run/session.hpp>
 
@@ -13,7 +13,7 @@ namespace run_history_test {
 
 namespace {
 
-/// A column of a run without its quantity is NaN.
+/// Compares two rows. A column without a quantity in this run is NaN.
 bool same(const std::vector<double>& a, const std::vector<double>& b) {
   return std::equal(a.begin(), a.end(), b.begin(), b.end(),
                     [](double x, double y) { return x == y || (std::isnan(x) && std::isnan(y)); });

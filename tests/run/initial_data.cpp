@@ -1,4 +1,4 @@
-// Initial data of the table [initial]: values, averages across the edges of regions.
+// Initial data of the table [initial]: values, and averages across the edges of regions.
 #include <apsis/config/case.hpp>
 #include <apsis/config/case_schema.hpp>
 #include <apsis/run/setup.hpp>
@@ -20,7 +20,7 @@ using apsis::input_error;
 using apsis::parse_case;
 using apsis::run_setup;
 
-/// A case whose line 5 begins the table [initial].
+/// Returns a case in which line 5 begins the table [initial].
 std::string gas(const std::string& initial, const std::string& model = "name = \"bgk\"") {
   return "[parameters]\nM = 2.0\n[model]\n" + model + "\n" + initial +
          "\n[space]\ncells = 12\ndomain = [0.0, 2.0]\n[velocity]\nmax = 9\npoints = 48\n"
@@ -35,7 +35,7 @@ field state_of(const std::string& text, const std::vector<std::string>& override
   return run_setup(parse_case(text, "c.toml", overrides)).initial_state();
 }
 
-/// The macroscopic field number k of every cell.
+/// Returns macroscopic field number k of every cell.
 std::vector<double> fluid(const std::string& text, std::size_t k) {
   const run_setup setup(parse_case(text, "c.toml"));
   const field u = setup.initial_state();
@@ -63,8 +63,7 @@ TEST(prescribed_data, as_a_sum_of_maxwellians_equal_the_named_data_of_the_paper)
   const std::string sum = "[[initial.part]]\nweight = 0.5\n" + rho + "u = 1\n" + T +
                           "[[initial.part]]\nweight = 0.3\n" + rho + "u = -0.5\n" + T;
   const std::vector<std::string> grid = {"velocity.max=15", "velocity.points=150"};
-  // T is recovered from moments with a rounding error of a few 1e-16, which the exponents, up to 128/0.8,
-  // amplify.
+  // T follows from moments with a rounding error of a few 1e-16. The exponents, up to 128/0.8, amplify it.
   expect_close(state_of(gas(sum), grid), state_of(gas(""), grid), 1e-12);
 }
 
@@ -121,7 +120,7 @@ RC_GTEST_PROP(prescribed_data, have_exact_averages_in_cells_that_an_edge_of_a_re
   std::vector<double> rho;
   try {
     rho = fluid(text, 0);
-  } catch (const input_error& missed) {  // thinner than the points at which regions are looked for
+  } catch (const input_error& missed) {  // too thin for the points that search for regions
     RC_ASSERT(width < 1.0 / 6.0 / 32.0 || edge > 1.99);
     RC_DISCARD("too thin");
   }
@@ -129,7 +128,7 @@ RC_GTEST_PROP(prescribed_data, have_exact_averages_in_cells_that_an_edge_of_a_re
   for (int cell = 0; cell < 12; ++cell) {
     const double left = cell / 6.0, right = (cell + 1) / 6.0;
     const double inside = std::max(0.0, std::min(right, edge + width) - std::max(left, edge));
-    // The edge is exact to an ulp of x, relative to a cell of 1/6; sums of 20 points.
+    // The edge is exact to an ulp of x, relative to a cell of 1/6. The averages are sums of 20 points.
     RC_ASSERT(std::abs(rho[static_cast<std::size_t>(cell)] - (1.0 + 2.0 * inside * 6.0)) < 2e-14);
   }
 }

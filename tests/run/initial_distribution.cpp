@@ -22,7 +22,7 @@ using apsis::field;
 using apsis::parse_case;
 using apsis::run_setup;
 
-/// A case on a line, of cell averages, whose line 5 begins the table [initial].
+/// Returns a case on a line with cell averages, in which line 5 begins the table [initial].
 std::string line(const std::string& initial, const std::string& model = "name = \"bgk\"") {
   return "[parameters]\nM = 2.0\n[model]\n" + model + "\n" + initial +
          "\n[space]\ncells = 12\ndomain = [0.0, 2.0]\n[velocity]\nmax = 9\npoints = 48\n"
@@ -38,7 +38,7 @@ const std::string maxwellian = "exp(-v_x^2/2)/sqrt(2*pi)";
 }  // namespace
 
 TEST(initial_distribution, has_the_values_of_the_formula_at_every_velocity) {
-  // Linear in x, so that averages are the values at the centres.
+  // The formula is linear in x, so averages are the values at the centres.
   for (const char* space : {"space.formulation=finite-volume", "space.formulation=finite-difference"}) {
     const run_setup setup(
         parse_case(line("[initial]\nf = \"(1 + x + M*v_x^2)*" + maxwellian + "\""), "c.toml", {space}));
@@ -61,7 +61,8 @@ TEST(initial_distribution, is_averaged_over_cells_that_an_edge_of_a_region_cuts)
   const field u = state_of(text), below = state_of(line("[initial]\nf = \"" + maxwellian + "\""));
   for (int k = 0; k < u.components(); ++k) {
     EXPECT_NEAR(u.row(0)[k], 3.0 * below.row(0)[k], 1e-14 * u.row(0)[k] + 1e-300);
-    EXPECT_NEAR(u.row(4)[k], 2.0 * below.row(4)[k], 1e-14 * u.row(4)[k] + 1e-300);  // the edge is its middle
+    EXPECT_NEAR(u.row(4)[k], 2.0 * below.row(4)[k],
+                1e-14 * u.row(4)[k] + 1e-300);  // the edge is its centre
     EXPECT_NEAR(u.row(5)[k], below.row(5)[k], 1e-14 * u.row(5)[k] + 1e-300);
   }
 }

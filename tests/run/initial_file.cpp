@@ -1,4 +1,4 @@
-// Initial data from files: what a result and its continuation share bit for bit, totals under refinement and
+// Initial data from files: a result and its continuation share all bits, totals under refinement and
 // coarsening, observed orders, units, and files that cannot be used.
 #include <apsis/config/case.hpp>
 #include <apsis/config/case_schema.hpp>
@@ -37,7 +37,7 @@ using testing::HasSubstr;
 const std::string sod =
     "[initial]\nrho = 1\nT = 1\n[[initial.region]]\nwhere = \"x > 0.5\"\nrho = 0.125\nT = 0.8\n";
 
-/// A gas of a case whose line 4 begins the table [initial].
+/// Returns a case of a gas in which line 4 begins the table [initial].
 std::string gas(const std::string& initial, const std::string& model = "name = \"bgk\"\nepsilon = 0.01") {
   return "[model]\n" + model + "\n" + initial +
          "[space]\ncells = 20\ndomain = [0.0, 1.0]\nboundary = \"outflow\"\nlimiter = \"positivity\"\n"
@@ -48,7 +48,7 @@ std::string from(const std::string& file) {
   return fmt::format("[initial]\nfile = \"{}\"\n", file);
 }
 
-/// Runs a case into a folder of the test and returns the folder.
+/// Runs a case into a folder of the test, and returns the folder.
 std::string run(const std::string& text, const std::string& folder,
                 const std::vector<std::string>& overrides = {}) {
   apsis::session_options options;
@@ -68,7 +68,7 @@ std::vector<double> numbers_of(const field& u) {
   return all;
 }
 
-/// Mass, momentum and energy on [0, 1] by the moments of the model.
+/// Returns mass, momentum and energy on [0, 1] by the moments of the model.
 std::vector<double> totals(const std::string& text, const std::vector<std::string>& overrides = {}) {
   const run_setup setup(parse_case(text, "c.toml", overrides));
   const field u = setup.initial_state();
@@ -109,7 +109,8 @@ TEST(initial_file, keeps_mass_momentum_and_energy_to_rounding_on_finer_and_coars
   for (const char* file : {"/solution.h5", "/fields.csv"})  // the state, and equilibria with the fields
     for (const int cells : {7, 13, 20, 31}) {
       const auto after = totals(gas(from(folder + file)), {fmt::format("space.cells={}", cells)});
-      // Sums of 20 cells times 32 velocities, rounded at each of up to 20 points of a cell.
+      // The totals are sums of 20 cells times 32 velocities. The numbers are rounded at each of up to 20
+      // points of a cell.
       for (std::size_t k = 0; k < before.size(); ++k)
         EXPECT_NEAR(after[k], before[k], 2e-14) << file << ", " << cells << " cells, invariant " << k;
     }
@@ -127,7 +128,7 @@ TEST(initial_file, of_a_result_has_no_negative_values_on_any_mesh) {
     }
 }
 
-/// Distance of the state from a file to that of formulas, per cell.
+/// Returns the distance per cell between the state from a file and that from formulas.
 double distance(const std::string& file, const std::string& formulas,
                 const std::vector<std::string>& overrides) {
   const auto a = numbers_of(state_of(gas(from(file)), overrides)),
@@ -139,7 +140,7 @@ double distance(const std::string& file, const std::string& formulas,
 
 TEST(initial_file, has_third_order_between_averages_and_point_values) {
   const test_folder files;
-  // The extremum inside and the ends, where it is not periodic, count.
+  // Where the problem is not periodic, the extremum inside and the ends count.
   const std::string smooth =
       "[initial]\nrho = \"1 + 0.3*sin(3*x)\"\nu = \"0.2*cos(2*x)\"\nT = \"1 + 0.1*x\"\n";
   const std::string volume = "space.formulation=finite-volume",
@@ -174,7 +175,7 @@ TEST(initial_file, with_a_snapshot_time_is_the_state_of_that_time) {
   EXPECT_EQ(numbers_of(state_of(gas(from(folder + "/solution.h5")), {"initial.time=0.01"})), f);
   EXPECT_EQ(numbers_of(state_of(gas(from(folder + "/solution.h5")), {"initial.time=0.02"})),
             hdf5_file::open(folder + "/solution.h5").read("f"));
-  // Without the distribution, equilibria with the fields of that time: the same totals.
+  // Without the distribution the data are equilibria with the fields of that time. Their totals are the same.
   const auto expected = totals(gas(from(folder + "/solution.h5")), {"initial.time=0.01"});
   for (const char* file : {"/solution.h5", "/fields.csv"}) {
     const std::string fields = run(gas(sod), files / "fields", {"output.every=0.01"});
@@ -195,16 +196,16 @@ TEST(initial_file, on_other_velocities_gives_equilibria_with_its_moments) {
   const auto before = totals(gas(from(file), bgk));
   for (const auto& model : {bgk, shakhov}) {
     const auto after = totals(gas(from(file), model), {"velocity.points=40"});
-    // The energy from T and back, with the rounding of sums of 20 cells.
+    // The energy follows from T and back. The tolerance also covers the rounding of sums of 20 cells.
     for (std::size_t k = 0; k < before.size(); ++k) EXPECT_NEAR(after[k], before[k], 3e-14) << model;
   }
-  // The distribution of one gas model is that of another with the same degrees of freedom.
+  // Two gas models with the same degrees of freedom have the same distribution.
   EXPECT_EQ(numbers_of(state_of(gas(from(file), shakhov))), hdf5_file::open(file).read("f"));
 }
 
 TEST(initial_file, of_a_result_may_reach_further_than_data_on_its_velocities) {
   const test_folder files;
-  // Beams mix without collisions to T = 2.4, of whose Maxwellian velocities up to 3.6 miss 0.15.
+  // Beams mix without collisions to T = 2.4. Velocities up to 3.6 miss 0.15 of this Maxwellian.
   const std::string free = "name = \"bgk\"\nepsilon = 1e3";
   const std::string beams =
       "[initial]\nrho = 1\nT = 1\nu = 1.2\n[[initial.region]]\nwhere = \"x > 0.5\"\nu = -1.2\n";
@@ -263,7 +264,7 @@ TEST(initial_file, in_si_units_is_read_in_those_of_the_case) {
   };
   const std::string warm = "[initial]\nrho = \"1 + 0.1*x\"\nT = \"1.2 - 0.1*x\"\n";
   const std::string folder = run(of(argon, warm), files / "si", {"time.end=0"});
-  // Of a reference pressure half as high the density is twice as large in its units.
+  // With a reference pressure half as high, the density is twice as large in its units.
   std::string thinner = argon;
   thinner.replace(thinner.find("2 kPa"), 5, "1 kPa");
   for (const char* file : {"/solution.h5", "/fields.csv"}) {
@@ -291,7 +292,7 @@ TEST(initial_file, in_si_units_is_read_in_those_of_the_case) {
 
 TEST(initial_file, of_a_table_has_the_averages_of_its_rows) {
   const test_folder files;
-  // With few digits, a byte order mark, quotes, blank lines and columns that the model does not have.
+  // The file has few digits, a byte order mark, quotes, blank lines and columns that the model does not have.
   const std::string file = table(files / "own.csv",
                                  "\xEF\xBB\xBF\"x\", rho ,u_x,T,note\n# measured\n0.167,1,0.1,1,7\n\n"
                                  "0.5,+2,0.1,1.5,7\r\n0.833,1e0,0.1,1,7\n");
@@ -412,7 +413,7 @@ TEST(initial_file, that_is_truncated_anywhere_is_refused) {
         {[&] { set_up(gas(from(files / "short.h5"))); }, {"c.toml:5:9: initial.file = "}},
     });
   }
-  // A table has lost rows at its end, or a part of the last one.
+  // A truncated table lacks rows at its end, or a part of the last one.
   const std::string table_text = "x,rho,u,T\n0.25,1.5,0.25,1.25\n0.75,1.5,0.25,1.25\n";
   for (std::size_t length = 0; length + 5 < table_text.size(); ++length) {
     apsis::write_text_file(files / "short.csv", table_text.substr(0, length));
@@ -432,7 +433,7 @@ TEST(initial_file, is_written_with_its_case_and_read_back) {
   EXPECT_EQ(to_toml(again), to_toml(c));
 }
 
-/// Exact averages of piecewise parabolas over the cells of another mesh have the same sum.
+/// The exact averages of piecewise parabolas over the cells of another mesh have the same sum.
 RC_GTEST_PROP(cell_polynomials, keep_averages_totals_and_sign, ()) {
   apsis::line_rows rows;
   rows.cells = *rc::gen::inRange(1, 12);

@@ -1,4 +1,4 @@
-// Conservation laws of the user: what a run promises, checks and refuses.
+// Conservation laws of the user: promises, checks and refusals of a run.
 #include "laws.hpp"
 
 #include <apsis/core/errors.hpp>
@@ -32,7 +32,7 @@ std::string failure_of(const std::string& name, const overrides& changes) {
 
 TEST(law, conserves_every_variable_to_rounding) {
   for (const char* name : {"dam-break", "p-system", "euler-sod"}) {
-    // Inside walls the momentum is not conserved, but known: what crosses the faces.
+    // Inside walls the momentum is not conserved. The flux through the faces determines its change.
     for (const char* ends : {"periodic", "outflow", "symmetry"}) {
       apsis::simulation run(apsis::load_case(fmt::format("laws/{}", name),
                                              {cells(60), fmt::format("space.boundary={}", ends)}));
@@ -44,7 +44,7 @@ TEST(law, conserves_every_variable_to_rounding) {
 }
 
 TEST(law, may_have_the_speed_of_its_fastest_wave) {
-  // The speed of the deep side, exactly.
+  // The speed equals that of the deep side.
   EXPECT_NO_THROW(apsis::simulation(apsis::load_case("laws/dam-break", {"model.speed=1"})));
 }
 
@@ -56,13 +56,13 @@ TEST(law, with_waves_that_become_too_fast_ends_with_a_broken_promise) {
               HasSubstr("and the subcharacteristic condition is |lambda| <= speed); give at least 1."));
   EXPECT_THAT(message, HasSubstr("[step "));
   EXPECT_THAT(message, HasSubstr("cell 9"));  // behind the bore, which starts at cell 100
-  // The exact solution reaches 1.2572; wiggles of a percent.
+  // The exact solution reaches 1.2572, and the numerical one exceeds it by a percent.
   EXPECT_EQ(failure_of("dam-break", {"model.speed=1.3"}), "kept its promises");
   EXPECT_THAT(failure_of("p-system", {"model.speed=1.8"}), HasSubstr("broken promise: model.speed = 1.8"));
 }
 
 TEST(law, that_ceases_to_be_hyperbolic_ends_with_a_broken_promise) {
-  // A pressure p = v − v³/3 with λ² = −p' < 0 for v < 1: the collision compresses v from 1.3 below 1.
+  // The pressure p = v − v³/3 has λ² = −p' < 0 for v < 1. The collision compresses v from 1.3 to below 1.
   const char* const text = R"case([model]
 name = "conservation-law"
 variables = ["v", "w"]
@@ -92,8 +92,8 @@ cfl = 0.5
 
 namespace {
 
-/// A strong rarefaction of the Euler equations: the gas recedes from x = 0 so fast that hardly any is left,
-/// and high order reconstructs a negative pressure.
+/// Returns a strong rarefaction of the Euler equations. The gas recedes from x = 0 so fast that hardly any
+/// remains, and high order reconstructs a negative pressure.
 std::string strong_rarefaction(const std::string& reconstruction) {
   return fmt::format(R"case([model]
 name = "conservation-law"
@@ -146,7 +146,7 @@ TEST(law, promises_its_condition_and_no_positivity) {
 }
 
 TEST(law, of_one_variable_runs_through_values_that_underflow) {
-  // Gaussian tails end in subnormal numbers, and WENO leaves such values beside clean jumps.
+  // Gaussian tails end in subnormal numbers. WENO leaves such values beside sharp jumps.
   for (const char* data : {"exp(-1000*x^2)", "x < 0 ? 1 : 0", "x < 0 ? 1e-310 : 1", "x < 0 ? 1 : 1e-200"})
     for (const char* flux : {"u^2/2", "u*u/(u*u + 0.5*(1 - u)^2)", "(u + 1)^2/2", "u^3"})
       for (const char* form : {"finite-volume", "finite-difference"}) {
@@ -174,8 +174,8 @@ cfl = 0.5
 }
 
 TEST(law, chooses_the_speed_of_the_states_between_a_jump) {
-  // Buckley–Leverett has F' = 0 on both sides of the jump and max F' = 2.29 between them; twice that is
-  // chosen.
+  // Buckley–Leverett has F' = 0 on both sides of the jump and max F' = 2.29 between them. The speed
+  // is twice that.
   const auto run = finished_run(R"case([model]
 name = "conservation-law"
 variables = ["u"]

@@ -1,4 +1,4 @@
-// Runs of conservation laws of the user, compared with solutions known independently of the relaxation.
+// Runs of conservation laws of the user agree with solutions known independently of the relaxation.
 #include "laws.hpp"
 
 #include <cmath>
@@ -15,7 +15,7 @@ namespace laws_test {
 
 namespace {
 
-/// Returns the root of a decreasing or increasing function by bisection.
+/// Returns the root of a monotone function by bisection.
 double root(double low, double high, const std::function<double(double)>& f) {
   const bool below = f(low) < 0.0;
   for (int k = 0; k < 200; ++k) {
@@ -25,8 +25,9 @@ double root(double low, double high, const std::function<double(double)>& f) {
   return 0.5 * (low + high);
 }
 
-/// Depth of the dam break with g = 1 from depths `left` > `right` at rest, at x/t = s: a rarefaction with
-/// u + 2c = 2c_l, a constant state, and a bore with (h − h_r)² (h + h_r)/(2 h h_r) = u² (Stoker 1957).
+/// Returns the depth of the dam break at x/t = s with g = 1, from depths `left` > `right` at rest. A
+/// rarefaction with u + 2c = 2c_l, a constant state, and a bore with (h − h_r)² (h + h_r)/(2 h h_r) = u²
+/// (Stoker 1957).
 double depth_of_dam_break(double s, double left, double right) {
   const double cl = std::sqrt(left);
   const auto velocity = [&](double h) { return (h - right) * std::sqrt(0.5 * (h + right) / (h * right)); };
@@ -39,7 +40,8 @@ double depth_of_dam_break(double s, double left, double right) {
   return c * c;
 }
 
-/// Density of Sod's tube at x/t = s, γ = 7/5: rarefaction, contact and shock (Toro 2009, chapter 4).
+/// Returns the density of Sod's tube at x/t = s with γ = 7/5: rarefaction, contact and shock (Toro 2009,
+/// chapter 4).
 double density_of_sod(double s) {
   constexpr double gamma = 1.4, rl = 1.0, pl = 1.0, rr = 0.125, pr = 0.1;
   const double cl = std::sqrt(gamma * pl / rl), cr = std::sqrt(gamma * pr / rr);
@@ -60,7 +62,7 @@ double density_of_sod(double s) {
   return rl * std::pow((2.0 + (gamma - 1.0) * (-s) / cl) / (gamma + 1.0), 2.0 / (gamma - 1.0));
 }
 
-/// Mean of |u − exact(x/t)| over the cells, of the first variable.
+/// Returns the mean of |u − exact(x/t)| over the cells, for the first variable.
 double mean_error(const apsis::simulation& run, const std::function<double(double)>& exact) {
   const auto fields = run.fields();
   double sum = 0.0;
@@ -69,8 +71,8 @@ double mean_error(const apsis::simulation& run, const std::function<double(doubl
   return sum / static_cast<double>(fields.x.size());
 }
 
-// A simple wave of shallow water with g = 1, which runs to the right: u = 2(c − c₀), and c is constant along
-// lines of the speed 3c − 2c₀, c₀ = 1.
+// A simple wave of shallow water with g = 1 and c₀ = 1 that runs to the right: u = 2(c − c₀). c is constant
+// along lines of the speed 3c − 2c₀.
 double wave_of_c(double x) {
   return 1.0 + 0.1 * std::sin(std::numbers::pi * x);
 }
@@ -93,7 +95,7 @@ end = 0.4
 cfl = 0.5
 )case";
 
-/// Linear waves p_t + 4 w_x = 0, w_t + p_x = 0 of speed 2 from p = 1 + sin(πx), w = 0.
+/// Linear waves p_t + 4 w_x = 0, w_t + p_x = 0 of speed 2 from p = 1 + sin(πx) and w = 0.
 const char* const linear_waves = R"case([model]
 name = "conservation-law"
 variables = ["p", "w"]
@@ -112,15 +114,15 @@ end = 0.5
 cfl = 0.5
 )case";
 
-/// The largest error of p at the end. A mode e^{iπx} of the relaxation system, with u' = −iπ v and
-/// v' = −iπ a² u + (F u − v)/ε for its fluxes v, splits into those of the two characteristic variables p ± 2w
-/// with F = ±2: two linear equations for each, solved by exponentials.
+/// Returns the largest error of p at the end. For a mode e^{iπx} the relaxation system is u' = −iπ v, v' =
+/// −iπ a² u + (F u − v)/ε with fluxes v. It splits into the two characteristic variables p ± 2w with F = ±2.
+/// Exponentials solve the two linear equations of each.
 double error_of_linear_waves(const overrides& changes, double epsilon) {
   using complex = std::complex<double>;
   const auto run = finished_run(linear_waves, changes);
   const double t = run.t(), k = std::numbers::pi, a = 3.0;
   const auto mode = [&](double speed) {
-    // u'' + u'/ε + (k²a² + i k F/ε) u = 0 with u = 1 and u' = −i k F at t = 0.
+    // The equation is u'' + u'/ε + (k²a² + i k F/ε) u = 0 with u = 1 and u' = −i k F at t = 0.
     const complex half = 0.5 / epsilon, frequency = k * k * a * a + complex(0.0, k * speed / epsilon);
     const complex spread = std::sqrt(half * half - frequency);
     const complex fast = -half - spread, slow = frequency / fast;  // their product is the frequency
@@ -144,12 +146,13 @@ TEST(law, of_shallow_water_converges_to_the_exact_dam_break) {
     return mean_error(finished_case("dam-break", {cells(n), fmt::format("model.epsilon={}", epsilon)}),
                       [](double s) { return depth_of_dam_break(s, 1.0, 0.25); });
   };
-  // First order in L1 with a shock in a few cells; 0.8 leaves room for its position within a cell.
+  // With a shock in a few cells the error is of first order in L1. The bound 0.8 leaves room for its position
+  // within a cell.
   const double coarse = error(100, "0"), fine = error(400, "0");
   EXPECT_GT(0.5 * std::log2(coarse / fine), 0.8);
   EXPECT_LT(fine, 1.5e-3);
   // In the limit ε → 0 the error falls to that of ε = 0. Diffusion spreads the bore by about ε (a² − λ²) over
-  // its strength, and the corner of the rarefaction by the square root of ε.
+  // its strength. It spreads the corner of the rarefaction by the square root of ε.
   const double diffuse = error(400, "3e-2"), less = error(400, "3e-3");
   EXPECT_GT(diffuse, 3.0 * less);
   EXPECT_GT(less, fine);
@@ -158,8 +161,8 @@ TEST(law, of_shallow_water_converges_to_the_exact_dam_break) {
 
 TEST(law, of_a_gas_converges_to_the_exact_solution_of_sod) {
   const auto error = [](int n) { return mean_error(finished_case("euler-sod", {cells(n)}), density_of_sod); };
-  // The contact is smeared over N^(1/6) cells by a scheme of fifth order, so that it converges with order
-  // 5/6; with the shock, of first order, 0.75 at least.
+  // A scheme of fifth order smears the contact over N^(1/6) cells, so it converges with order 5/6. With the
+  // shock, of first order, the order is at least 0.75.
   const double coarse = error(100), fine = error(400);
   EXPECT_GT(0.5 * std::log2(coarse / fine), 0.75);
   EXPECT_LT(fine, 2.5e-3);
@@ -204,8 +207,8 @@ TEST(law, has_the_order_of_the_method_also_where_it_relaxes_slowly) {
 }
 
 TEST(law, diffuses_with_epsilon_times_a_squared_minus_lambda_squared) {
-  // Both characteristic variables of the linear waves decay with exp(−ε (a² − λ²) π² t) (1 + O(ε)), so that p
-  // keeps its form.
+  // Both characteristic variables of the linear waves decay with exp(−ε (a² − λ²) π² t) (1 + O(ε)). p
+  // therefore keeps its form.
   const auto amplitude = [](double epsilon) {
     const auto fields =
         finished_run(linear_waves, {cells(80), fmt::format("model.epsilon={}", epsilon), "time.cfl=0.02"})
@@ -218,8 +221,8 @@ TEST(law, diffuses_with_epsilon_times_a_squared_minus_lambda_squared) {
   const double epsilon = 1e-3, of_waves = std::cos(2.0 * std::numbers::pi * 0.5);
   const double decay =
       -std::log(amplitude(epsilon) / of_waves) / (epsilon * std::pow(std::numbers::pi, 2) * 0.5);
-  // The initial layer adds −10 ε (the expansion of the exact solution), and the method, at Δt = ε/6, its
-  // error of 7e-3.
+  // The initial layer adds −10 ε (by expansion of the exact solution). The error of the method at Δt =
+  // ε/6 is 7e-3.
   EXPECT_NEAR(decay, 9.0 - 4.0, 0.02);
 }
 
@@ -233,8 +236,8 @@ TEST(law, keeps_water_at_rest_between_walls_and_sends_waves_back) {
   double mass = 0.0;
   for (const double h : moving.values[0]) mass += h / 40.0;
   EXPECT_NEAR(mass, 0.625, 1e-13);
-  // The bore met the wall at t = 1/0.94 and came back: the water there is deeper than behind a bore that runs
-  // on.
+  // The bore met the wall at t = 1/0.94 and came back. The water there is deeper than behind a bore that
+  // moves freely.
   EXPECT_GT(moving.values[0].back(), 1.5 * 0.5517);
 }
 
@@ -244,7 +247,7 @@ TEST(law, of_a_wall_equals_the_half_of_a_symmetric_problem) {
                                                "boundary.left.kind=outflow", "boundary.right.kind=symmetry",
                                                "initial.region.1.where=x > -10", "initial.region.1.u=0.5"})
                         .fields();
-  // The mirror image of a WENO scheme differs by rounding, which nonlinear weights enlarge.
+  // The mirror image of a WENO scheme differs by rounding errors, which nonlinear weights amplify.
   for (std::size_t i = 0; i < half.x.size(); ++i)
     for (std::size_t k = 0; k < 2; ++k) EXPECT_NEAR(half.values[k][i], whole.values[k][i], 1e-10) << i;
 }

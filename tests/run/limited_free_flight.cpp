@@ -1,5 +1,5 @@
-// The cost of f ≥ 0: free flight of profiles that touch zero or fall by many powers of ten, with limited
-// fluxes and without, by the same steps (docs/measured.md, "Limiters").
+// The cost of f ≥ 0. Profiles in free flight touch zero or fall by many powers of ten. Limited and unlimited
+// fluxes take the same steps (docs/measured.md, "Limiters").
 #include "laws.hpp"
 
 #include <algorithm>
@@ -15,7 +15,7 @@ namespace limited_free_flight_test {
 
 namespace {
 
-/// Along x. Nothing changes along y, where cells are long.
+/// Velocities along x. Nothing changes along y, where cells are long.
 constexpr std::array<double, 4> velocities = {1.0, 0.5, -1.0, -0.5};
 
 struct profile {
@@ -33,11 +33,11 @@ const profile gaussian = {"exp(-200*(x - 0.5)^2)",
 
 struct flight {
   double fastest,  ///< mean error of the molecules with v = 1
-      slower,      ///< and of those with v = 1/2
+      slower,      ///< mean error of the molecules with v = 1/2
       least;       ///< smallest value of f in all steps
 };
 
-/// One transit of molecules with v = 1 on n cells.
+/// Runs one transit of molecules with v = 1 on n cells.
 flight fly(const profile& of, int n, double safety, const std::string& limiter) {
   std::string initial;
   for (int j = 1; j <= 4; ++j) initial += fmt::format("f_{} = \"{}\"\n", j, of.formula);
@@ -74,8 +74,8 @@ void expect_cost(const std::string& name, const profile& of, int n, double safet
 
 }  // namespace
 
-/// At the longest step the fastest molecules leave 0.9 of a cell. Where the limiter acts at all it damps, so
-/// that errors are also smaller, 0.39 to 1.00 times those without it; sin⁴ has up to 1.12 times.
+/// In the longest step the fastest molecules leave 0.9 of a cell. Where the limiter acts, it damps. Errors
+/// are then 0.39 to 1.00 times those without it, and up to 1.12 times for sin⁴.
 void expect_costs(int n, double safety) {
   expect_cost("gaussian", gaussian, n, safety, 1.01);
   expect_cost("box", box, n, safety, 1.01);
@@ -85,8 +85,8 @@ void expect_costs(int n, double safety) {
 TEST(limited_free_flight, costs_no_accuracy_but_where_f_touches_zero_like_a_parabola) {
   for (const double safety : {1.0, 0.5}) expect_costs(40, safety);
   expect_costs(80, 1.0);
-  // An exact forward Euler step is negative there, by a square of its length: 4.3, 5.2, 6.2 times the error
-  // for |v| = 1 and 9 to 14 times for 1/2.
+  // There an exact forward Euler step is negative by the square of its length. The error is 4.3, 5.2, 6.2
+  // times as large for |v| = 1, and 9 to 14 times for 1/2.
   for (const int n : {40, 80}) expect_cost("square", square, n, 1.0, 25.0);
 }
 
@@ -94,7 +94,7 @@ TEST(SLOW_limited_free_flight, costs_no_accuracy_on_fine_meshes_and_in_short_ste
   for (const int n : {80, 160})
     for (const double safety : {1.0, 0.5, 0.1}) expect_costs(n, safety);
   expect_cost("square", square, 160, 1.0, 25.0);
-  expect_cost("square", square, 160, 0.1, 70.0);  // 34 and 27 times a smaller error
+  expect_cost("square", square, 160, 0.1, 70.0);  // 34 and 27 times as large as a smaller error
 }
 
 TEST(limited_free_flight, without_the_limiter_becomes_negative) {
@@ -103,7 +103,7 @@ TEST(limited_free_flight, without_the_limiter_becomes_negative) {
 }
 
 TEST(limited_free_flight, keeps_third_order_where_the_solution_touches_zero) {
-  // The order of the method in time with Δt ~ Δx.
+  // With Δt ~ Δx the order is that of the method in time.
   const double coarse = fly(square, 80, 1.0, "positivity").fastest,
                fine = fly(square, 160, 1.0, "positivity").fastest;
   EXPECT_GT(std::log2(coarse / fine), 2.6);

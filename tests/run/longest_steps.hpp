@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 
 /// Returns the override that gives a case steps of r Δt_FE times `factor`, shorter by rounding. They are the
-/// longest with f ≥ 0; time.safety = 1 gives shorter ones where they are not linearly stable.
+/// longest with f ≥ 0. time.safety = 1 gives shorter steps if these are not linearly stable.
 inline std::string steps_of_positivity(const std::string& text, double factor = 1.0) {
   const apsis::run_setup setup(apsis::parse_case(text, "random.toml"));
   const double step = setup.make_problem()->forward_euler_step(0.0, setup.initial_state());

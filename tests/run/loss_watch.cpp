@@ -1,4 +1,4 @@
-// Warnings of methods that are unfit for their Δt/ε, before and during runs.
+// Warnings before and during runs about methods that are unfit for their Δt/ε.
 #include "cases.hpp"
 #include "laws.hpp"
 
@@ -20,7 +20,7 @@ using testing::Not;
 
 namespace {
 
-/// u_t + v_x = 0, v_t + u_x/3 = −v/ε with ε = 10⁻⁴: u_t = (ε/3) u_xx, and nothing else moves u.
+/// u_t + v_x = 0, v_t + u_x/3 = −v/ε with ε = 10⁻⁴ has the limit u_t = (ε/3) u_xx. Nothing else moves u.
 const std::string diffusion =
     "[model]\nname = \"relaxation\"\nepsilon = 1e-4\nspeed = 0.5773502691896258\nflux = \"0*u\"\n"
     "[initial]\nu1 = \"exp(-x^2)\"\n[space]\ncells = 200\ndomain = [-5.0, 5.0]\nformulation = "
@@ -29,8 +29,8 @@ const std::string diffusion =
 
 struct watched_run {
   std::string log;  ///< standard error
-  double growth;    ///< of the variance of u, relative to the exact 2εt/3
-  double expected;  ///< error
+  double growth;    ///< growth of the variance of u, relative to the exact 2εt/3
+  double expected;  ///< expected error
 };
 
 double variance(const apsis::simulation& run) {
@@ -61,7 +61,7 @@ TEST(unfit_method, that_gets_diffusion_wrong_is_warned_about_with_the_method_tha
     EXPECT_THAT(run.log, AllOf(HasSubstr("method '" + std::string(name) + "' is unfit for steps of "),
                                HasSubstr("choose time.method = \"md-imex-8-3-mixed\"")))
         << name;
-    // Once.
+    // The warning appears once.
     EXPECT_EQ(run.log.find("is unfit"), run.log.rfind("is unfit")) << name;
   }
   for (const char* name :
@@ -73,7 +73,7 @@ TEST(unfit_method, that_gets_diffusion_wrong_is_warned_about_with_the_method_tha
 }
 
 TEST(unfit_method, states_how_wrong_the_diffusion_is) {
-  // flux = 0 of md-imex-3-2, and 2.7 of md-imex-6-3, where ε ≪ Δt; here Δt = 430 ε.
+  // For ε ≪ Δt, md-imex-3-2 has flux = 0, and md-imex-6-3 has 2.7. Here Δt = 430 ε.
   EXPECT_THAT(diffuse({"time.method=md-imex-3-2"}).log, HasSubstr("are wrong by 100 %"));
   EXPECT_THAT(diffuse({"time.method=md-imex-6-3"}).log,
               testing::ContainsRegex("are wrong by 1(6[3-9]|70) %"));
@@ -85,7 +85,8 @@ TEST(unfit_method, resolved_by_its_steps_is_fit) {
 }
 
 TEST(unfit_method, is_noticed_where_its_loss_begins_during_the_run) {
-  // At rest in the beginning, so that nothing deviates from equilibrium; the source makes what diffuses.
+  // The gas is at rest initially, so nothing deviates from equilibrium. The source creates
+  // gradients that diffuse.
   const std::string text =
       "[model]\nname = \"relaxation\"\nepsilon = 1e-3\nspeed = 0.5773502691896258\nflux = \"0*u\"\n"
       "[initial]\nu1 = 1.0\n[space]\ncells = 40\ndomain = [0.0, 1.0]\nformulation = \"finite-difference\"\n"
@@ -113,8 +114,8 @@ TEST(unfit_method, of_an_explicit_kind_is_unstable_and_named_so) {
 }
 
 TEST(unfit_method, does_not_change_the_run_by_being_watched) {
-  // The estimate of a fit and of an unfit method leaves no trace: a restart, which estimates anew, has the
-  // same bits (restart.cpp), and a run whose first step is taken before any estimate too.
+  // The estimate leaves no trace, for fit and unfit methods. A restart, which estimates anew, has the same
+  // bits (restart.cpp). So has a run whose first step precedes any estimate.
   apsis::case_config c = apsis::parse_case(diffusion, "d", {"time.method=md-imex-6-3", "time.end=3.0"});
   testing::internal::CaptureStderr();
   apsis::simulation once(c), parts(c);
@@ -145,7 +146,7 @@ TEST(automatic_method, is_the_first_line_of_the_log_with_its_reason) {
 TEST(automatic_method, runs_every_built_in_case) {
   for (const auto& name : apsis::case_names()) {
     apsis::case_config c = apsis::load_case(name, {"time.method=auto"});
-    if (c.prescribed.given_elsewhere() || c.space.cells.size() > 1) continue;  // slow: several dimensions
+    if (c.prescribed.given_elsewhere() || c.space.cells.size() > 1) continue;  // several dimensions are slow
     testing::internal::CaptureStderr();
     apsis::simulation run(c);
     run.advance();

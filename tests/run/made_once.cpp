@@ -1,4 +1,4 @@
-// A run makes its expensive objects once: reading, checking, running and reporting ask for those that exist.
+// A run makes its expensive objects once. Reading, checking, running and reporting share them.
 #include <apsis/boundary/domain.hpp>
 #include <apsis/config/case.hpp>
 #include <apsis/model/expression.hpp>
@@ -20,8 +20,8 @@ using apsis::expression;
 using apsis::model;
 using apsis::run_setup;
 
-/// Five formulas that no other test has, and the numbers 0.251 and 0.502 of a box, 1, 0, and 0 as a function
-/// of t.
+/// The case has five formulas that no other test has. Further formulas are the numbers 0.251 and 0.502 of a
+/// box, 1, 0, and 0 as a function of t.
 const std::string gas = R"toml(
 title = "Walls and a force"
 [model]
@@ -75,12 +75,12 @@ counts made_by_a_run(const std::string& text, const std::vector<std::string>& ov
 }  // namespace
 
 TEST(made_once, are_model_setup_domain_and_formulas_of_a_run) {
-  apsis::prototype(apsis::find_model("bgk"));  // for questions about the model without a case
+  apsis::prototype(apsis::find_model("bgk"));  // for queries about the model without a case
   const counts made = made_by_a_run(gas, {});
   EXPECT_EQ(made.models, 1);
   EXPECT_EQ(made.setups, 1);
   EXPECT_EQ(made.domains, 1);
-  // The last three numbers may have been compiled by other tests.
+  // Other tests may have compiled the last three numbers.
   EXPECT_GE(made.formulas, 7);
   EXPECT_LE(made.formulas, 10);
 }
@@ -101,7 +101,7 @@ TEST(made_once, are_domains_of_problems_that_exist_beside_each_other) {
   const auto c = apsis::parse_case(gas, "case.toml");
   const run_setup setup(c);
   const long before = domain::so_far();
-  const auto one = setup.make_problem(), other = setup.make_problem();  // each has ghost rows of its own
+  const auto one = setup.make_problem(), other = setup.make_problem();  // each problem has its own ghost rows
   EXPECT_EQ(setup.open_faces().size(), 6U);
   EXPECT_EQ(domain::so_far() - before, 2);
 }

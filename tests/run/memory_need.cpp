@@ -1,4 +1,4 @@
-// The memory that a run says it needs, and the memory that it has.
+// The announced memory of a run agrees with the memory that it uses.
 #include <apsis/run/memory_need.hpp>
 
 #include <apsis/config/case.hpp>
@@ -13,7 +13,7 @@
 namespace memory_need_test {
 namespace {
 
-/// Bytes that the C library has given out; 0 under a sanitizer.
+/// Returns the bytes that the C library has allocated, or 0 under a sanitizer.
 double bytes_in_use() {
   const auto now = mallinfo2();
   return static_cast<double>(now.uordblks + now.hblkhd);
@@ -45,8 +45,8 @@ TEST(memory_need, is_what_a_run_has_after_a_step) {
     apsis::simulation run(apsis::parse_case(gas(space), "gas.toml"));
     run.advance();
     const double found = bytes_in_use() - before, said = apsis::memory_need(run.setup(), 0).bytes();
-    // Allocations that are not counted have up to 4 % on these small meshes. The number may refuse a run: it
-    // must not be larger.
+    // On these small meshes allocations that are not counted are up to 4 %. The number may refuse a run, so
+    // it must not be too large.
     EXPECT_GT(said, 0.96 * found) << space << said / found;
     EXPECT_LT(said, 1.001 * found) << space << said / found;
   }

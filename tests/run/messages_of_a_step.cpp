@@ -1,4 +1,4 @@
-// Messages, bytes and reductions of a step on several processes against a formula.
+// Messages, bytes and reductions of a step on several processes agree with a formula.
 #include <apsis/method/method.hpp>
 #include <apsis/run/setup.hpp>
 #include <apsis/run/simulation.hpp>
@@ -19,7 +19,7 @@ namespace {
 using apsis::communication_count;
 using apsis::communicator;
 
-/// 12 × 12 cells in 2 × 3 blocks of 6 × 4 cells.
+/// Returns a case with 12 × 12 cells in 2 × 3 blocks of 6 × 4 cells.
 apsis::case_config gas(const std::string& method, const std::string& boundary,
                        const std::vector<std::string>& overrides = {}) {
   return apsis::parse_case(
@@ -33,7 +33,7 @@ apsis::case_config gas(const std::string& method, const std::string& boundary,
       "gas.toml", overrides);
 }
 
-/// The number of states whose T enters a later stage.
+/// Returns the number of states whose T enters a later stage.
 int evaluations_of_transport(const apsis::method& m) {
   const auto form = m.coefficients<double>();
   int count = 0;
@@ -50,9 +50,9 @@ struct halo {
   long messages, rows;
 };
 
-/// Along x there are two blocks of 6 cells, along y three of 4, and WENO with the limiter needs 4 cells
-/// beyond a block. Between periodic faces the other block along x is the neighbour on both sides and needs
-/// all 6 planes, in one message; along y all three are neighbours.
+/// There are two blocks of 6 cells along x and three blocks of 4 cells along y. WENO with the limiter needs 4
+/// cells beyond a block. Between periodic faces the other block along x is the neighbour on both sides. It
+/// sends all 6 planes in one message. Along y all three blocks are neighbours.
 halo halo_of(int rank, bool periodic) {
   halo sum{1, (periodic ? 6 : 4) * 4};
   const int place = rank % 3;
@@ -67,7 +67,8 @@ halo halo_of(int rank, bool periodic) {
 void expect_the_formula(const std::string& method, bool periodic) {
   const std::string boundary = periodic ? "periodic" : "diffuse";
   std::vector<communication_count> sent(6);
-  // Read once: libstdc++ fills the caches of its locale without synchronisation that ThreadSanitizer sees.
+  // The case is read once, because libstdc++ fills the caches of its locale without synchronisation that
+  // ThreadSanitizer detects.
   const auto config = gas(method, boundary, {"space.blocks=[2, 3]"});
   threads_as_processes::run(6, [&](const std::shared_ptr<communicator>& processes) {
     apsis::simulation run(config, {}, processes);
@@ -87,7 +88,7 @@ void expect_the_formula(const std::string& method, bool periodic) {
     EXPECT_EQ(found.messages, evaluations * each.messages) << method << " on process " << rank;
     EXPECT_EQ(found.bytes, evaluations * each.rows * stride * 8) << method << " on process " << rank;
     EXPECT_EQ(found.reductions, sent[0].reductions);
-    // Those of the history and of promises, whatever the method.
+    // The history and the promises need these reductions, whatever the method.
     EXPECT_LE(found.reductions, 12);
   }
 }

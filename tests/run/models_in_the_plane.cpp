@@ -1,5 +1,5 @@
 // Models other than the gas in two and three dimensions: Broadwell's gas in the plane, gases of discrete
-// velocities and conservation laws of the user, compared with each other and with exact solutions.
+// velocities and conservation laws of the user. They agree with each other and with exact solutions.
 #include "laws.hpp"
 
 #include <apsis/run/setup.hpp>
@@ -59,7 +59,7 @@ end = 0.1
 dt = 0.004
 )case";
 
-/// The same gas as a table.
+/// Broadwell's gas as a table of velocities.
 const std::string table = R"case([model]
 name = "discrete-velocity"
 velocities = [[1, 0], [-1, 0], [0, 1], [0, -1]]
@@ -80,7 +80,7 @@ double largest_difference(const std::vector<double>& a, const std::vector<double
   return largest;
 }
 
-/// The mean of |a − b| of the first field.
+/// Returns the mean of |a − b| of the first field.
 double mean_difference(const apsis::simulation& a, const apsis::simulation& b) {
   const auto first = a.fields().values[0];
   const auto second = b.fields().values[0];
@@ -108,7 +108,7 @@ end = 0.2
 dt = 0.002
 )case";
 
-/// The Euler equations, γ = 7/5: a wave of the density that the gas carries with (1, 0.5).
+/// The Euler equations with γ = 7/5. The gas carries a wave of the density with (1, 0.5).
 const char* const density_wave = R"case([model]
 name = "conservation-law"
 variables = ["rho", "mx", "my", "E"]
@@ -132,7 +132,8 @@ end = 0.1
 dt = 0.001
 )case";
 
-/// The largest error of the first variable, u₀(x − ct) at the centres of an n × m mesh.
+/// Returns the largest error of the first variable. The exact solution is u₀(x − ct) at the centres of an n ×
+/// m mesh.
 double error_of_wave(const char* text, int n, double dt, const std::array<double, 2>& length,
                      const std::function<double(double, double)>& exact) {
   const auto run =
@@ -177,7 +178,7 @@ dt = 0.01
 TEST(models_in_the_plane, broadwell_along_x_is_the_model_on_a_line) {
   const auto flat = finished_run(plane, {}), thin = finished_run(line, {});
   const auto all = flat.fields(), expected = thin.fields();
-  // Sums in another order, over 25 steps.
+  // The sums over 25 steps have another order.
   for (std::size_t i = 0; i < 24; ++i)
     for (std::size_t j = 0; j < 6; ++j) {
       EXPECT_NEAR(all.values[0][i * 6 + j], expected.values[0][i], 2e-14);
@@ -190,7 +191,7 @@ TEST(models_in_the_plane, four_velocities_by_a_table_are_broadwells_gas) {
   for (const char* epsilon :
        {"model.epsilon=1", "model.epsilon=0.02", "model.epsilon=1e-9", "model.epsilon=0"}) {
     const auto closed = finished_run(plane, {epsilon}), general = finished_run(table, {epsilon});
-    // 150 stages, each to some roundings of its Newton iterations.
+    // There are 150 stages, each with some roundings of its Newton iterations.
     EXPECT_LT(largest_difference(closed.state(), general.state()), 1e-12) << epsilon;
   }
 }
@@ -227,15 +228,15 @@ method = "md-imex-3-2"
                              .state());
       const double coarse = largest_difference(states[0], states[1]),
                    fine = largest_difference(states[1], states[2]);
-      // The next order is 10 to 20 % of the error at these steps.
+      // At these steps the next term of the error is 10 to 20 % of the first.
       EXPECT_GT(std::log2(coarse / fine), order - 0.3) << method << " " << epsilon;
       EXPECT_LT(std::log2(coarse / fine), order + 0.5) << method << " " << epsilon;
     }
 }
 
 TEST(models_in_the_plane, broadwells_gas_tends_to_the_law_of_its_limit) {
-  // ρ_t + ∇·m = 0, m_x,t + ((ρ + (m_x² − m_y²)/ρ)/2)_x = 0, and the same for m_y along y, since no particle
-  // carries m_x along y. The two relaxations have other speeds, so that only the limit is common.
+  // The limit is ρ_t + ∇·m = 0, m_x,t + ((ρ + (m_x² − m_y²)/ρ)/2)_x = 0, and the same for m_y along y. No
+  // particle carries m_x along y. The two relaxations have other speeds, so only the limit is common.
   const std::string kinetic = R"case([model]
 name = "broadwell-plane"
 epsilon = 0
@@ -301,7 +302,7 @@ TEST(models_in_the_plane, a_quarter_between_mirrors_is_the_whole) {
     for (std::size_t i = 0; i < 10; ++i)
       for (std::size_t j = 0; j < 10; ++j)
         EXPECT_NEAR(all.values[field][(10 + i) * 20 + 10 + j], part.values[field][i * 10 + j], 1e-13);
-  // Exchanging x and y exchanges the momenta.
+  // The exchange of x and y exchanges the momenta.
   for (std::size_t i = 0; i < 20; ++i)
     for (std::size_t j = 0; j < 20; ++j) {
       EXPECT_NEAR(all.values[0][i * 20 + j], all.values[0][j * 20 + i], 1e-13);
@@ -314,7 +315,7 @@ TEST(models_in_the_plane, steps_are_as_long_as_every_single_velocity_allows) {
   const apsis::run_setup four(apsis::parse_case(plane, "plane", {"space.cells=[20, 10]"}));
   EXPECT_DOUBLE_EQ(four.cfl_length(), 0.1);
   EXPECT_NEAR(four.make_problem()->forward_euler_step(0.0, four.initial_state()), 0.1, 1e-14);
-  // (1, 1) crosses both.
+  // Particles of velocity (1, 1) cross cells along both directions.
   const apsis::run_setup nine(
       apsis::parse_case("[model]\nname = \"discrete-velocity\"\n[space]\ncells = [20, 10]\ndomain = [[0, 2], "
                         "[0, 1]]\n[time]\nend = "

@@ -7,7 +7,7 @@
 
 #include <cmath>
 
-/// |Δu1| + |Δu2| of a run of the ODE model to t = 1, compared with an extrapolated solution.
+/// Runs the ODE model to t = 1 and returns |Δu1| + |Δu2| relative to an extrapolated solution.
 inline double error_at_one(const apsis::case_config& c) {
   apsis::simulation run(c);
   finish(run);
@@ -20,7 +20,7 @@ inline double error_at_one(const apsis::case_config& c) {
   return std::abs(run.state()[0] - u.row(0)[0]) + std::abs(run.state()[1] - u.row(0)[1]);
 }
 
-/// Checks that the state, the step sizes and all records agree to the end.
+/// Runs to the end and returns the state, the step sizes and all records, for comparisons.
 inline std::vector<std::vector<double>> rest_of(apsis::simulation& run) {
   std::vector<std::vector<double>> all;
   while (!run.finished()) {

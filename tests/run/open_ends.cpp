@@ -1,4 +1,5 @@
-// Runs with open ends of a gas: sound that leaves or is reflected, balances, the drag of a body between them.
+// Runs with open ends of a gas: sound that leaves or is reflected, balances, and the drag of a body between
+// such ends.
 #include <apsis/config/case.hpp>
 #include <apsis/run/body_loads.hpp>
 #include <apsis/run/simulation.hpp>
@@ -16,7 +17,7 @@ namespace {
 
 using apsis::simulation;
 
-/// A sound pulse of 1 % that runs to the right and meets the end at x = 1 at t = 0.5/√(5/3) = 0.39.
+/// Returns a sound pulse of 1 % that runs to the right. It reaches the end at x = 1 at t = 0.5/√(5/3) = 0.39.
 simulation pulse(const std::string& end, const std::string& epsilon) {
   return simulation(apsis::parse_case(R"toml(
 [parameters]
@@ -47,7 +48,7 @@ T = 1
                                       "pulse.toml", {"model.epsilon=" + epsilon}));
 }
 
-/// The largest change of the density after the pulse has met the end, relative to that of the pulse.
+/// Returns the largest change of the density after the pulse has reached the end, relative to the pulse.
 double left_behind(simulation run) {
   while (!run.finished()) run.advance();
   EXPECT_LT(run.summary().conservation_defect, 1e-12);
@@ -64,7 +65,7 @@ TEST(open_ends, let_sound_leave_or_reflect_it) {
   const std::string far = "[boundary.right]\nkind = \"far-field\"\nrho = 1\nT = 1\n",
                     inflow = "[boundary.right]\nkind = \"inflow\"\nrho = 1\nT = 1\n",
                     pressure = "[boundary.right]\nkind = \"pressure\"\np = 1\n";
-  // Measured .001, .07 and .97; the reflection of plain inflow is what the far field is for.
+  // Measured: .001, .07 and .97. The far field avoids the reflection of plain inflow.
   EXPECT_LT(left_behind(pulse(far, "1e-6")), 0.01);
   EXPECT_GT(left_behind(pulse(inflow, "1e-6")), 0.03);
   EXPECT_GT(left_behind(pulse(pressure, "1e-6")), 0.8);
@@ -81,13 +82,14 @@ TEST(open_ends, given_by_the_maxwellian_of_inflow_is_inflow) {
   double most = 0.0;
   const auto f = a.state(), g = b.state();
   for (std::size_t k = 0; k < f.size(); ++k) most = std::max(most, std::abs(f[k] - g[k]));
-  // The Maxwellian of inflow is corrected to the moments, by the mass beyond the grid: exp(-49/2) and less.
+  // The Maxwellian of inflow is corrected to its moments. The correction is as large as the mass beyond the
+  // grid, exp(-49/2) and less.
   EXPECT_LT(most, 1e-9);
 }
 
 TEST(open_ends, pressure_drives_a_flow_down_its_gradient) {
-  // Quasi-one-dimensional flow without walls has no friction: it accelerates until the pressure is that of
-  // both reservoirs less the dynamic one. Mass enters on one side as it leaves on the other.
+  // Quasi-one-dimensional flow without walls has no friction. It accelerates until its pressure is that of
+  // both reservoirs minus the dynamic one. As much mass enters on one side as leaves on the other.
   simulation run(apsis::parse_case(R"toml(
 [model]
 name = "bgk"
@@ -118,12 +120,12 @@ end = 3
   while (!run.finished()) run.advance();
   const auto& flux = run.last().flux;
   EXPECT_GT(flux[0], 0.1);   // mass through the left face into the gas
-  EXPECT_LT(flux[3], -0.1);  // through the right face
+  EXPECT_LT(flux[3], -0.1);  // mass through the right face
   EXPECT_LT(run.summary().conservation_defect, 1e-12);
 }
 
 TEST(open_ends, far_away_disturb_the_drag_of_a_body_less_than_inflow_and_outflow) {
-  // A cylinder at Mach 2 and Kn = 1 in a half plane with ends at 2.5 radii, and at 3 and 4.
+  // A cylinder at Mach 2 and Kn = 1 in a half plane. The ends are at 2.5 radii, and at 3 and 4.
   const auto drag = [](bool far, bool near) {
     std::vector<std::string> overrides = {
         "parameters.Kn=1", "velocity.points=14", "velocity.max=6.5",    "time.method=md-imex-5-2",
@@ -141,9 +143,9 @@ TEST(open_ends, far_away_disturb_the_drag_of_a_body_less_than_inflow_and_outflow
     return apsis::body_loads(run.setup(), run.last()).front().force[0];
   };
   const double far = drag(true, false), given = drag(false, false);
-  // They differ by 1.4e-3; the domain itself costs more.
+  // The drags differ by 1.4e-3. The finite domain changes them more.
   EXPECT_NEAR(far, given, 3e-3 * given);
-  // By 1.0 % and by 2.2 %.
+  // The nearer ends change the drags by 1.0 % and by 2.2 %.
   const double near_far = drag(true, true), near_given = drag(false, true);
   EXPECT_GT(near_given, 1.01 * given);
   EXPECT_LT(std::abs(near_far - far), 0.6 * std::abs(near_given - given));

@@ -1,4 +1,4 @@
-// Order in time on a fixed mesh with ends of every kind: T(u) must be a smooth function of u and t.
+// Order in time on a fixed mesh with ends of every kind. T(u) must be a smooth function of u and t.
 #include <apsis/config/case.hpp>
 #include <apsis/run/simulation.hpp>
 
@@ -13,8 +13,8 @@ namespace order_at_walls_test {
 
 namespace {
 
-/// A gas with ε = .2 + x, which does not have the temperature and velocity of its walls. Without a limiter:
-/// one for f ≥ 0 is not differentiable where it acts.
+/// A gas with ε = .2 + x and other temperature and velocity than its walls. It has no limiter, because one
+/// for f ≥ 0 is not differentiable where it acts.
 const std::string gas = R"toml(
 [model]
 name = "bgk"
@@ -57,7 +57,7 @@ double distance(const std::vector<double>& a, const std::vector<double>& b) {
   return std::sqrt(sum);
 }
 
-/// Slope of the differences between steps of Δt, Δt/2 and Δt/4.
+/// Returns the slope of the differences between steps of Δt, Δt/2 and Δt/4.
 double order_of(const lines& overrides, int steps) {
   const auto coarse = result(overrides, steps), middle = result(overrides, 2 * steps),
              fine = result(overrides, 4 * steps);
@@ -69,7 +69,7 @@ struct end {
   lines values;
 };
 
-/// Ends on the left; the right one is a wall at rest unless it is given.
+/// Ends on the left. The right end is a wall at rest unless it is given.
 const std::vector<end> ends = {
     {"wall at rest", {}},
     {"moving wall", {"boundary.left.kind=diffuse", "boundary.left.velocity=[0, 0.5]"}},
@@ -85,7 +85,7 @@ const std::vector<end> ends = {
     {"given distribution",
      {"boundary.left.kind=given", "boundary.left.g=\"0.15*exp(-(v_x^2+v_y^2)/2)*(1+0.2*sin(15*t))\"",
       "boundary.left.h=\"0.15*exp(-(v_x^2+v_y^2)/2)\""}},
-    // Gas enters in every step: where the flow turns, the state outside jumps from one gas to the other.
+    // Gas enters in every step. If the flow turned, the state outside would jump from one gas to the other.
     {"far field",
      {"boundary.left.kind=far-field", "boundary.left.rho=1.1", "boundary.left.u=[0.3, 0]",
       "boundary.left.T=1"}},
@@ -102,8 +102,8 @@ lines joined(lines a, const lines& b) {
 
 }  // namespace
 
-// Differences of two step sizes have the slope p(1 + O(Δt)); at these steps it is within .1 of p for smooth
-// problems. A kink of T(u) costs half an order or more.
+// Differences of two step sizes have the slope p(1 + O(Δt)). At these steps it is within .1 of p for smooth
+// problems. A kink of T(u) reduces the order by a half or more.
 TEST(order_at_walls, is_three_and_four_at_ends_of_every_kind) {
   for (const end& left : ends) {
     EXPECT_NEAR(order_of(joined(left.values, {"time.method=md-imex-8-3-mixed"}), 20), 3.0, 0.15) << left.name;

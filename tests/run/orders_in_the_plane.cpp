@@ -1,6 +1,6 @@
-// Observed orders in time of gases in the plane, on the same mesh as the reference, so that the error in
-// space cancels. Edge values are linear functions of the state: WENO weights change so fast in time on a
-// coarse mesh that these steps are not yet in the asymptotic range.
+// Observed orders in time of gases in the plane. The reference has the same mesh, so the error in space
+// cancels. Edge values are linear functions of the state. On a coarse mesh WENO weights change so fast in
+// time that these steps are not yet in the asymptotic range.
 #include <apsis/config/case.hpp>
 #include <apsis/run/simulation.hpp>
 
@@ -58,7 +58,7 @@ double mean_distance(const std::vector<double>& a, const std::vector<double>& b)
 
 TEST(orders_in_the_plane, are_those_of_the_method_in_time_at_large_and_vanishing_epsilon) {
   for (const std::string epsilon : {"1", "1e-12"}) {
-    // A method of order 4 in steps that are a quarter of the shortest ones.
+    // The reference is of order 4. Its steps are a quarter of the shortest ones.
     const auto reference = state_after("md-imex-14-4-accurate", epsilon, 64);
     for (const auto& [method, order] : {std::pair{"md-imex-3-2", 2.0},
                                         {"md-imex-6-2-mixed", 2.0},
@@ -68,7 +68,7 @@ TEST(orders_in_the_plane, are_those_of_the_method_in_time_at_large_and_vanishing
                    fine = mean_distance(state_after(method, epsilon, 16), reference);
       RecordProperty(fmt::format("{}_at_{}", method, epsilon),
                      fmt::format("{:.3f}", std::log2(coarse / fine)));
-      // The next term of the error is a hundredth of the first one or less.
+      // The next term of the error is at most a hundredth of the first.
       EXPECT_NEAR(std::log2(coarse / fine), order, 0.02) << method << " " << epsilon << " " << fine;
     }
   }

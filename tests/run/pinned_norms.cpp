@@ -1,7 +1,7 @@
-// Norms of a small version of every built-in case, compared with pinned ones: detects a change of any number
-// that a case depends on, even if no property of the solution reveals it. A new case fails until its norms
-// are pinned.  After an intended change, pin the norms again and review the difference before it is
-// committed:   APSIS_PIN_NORMS=1 build/release/tests/test_run --gtest_filter='*pinned_norms*'
+// Norms of a small version of every built-in case agree with pinned ones. This detects a change of any number
+// of a case, even if no property of the solution reveals it. A new case fails until its norms are pinned.
+// After an intended change, pin the norms again and review the difference before it is committed:
+// APSIS_PIN_NORMS=1 build/release/tests/test_run --gtest_filter='*pinned_norms*'
 #include "cases.hpp"
 
 #include <apsis/config/case.hpp>
@@ -32,29 +32,29 @@ using namespace apsis;
 namespace {
 
 constexpr std::array<const char*, 4> norm_names = {"mean", "rms", "largest", "variation"};
-/// Mean of |u|, root mean square, maximum of |u|, and mean difference of neighbours, the only one sensitive
-/// to a permutation.
+/// Mean of |u|, root mean square, maximum of |u|, and mean difference of neighbours. Only the last one is
+/// sensitive to a permutation.
 using norms = std::array<double, 4>;
 /// Norms of the small version of a case.
 struct case_norms {
-  std::map<std::string, norms> quantities;  ///< of the state and of each field
+  std::map<std::string, norms> quantities;  ///< norms of the state and of each field
   double rounding = 0.0;                    ///< contribution of explicit collisions to the tolerance
 };
 
-// Legitimate differences: the kernels of another instruction set sum in another order and use fma, another
-// compiler or libm rounds exp and pow in another way, and Newton's method for the discrete Maxwellian stops
-// at another iterate. Each is of size 1e-16 to 1e-13 of the largest value per stage; nonlinear weights and
-// ten steps of up to ten stages amplify it. The instruction sets of one machine agree to 1e-13 in practice;
-// 1e-10 leaves a factor of a thousand, and an error in a coefficient is not that small. Methods that evaluate
-// Q explicitly amplify its rounding error by Δt/ε in every step.
+// Some differences are legitimate. Kernels of another instruction set sum in another order and use fma.
+// Another compiler or libm rounds exp and pow differently. Newton's method for the discrete Maxwellian stops
+// at another iterate. Each difference is 1e-16 to 1e-13 of the largest value per stage. Nonlinear weights and
+// ten steps of up to ten stages amplify it. In practice the instruction sets of one machine agree to 1e-13.
+// The tolerance 1e-10 is a thousand times larger, but smaller than an error in a coefficient. Methods that
+// evaluate Q explicitly amplify its rounding error by Δt/ε in every step.
 constexpr double tolerance = 1e-10;
 constexpr long steps = 10;
 
-/// Overrides that make a case small, restricted to keys of its model.
+/// Returns the overrides that make a case small, restricted to keys of its model.
 std::vector<std::string> small_version(const std::string& name) {
   const case_config whole = load_case(name);
   std::vector<std::string> overrides;
-  // Enough for the widest stencil and for the jumps of the data to be several cells apart.
+  // The cells suffice for the widest stencil. Jumps of the data are several cells apart.
   if (whole.places.contains("space.cells") && whole.solids.empty()) {
     constexpr std::array<int, 3> most_cells = {24, 12, 5};
     const int most = enough_cells(whole, most_cells.at(whole.space.cells.size() - 1));
@@ -63,7 +63,7 @@ std::vector<std::string> small_version(const std::string& name) {
     overrides.push_back(cells.size() == 1 ? fmt::format("space.cells={}", cells.front())
                                           : fmt::format("space.cells=[{}]", fmt::join(cells, ",")));
   }
-  // Δv = 1/2: the equilibria of temperatures near 1 are resolved. In space 1.4 must do, for the sake of time.
+  // Δv = 1/2 resolves equilibria with temperatures near 1. In space the coarser density 1.4 saves time.
   const double density = whole.space.cells.size() == 3 ? 1.4 : 4.0;
   if (whole.places.contains("velocity.points"))
     overrides.push_back(fmt::format(
@@ -72,8 +72,8 @@ std::vector<std::string> small_version(const std::string& name) {
   return overrides;
 }
 
-/// Values that are not numbers count as 0: fields have none in solid cells, and one that lost a number has
-/// another mean.
+/// Returns the norms of u, in which NaN counts as 0. Fields have no values in solid cells. If a field lost
+/// another value, its mean would change.
 norms norms_of(std::vector<double> u) {
   norms n{};
   std::replace_if(u.begin(), u.end(), [](double x) { return std::isnan(x); }, 0.0);
@@ -87,7 +87,7 @@ norms norms_of(std::vector<double> u) {
   return {n[0] / count, std::sqrt(n[1] / count), n[2], n[3] / count};
 }
 
-/// The norms after the first steps of a case.
+/// Returns the norms after the first steps of a case.
 case_norms computed(const std::string& name, std::vector<std::string> overrides) {
   simulation run(load_case(name, overrides));
   case_norms all;
@@ -103,9 +103,9 @@ case_norms computed(const std::string& name, std::vector<std::string> overrides)
   return all;
 }
 
-/// Returns how `now` differs from `pinned`, "" if it agrees.
+/// Returns a description of the differences between `now` and `pinned`, "" if they agree.
 std::string difference(const case_norms& pinned, const case_norms& now) {
-  // A field that vanishes by symmetry has rounding errors relative to the state.
+  // If a field vanishes by symmetry, its rounding errors are relative to the state.
   const double scale = now.quantities.at("state")[2];
   std::string text;
   for (const auto& [what, numbers] : now.quantities) {

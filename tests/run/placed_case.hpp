@@ -17,13 +17,14 @@ struct placement {
   std::array<std::size_t, 3> axis = {0, 1, 2};
   std::array<double, 3> sign = {1.0, 1.0, 1.0};
 
-  /// The image of cell (or velocity) i of n along axis k.
+  /// Returns the image of cell (or velocity) i of n along axis k.
   std::size_t image(std::size_t k, std::size_t i, std::size_t n) const {
     return sign[k] > 0.0 ? i : n - 1 - i;
   }
 };
 
-/// A boundary whose formulas are in {X}, {Y}, {Z}, the coordinates before a mapping, {VX}, {VY}, {VZ}, and t.
+/// A boundary with formulas in {X}, {Y}, {Z}, the coordinates before a mapping, in {VX}, {VY}, {VZ},
+/// and in t.
 struct placed_wall {
   std::string kind;
   std::vector<std::pair<std::string, std::string>> scalars;
@@ -31,18 +32,18 @@ struct placed_wall {
   std::vector<std::string> components;
 };
 
-/// A case in a box around the origin, written in coordinates that can be mapped.
+/// A case in a box around the origin whose coordinates can be mapped.
 struct placed_case {
   std::string head;  ///< text that no mapping changes
   std::size_t dimensions;
   std::array<std::size_t, 3> cells;
   std::array<double, 3> half_length;
   placed_wall initial;
-  std::vector<placed_wall> faces;              ///< by their numbers before the mapping
+  std::vector<placed_wall> faces;              ///< walls by face numbers before the mapping
   std::array<std::array<double, 2>, 3> solid;  ///< extent of a solid box
   placed_wall solid_wall;
 
-  /// The text of the case after a mapping.
+  /// Returns the text of the case after a mapping.
   std::string text(const placement& to) const {
     std::array<std::string, 3> numbers, domain, lower, upper;
     for (std::size_t k = 0; k < dimensions; ++k) {
@@ -66,8 +67,8 @@ struct placed_case {
     return all;
   }
 
-  /// The largest difference between a state and the image of another one; both have `sets` sets of points^d
-  /// components.
+  /// Returns the largest difference between a state and the image of another one. Both have `sets` sets of
+  /// points^d components.
   double difference(const std::vector<double>& before, const std::vector<double>& after, const placement& to,
                     std::size_t points, std::size_t sets) const {
     const std::array<std::size_t, 3> n = mapped(cells, to);
@@ -87,7 +88,7 @@ struct placed_case {
  private:
   static constexpr std::array<const char*, 6> names = {"left", "right", "bottom", "top", "back", "front"};
 
-  /// A formula in the coordinates after the mapping.
+  /// Returns a formula in the coordinates after the mapping.
   std::string formula(const std::string& of, const placement& to) const {
     fmt::dynamic_format_arg_store<fmt::format_context> words;
     const std::array<const char*, 3> x = {"X", "Y", "Z"}, v = {"VX", "VY", "VZ"};
@@ -123,7 +124,7 @@ struct placed_case {
     return all;
   }
 
-  /// The number, after the mapping, of a cell among `n`, or of a velocity.
+  /// Returns the number of a cell among `n`, or of a velocity, after the mapping.
   std::size_t image(std::size_t number, const std::array<std::size_t, 3>& n,
                     const std::array<std::size_t, 3>& there, const placement& to) const {
     std::array<std::size_t, 3> at = {0, 0, 0};

@@ -1,4 +1,4 @@
-// Errors that only the assembled simulation can detect are reported at their line and column of the case.
+// Errors that only the assembled simulation can detect have the line and column of the case.
 #include "cases.hpp"
 
 #include <apsis/core/errors.hpp>

@@ -10,10 +10,10 @@
 #include <numbers>
 #include <vector>
 
-/// The limit ε → 0 of a gas on a periodic mesh in the plane, written out with plain loops and independent of
-/// the operators and the stepper of the library: ω = (ρ, ρu_x, ρu_y, 𝓔) of every cell follows
-///   ω_i = r_i ω^n + Σ_j p_ij ω_j + w_ij (ω_j + (Δt/r) L(ω_j)),  L(ω) = −ℛ Σ_k ∂_k (v_k M[ω]),
-/// where ∂_k is the fifth-order WENO difference with Z weights of the upwind flux of every velocity.
+/// The limit ε → 0 of a gas on a periodic mesh in the plane. Plain loops compute it independently of the
+/// operators and the stepper of the library. ω = (ρ, ρu_x, ρu_y, 𝓔) of every cell satisfies
+///   ω_i = r_i ω^n + Σ_j p_ij ω_j + w_ij (ω_j + (Δt/r) L(ω_j)),  L(ω) = −ℛ Σ_k ∂_k (v_k M[ω]).
+/// ∂_k is the fifth-order WENO difference with Z weights of the upwind flux of every velocity.
 class plane_euler_limit {
  public:
   using moments = std::array<double, 4>;
@@ -21,7 +21,7 @@ class plane_euler_limit {
     int nx, ny;              ///< cells
     double hx, hy;           ///< spacings
     double v_max;            ///< velocities on [−v_max, v_max] along both axes
-    int points;              ///< per axis
+    int points;              ///< velocities per axis
     int degrees_of_freedom;  ///< 2, or more: h = (degrees_of_freedom − 2) T g
   };
 
@@ -64,8 +64,8 @@ class plane_euler_limit {
     return w[0] / (2.0 * std::numbers::pi * T) * std::exp(-(a * a + b * b) / (2.0 * T));
   }
 
-  /// The value at the edge between c and d (Jiang & Shu, JCP 126, 1996; weights of Borges et al., JCP 227,
-  /// 2008, with power 2), δ relative to the value of the cell.
+  /// Returns the value at the edge between c and d (Jiang & Shu, JCP 126, 1996). The weights are those of
+  /// Borges et al., JCP 227, 2008, with power 2. δ is relative to the value of the cell.
   static double edge(double a, double b, double c, double d, double e) {
     const double q0 = (2.0 * a - 7.0 * b + 11.0 * c) / 6.0, q1 = (-b + 5.0 * c + 2.0 * d) / 6.0,
                  q2 = (2.0 * c + 5.0 * d - e) / 6.0;
@@ -79,7 +79,7 @@ class plane_euler_limit {
     return (a0 * q0 + a1 * q1 + a2 * q2) / (a0 + a1 + a2);
   }
 
-  /// The upwind value between cells 0 and 1, of values at cells −2 … 3.
+  /// Returns the upwind value between cells 0 and 1, from values at cells −2 … 3.
   template <class Values>
   static double upwind(const Values& f, double v) {
     return v > 0.0 ? edge(f(-2), f(-1), f(0), f(1), f(2)) : edge(f(3), f(2), f(1), f(0), f(-1));
@@ -100,7 +100,7 @@ class plane_euler_limit {
     return sum;
   }
 
-  /// sum ← sum − Δv² φ (v·∇f).
+  /// Adds the term of one velocity: sum ← sum − Δv² φ (v·∇f).
   void add(const std::vector<double>& f, double vx, double vy, const moments& phi,
            std::vector<moments>& sum) const {
     const auto at = [&](int i, int j) {

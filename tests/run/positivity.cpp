@@ -1,4 +1,4 @@
-// Nonnegativity on velocity grids much wider than the support of f: in the tails f passes through subnormal
+// Nonnegativity on velocity grids much wider than the support of f. In the tails f passes through subnormal
 // numbers, below 2.2e-308, where rounding errors are absolute.
 #include "cases.hpp"
 
@@ -16,7 +16,7 @@ namespace positivity_test {
 
 namespace {
 
-/// Runs a method with SSP coefficient r > 0 in steps of r Δt_FE.
+/// Returns true if the method has r > 0, so that it can run with steps r Δt_FE.
 bool is_convex(const apsis::method& m) {
   const auto claimed = m.claims.ssp_coefficient.value_or("0");
   return m.kind != apsis::method_kind::implicit_only && claimed != "0";
@@ -31,7 +31,7 @@ apsis::case_config wide(const std::string& method, const std::string& how, doubl
   return c;
 }
 
-/// Number of subnormal values of a state.
+/// Returns the number of subnormal values of a state.
 long subnormal_values(const std::vector<double>& state) {
   return std::count_if(state.begin(), state.end(),
                        [](double f) { return std::fpclassify(f) == FP_SUBNORMAL; });
@@ -60,7 +60,7 @@ TEST_P(wide_grids, keep_f_nonnegative_with_every_method_at_the_largest_step) {
   const auto [how, max] = GetParam();
   long subnormal = 0, runs = 0;
   for (const auto& method : methods_where(is_convex)) {
-    // Spacing 1.8 or finer: the coldest gas has the thermal speed 0.91.
+    // The spacing is at most 1.8. The coldest gas has the thermal speed 0.91.
     auto c = wide(method, how, max, max < 100.0 ? 300 : 1112);
     apsis::simulation run(c);
     ASSERT_TRUE(run.promises().positivity) << method;

@@ -39,7 +39,7 @@ to = [1, 1, 1]
   ASSERT_EQ(table.columns.at("t").size(), 30U);
   EXPECT_EQ(table.columns.size(), 7U);  // t, s, x, y, z, rho, T
   const auto rho = hdf5_file::open(folder / "o/solution.h5").read("snapshots/rho");
-  // The first two coordinates are the centre of cell (2, 3); along z the points are on the sides of cells.
+  // The first two coordinates are the centre of cell (2, 3). Along z the points are on the sides of cells.
   for (std::size_t k = 0; k < 3; ++k)
     for (std::size_t point = 1; point < 9; ++point) {
       const std::size_t cell = (2 * 7 + 3) * 9 + point;

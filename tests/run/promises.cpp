@@ -35,8 +35,8 @@ TEST(promises, no_negative_value_at_safety_one_for_any_epsilon) {
 }
 
 TEST(promises, beyond_the_limit_nothing_is_promised_and_values_become_negative) {
-  // First-order upwind and almost no collisions: a forward Euler step of 2 Δt_FE gives the cell a negative
-  // weight. An exception of any kind fails the test: the run ends before a temperature is negative.
+  // With first-order upwind and almost no collisions, a forward Euler step of 2 Δt_FE gives the cell a
+  // negative weight. An exception of any kind fails the test. The run ends before a temperature is negative.
   auto c = small("md-imex-3-2", "finite-difference");
   c.space.reconstruction = "upwind1";
   c.space.limiter = apsis::limiter_choice::none;
@@ -50,7 +50,7 @@ TEST(promises, beyond_the_limit_nothing_is_promised_and_values_become_negative) 
   EXPECT_GT(run.last().negative_values, 0);
   EXPECT_LT(run.last().min_value, 0.0);
 
-  // The same case to the same time within the limit stays nonnegative.
+  // Within the limit the same case stays nonnegative up to the same time.
   c.time.safety = 1.0;
   c.time.end = run.t();
   apsis::simulation within(c);
@@ -91,7 +91,7 @@ TEST(promises, follow_from_the_configuration) {
 }
 
 TEST(promises, explicit_collisions_beyond_their_step_do_not_promise_conservation_to_rounding) {
-  // An explicit evaluation of Q/ε has a rounding error, which Δt/ε amplifies in the invariants.
+  // Explicit evaluations of Q/ε have rounding errors. Δt/ε amplifies them in the invariants.
   const auto promises = [](const std::string& method) {
     return apsis::simulation(apsis::load_case("benchmarks/entropy-violation", {"time.method=" + method}))
         .promises();
@@ -151,7 +151,7 @@ TEST(promises, a_formula_with_inexact_moments_disables_the_promise_of_conservati
   upwind.space.reconstruction = "upwind1";
   EXPECT_FALSE(apsis::simulation(upwind).promises().entropy);
 
-  // The discrete Maxwellian conserves on the same grid, and the formula on the grid of the paper.
+  // The discrete Maxwellian conserves on the same grid, and the formula conserves on the grid of the paper.
   c.velocity.equilibrium = apsis::equilibrium_choice::discrete;
   EXPECT_TRUE(apsis::simulation(c).promises().conservation);
   EXPECT_LE(finished(c).conservation_defect, 1e-12);
@@ -235,8 +235,8 @@ TEST(simulation, without_space_is_an_ordinary_differential_equation) {
 }
 
 TEST(simulation, free_flight_is_fifth_order_with_and_without_limiter) {
-  // Almost free flight; differences between meshes of 40, 80 and 160 cells. The time step is proportional to
-  // Δx^{5/3}, so that third order in time does not mask fifth order in space.
+  // Almost free flight on meshes of 40, 80 and 160 cells, whose differences give the order. The time step is
+  // proportional to Δx^{5/3}, so that third order in time does not mask fifth order in space.
   for (const auto& how : both) {
     for (const auto limiter : {apsis::limiter_choice::none, apsis::limiter_choice::positivity}) {
       const auto solution = [&](int n) {
@@ -256,7 +256,7 @@ TEST(simulation, free_flight_is_fifth_order_with_and_without_limiter) {
       const auto difference = [&](const apsis::field_table& a, const apsis::field_table& b) {
         double sum = 0.0;
         for (std::size_t i = 0; i < a.x.size(); ++i) {
-          // Coarse averages are means of two fine ones; point values are interpolated between fine centres at
+          // Coarse averages are means of two fine ones. Point values are interpolated between fine centres at
           // sixth order.
           const auto& f = b.values[0];
           const std::size_t n = f.size();

@@ -11,15 +11,15 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-/// Draws cases of a gas in a plane or in space: every face and every solid box has a boundary of a random
-/// kind, with values that are formulas of the position and of time; boxes touch faces, corners and each
-/// other; parts of the space are nearly empty. No expression draws twice, so that all compilers draw the same
-/// cases.
+/// Draws cases of a gas in a plane or in space. Every face and every solid box has a boundary of a
+/// random kind, with values that are formulas of the position and of time. Boxes touch faces, corners
+/// and each other. Parts of the space are nearly empty. No expression draws twice, so all compilers draw
+/// the same cases.
 class random_boxes {
  public:
   explicit random_boxes(unsigned seed) : random_(seed) {}
 
-  /// A case of 2 or 3 dimensions, which takes the longest step that promises positivity.
+  /// Returns a case of 2 or 3 dimensions with the longest step that promises positivity.
   std::string next(const std::string& model, const std::string& method, int dimensions) {
     d_ = dimensions;
     degrees_ = model == "bgk" ? d_ + below(4) : std::max(d_, 3);
@@ -49,29 +49,29 @@ class random_boxes {
     return from[static_cast<std::size_t>(below(static_cast<int>(from.size())))];
   }
 
-  /// ε from 0 to 1e12, uniform or not.
+  /// Returns ε from 0 to 1e12, uniform or not.
   std::string epsilon() {
     if (below(6) == 0) return "0";
     if (below(4) == 0) return "\"10^(" + text_of(-10.0, 5.0) + " + 5*sin(3*x + 2*y))\"";
     return power(-16.0, 12.0);
   }
-  /// A wave in space and time between −1 and 1.
+  /// Returns a wave in space and time between −1 and 1.
   std::string wave() {
     std::string phase = text_of(-200.0, 200.0) + "*t";
     for (int k = 0; k < d_; ++k) phase += fmt::format(" + {:.2f}*{}", number(-9.0, 9.0), "xyz"[k]);
     return "sin(" + phase + ")";
   }
-  /// A positive formula around a number.
+  /// Returns a positive formula around a number.
   std::string around(const std::string& middle, double amplitude) {
     std::string text = "\"" + middle + "*(1 + ";
     text += text_of(0.0, amplitude) + "*";
     return text + wave() + ")\"";
   }
-  /// A temperature that the velocities hold, which are coarse in space.
+  /// Returns a temperature that the velocities resolve. They are coarse in space.
   std::string temperature() {
     return d_ == 2 ? around(text_of(0.9, 1.3), 0.3) : around(text_of(1.2, 1.7), 0.2);
   }
-  /// A vector of waves; none across an axis.
+  /// Returns a vector of waves whose component across an axis is 0.
   std::string waves(int across) {
     std::string all;
     for (int k = 0; k < d_; ++k) {
@@ -81,13 +81,14 @@ class random_boxes {
     return "[\"" + all + "\"]";
   }
 
-  /// A gas that moves with a temperature from 0.7 to 1.4.
+  /// Returns a moving gas with a temperature from 0.7 to 1.4.
   std::string state(const std::string& rho) {
     std::string text = "rho = " + rho + "\nT = " + text_of(0.7, 1.4) + "\nu = [";
     for (int k = 0; k < d_; ++k) text += text_of(-0.8, 0.8) + ", ";
     return text + "]\n";
   }
-  /// Two halves of the space, one on top of the other, have other states, most of them nearly empty.
+  /// Returns initial data with two half spaces, the second on top of the first. They have other states, most
+  /// of them nearly empty.
   std::string initial() {
     std::string text = "[initial]\n" + state("1");
     for (int half = 0; half < 2; ++half) {
@@ -120,7 +121,8 @@ class random_boxes {
     return text;
   }
 
-  /// A box of at most half of the cells along each axis, so that three leave some; often at a face.
+  /// Returns a box, often at a face, of at most half of the cells along each axis. Three boxes thus leave
+  /// some cells.
   std::string box() {
     std::string from, to;
     for (std::size_t k = 0; k < static_cast<std::size_t>(d_); ++k) {
@@ -132,7 +134,7 @@ class random_boxes {
     return fmt::format("[[space.solid]]\nfrom = [{}]\nto = [{}]\n", from, to) + wall(-1, false);
   }
 
-  /// A boundary of a random kind across an axis, or around a box, which does not move.
+  /// Returns a boundary of a random kind across an axis, or around a box, which does not move.
   std::string wall(int axis, bool moves) {
     const std::string kind = pick(
         {"diffuse", "diffuse", "diffuse", "inflow", "symmetry", "outflow", "far-field", "pressure", "given"});

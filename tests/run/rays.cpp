@@ -1,6 +1,6 @@
-// Rays of discrete velocities: a square of walls of two temperatures without collisions, where the gas is at
-// rest. Walls of densities proportional to 1/sqrt(T) emit the same flux in every direction, so that the
-// momentum of the exact solution vanishes everywhere.
+// Rays of discrete velocities in a square of walls with two temperatures, without collisions. The gas is at
+// rest. Walls with densities proportional to 1/sqrt(T) emit the same flux in every direction. The momentum of
+// the exact solution therefore vanishes everywhere.
 #include <apsis/config/case.hpp>
 #include <apsis/model/velocity_rays.hpp>
 #include <apsis/run/simulation.hpp>
@@ -68,8 +68,8 @@ std::string words_of(const overrides& changes) {
 }  // namespace
 
 TEST(ray_error, falls_with_the_number_of_velocities) {
-  // About as the number of directions of a line to the power 3/2: sums over directions that are not equally
-  // spaced.
+  // The error falls about as the number of directions of a line to the power 3/2, because sums over
+  // directions are not equally spaced.
   for (const char* set : {"uniform", "graded"})
     for (const int n : {16, 24, 40}) {
       const double order = std::log2(ray_error(set, n, 6.5) / ray_error(set, 2 * n, 6.5));
@@ -79,7 +79,7 @@ TEST(ray_error, falls_with_the_number_of_velocities) {
 }
 
 TEST(ray_error, is_that_of_a_sum_over_sectors) {
-  // The same by sorting all velocities by their angle, at angles between those of the function.
+  // The expected error sorts all velocities by their angle. Its angles lie between those of the function.
   const velocity_line of = line("graded", 32, 6.5);
   const double pi = std::acos(-1.0);
   double total = 0.0;
@@ -112,7 +112,7 @@ TEST(rays, of_a_free_molecular_square_are_as_large_as_announced) {
   const auto &u = fields.values[1], &v = fields.values[2];
   for (std::size_t cell = 0; cell < u.size(); ++cell) sum += u[cell] * u[cell] + v[cell] * v[cell];
   const double noise = std::sqrt(sum / static_cast<double>(u.size()));
-  // The largest jump is that of √T log T, and the mesh smooths the rays.
+  // The largest jump is that of √T log T. The mesh smooths the rays.
   const double announced = ray_error("graded", 16, 6.5) * std::log(1.2);
   EXPECT_GT(noise, 0.2 * announced);
   EXPECT_LT(noise, 1.2 * announced);
@@ -129,9 +129,9 @@ TEST(rays, are_announced_before_a_run_with_more_velocities) {
 
 TEST(rays, are_not_announced_where_there_are_none) {
   const auto silent = Not(HasSubstr("rays"));
-  EXPECT_THAT(words_of({"boundary.top.T=1"}), silent);    // one gas from all walls
+  EXPECT_THAT(words_of({"boundary.top.T=1"}), silent);    // all walls emit the same gas
   EXPECT_THAT(words_of({"model.epsilon=0.01"}), silent);  // collisions remove the jump
-  EXPECT_THAT(words_of({"velocity.points=80"}), silent);  // enough directions
+  EXPECT_THAT(words_of({"velocity.points=80"}), silent);  // enough velocity directions
 }
 
 }  // namespace rays_test

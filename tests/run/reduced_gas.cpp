@@ -19,7 +19,7 @@ using apsis::parse_case;
 using apsis::simulation;
 using test_support::shock_tube;
 
-/// Density, velocity and temperature after a run, [field][cell].
+/// Returns density, velocity and temperature after a run, [field][cell].
 std::vector<std::vector<double>> fields_after(const std::string& text,
                                               const std::vector<std::string>& overrides) {
   const auto config = parse_case(text, "c.toml", overrides);
@@ -53,8 +53,8 @@ TEST(reduced_gas, agrees_with_a_gas_whose_velocities_are_all_resolved) {
       const auto reduced = fields_after(text, {option, fmt::format("model.velocity_dimensions={}", d)});
       const std::size_t T = static_cast<std::size_t>(d) + 1;
       for (std::size_t cell = 0; cell < 8; ++cell) {
-        // Linear reconstructions commute with the integral over unresolved components, so that the reduction
-        // is exact up to the midpoint rule over these: Δv = 0.8, T ≥ 0.8, exp(−2π² T/Δv²) = 2e-11.
+        // Linear reconstructions commute with the integral over unresolved components. The reduction is thus
+        // exact up to the midpoint rule over these components: Δv = 0.8, T ≥ 0.8, exp(−2π² T/Δv²) = 2e-11.
         EXPECT_NEAR(reduced[0][cell], full[0][cell], 1e-9) << d << rate;
         EXPECT_NEAR(reduced[1][cell], full[1][cell], 1e-9) << d << rate;
         EXPECT_NEAR(reduced[T][cell], full[4][cell], 1e-9) << d << rate;
@@ -81,7 +81,7 @@ TEST(reduced_gas, becomes_a_perfect_gas_with_its_ratio_of_specific_heats) {
       error += std::abs(rho[cell] - right.density(xi)) / 200;
       of_wrong += std::abs(rho[cell] - wrong.density(xi)) / 200;
     }
-    // A shock and a contact of jumps 0.1 to 0.25, captured within some three cells of 1/200 each.
+    // A shock and a contact with jumps of 0.1 to 0.25 are captured within some three cells of 1/200 each.
     EXPECT_LT(error, 4e-3) << D;
     EXPECT_LT(2.0 * error, of_wrong) << D;
   }

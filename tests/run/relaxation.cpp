@@ -1,4 +1,4 @@
-// The relaxation system on a mesh, compared with exact solutions of its limiting conservation laws.
+// The relaxation system on a mesh agrees with exact solutions of its limiting conservation laws.
 #include "cases.hpp"
 
 #include <apsis/config/case_json.hpp>
@@ -20,7 +20,7 @@ apsis::simulation finished_run(const std::string& name, const std::vector<std::s
   return run;
 }
 
-/// Smooth solution of u_t + u u_x = 0 with u(0, x) = 0.4 + 0.3 sin πx: u = u₀(x − u t).
+/// Returns the smooth solution u = u₀(x − u t) of u_t + u u_x = 0 with u(0, x) = 0.4 + 0.3 sin πx.
 double burgers(double t, double x) {
   double u = 0.4;
   for (int k = 0; k < 50; ++k) {
@@ -33,7 +33,7 @@ double burgers(double t, double x) {
 }  // namespace
 
 TEST(relaxation, converges_to_burgers_equation_at_the_order_of_the_method) {
-  // Point values compared with the solution by characteristics. At Δt ~ Δx third order in time is visible
+  // Point values agree with the solution by characteristics. At Δt ~ Δx third order in time is visible,
   // because the space error is of fifth order.
   const auto error = [](int cells) {
     const auto fields =
@@ -66,7 +66,7 @@ TEST(relaxation, a_linear_flux_advects_the_data_with_its_slope) {
 TEST(relaxation, buckley_leverett_has_its_shock_at_the_position_of_the_tangent_construction) {
   const auto run = finished_run("relaxation-buckley-leverett", {});
   const auto fields = run.fields();
-  // u*² = M/(1 + M); the shock from u* to 0 has the speed F(u*)/u*.
+  // u*² = M/(1 + M). The shock from u* to 0 has the speed F(u*)/u*.
   const double star = std::sqrt(0.5 / 1.5);
   const double F = star * star / (star * star + 0.5 * (1 - star) * (1 - star));
   const double shock = 0.4 * F / star, cell = 0.01;
@@ -78,8 +78,8 @@ TEST(relaxation, buckley_leverett_has_its_shock_at_the_position_of_the_tangent_c
       EXPECT_GT(fields.values[0][i], star - 0.01) << fields.x[i];
     }
   }
-  EXPECT_TRUE(run.promises().conservation);  // together with what crosses the ends
-  // Balance of mass: inflow with flux F(1) = 1, no outflow.
+  EXPECT_TRUE(run.promises().conservation);  // including the flux through the ends
+  // Mass enters with the flux F(1) = 1, and none leaves.
   double mass = 0.0;
   for (const double u : fields.values[0]) mass += cell * u;
   EXPECT_NEAR(mass, 0.5 + 0.4, 1e-10);

@@ -1,5 +1,5 @@
-// A run continued from a checkpoint gives the bits of an uninterrupted one, for every registered method and
-// model; a damaged checkpoint is refused.
+// A run continued from a checkpoint has the bits of an uninterrupted one, for every registered method and
+// model. A damaged checkpoint is refused.
 #include "same_results.hpp"
 
 #include <apsis/config/case.hpp>
@@ -31,7 +31,7 @@ using testing::HasSubstr;
 
 namespace {
 
-/// Ten steps of a small mesh.
+/// Returns a case of ten steps on a small mesh.
 std::string small_case(const model_entry& model, const std::string& method, const std::string& more) {
   std::string text = "[model]\nname = \"" + model.name + "\"\n";
   if (prototype(model).has_relaxation_time()) text += "epsilon = 1e-3\n";
@@ -41,7 +41,7 @@ std::string small_case(const model_entry& model, const std::string& method, cons
   return text + "[output]\nevery = 0.011\n";
 }
 
-/// Runs until the total number of steps is `steps`, or to the end, and leaves a checkpoint in the folder.
+/// Runs until the total number of steps is `steps`, or to the end. Leaves a checkpoint in the folder.
 outcome run(const case_config& c, const std::string& folder, long steps,
             std::optional<std::string> restart = {}) {
   session_options how;
@@ -65,7 +65,7 @@ void write_bytes(const std::string& path, const std::string& bytes) {
   std::ofstream(path, std::ios::binary) << bytes;
 }
 
-/// Why a file is refused; "" if it is accepted.
+/// Returns the reason why a file is refused, or "" if it is accepted.
 std::string refusal(const std::string& path) {
   try {
     static_cast<void>(read_checkpoint(path));
@@ -75,7 +75,7 @@ std::string refusal(const std::string& path) {
   return {};
 }
 
-/// The path of a small checkpoint.
+/// Writes a small checkpoint and returns its path.
 std::string some_checkpoint(const test_folder& folder) {
   run(parse_case(small_case(find_model("ode"), "md-imex-3-2", ""), "case"), folder / "some", 2);
   return folder / "some/checkpoint.h5";
@@ -101,9 +101,9 @@ TEST_P(restart, continues_bit_for_bit_with_every_method_from_any_step) {
           << refused.what();
       continue;
     } catch (const numerical_error& failure) {
-      // Explicit methods are unstable beyond Δt = O(ε); no other method may fail.
+      // Explicit methods are unstable beyond Δt = O(ε). No other method may fail.
       EXPECT_EQ(find_method(name).kind, method_kind::explicit_only) << name << ": " << failure.what();
-      // An unstable state becomes NaN, or a gas beyond the velocities.
+      // An unstable state becomes NaN, or a gas too hot for the velocities.
       EXPECT_THAT(failure.problem(), testing::AnyOf(testing::HasSubstr("a smaller step"),
                                                     testing::HasSubstr("a larger velocity.max")));
       continue;
@@ -146,7 +146,7 @@ TEST(restart_from, a_kill_keeps_the_snapshots_of_the_distribution_even_if_the_co
   const auto c = parse_case(small_case(model, "md-imex-3-2", "") + "distribution = \"snapshots\"\n", "case");
   run(c, folder / "whole", 1000);
   run(c, folder / "o", 6);
-  // The files that a killed run leaves.
+  // Restore the names of files that a killed run leaves.
   std::filesystem::rename(folder / "o/snapshots", folder / "o/.snapshots.partial");
   {
     session_options how;
@@ -190,7 +190,7 @@ TEST(a_checkpoint, with_any_bit_flipped_is_refused) {
   std::mt19937 random(1);
   for (std::size_t at = 0; at < whole.size(); ++at)
     for (unsigned bit = 0; bit < 8; ++bit) {
-      // Every bit of the seal, and one bit of each of the other bytes.
+      // All bits of the seal are flipped, and one bit of each other byte.
       if (at >= seal_length && bit != 0) continue;
       const unsigned which = at < seal_length ? bit : random() % 8;
       std::string changed = whole;
@@ -209,7 +209,7 @@ TEST(a_checkpoint, of_another_kind_or_version_is_refused_with_the_reason) {
   bad_input::expect_refused({{[&] { static_cast<void>(read_checkpoint(folder / "text.h5")); },
                               {"its header is missing or damaged"},
                               4}});
-  // A valid, sealed checkpoint of another version.
+  // A checkpoint of another version, valid and sealed.
   const std::string path = some_checkpoint(folder);
   seal(path, "checkpoint", "0.0.7");
   bad_input::expect_refused({{[&] { static_cast<void>(read_checkpoint(path)); },

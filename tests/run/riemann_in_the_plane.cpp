@@ -1,5 +1,5 @@
-// Four states at rest that meet in a corner: away from it the flow along every side of the domain is that of
-// a shock tube, whose exact solution is known in the limit ε → 0.
+// Four states at rest meet in a corner. Away from it the flow along every side of the domain is that of a
+// shock tube. Its exact solution is known in the limit ε → 0.
 #include "laws.hpp"
 
 #include <array>
@@ -17,7 +17,7 @@ namespace {
 struct state {
   double rho, p;
 };
-/// Below left, below right, above left, above right.
+/// The states below left, below right, above left and above right.
 constexpr std::array<state, 4> corners = {{{1.0, 1.0}, {0.5, 0.4}, {0.6, 0.5}, {0.3, 0.15}}};
 
 const char* const four_states = R"toml(
@@ -40,7 +40,7 @@ end = 0.12
 cfl = 0.8
 )toml";
 
-/// Errors in L1 of the density in the cells along the lower, upper, left and right side.
+/// Returns the L1 errors of the density in the cells along the lower, upper, left and right side.
 std::array<double, 4> errors_along_sides(int n) {
   const auto run = finished_run(four_states, {fmt::format("space.cells=[{0},{0}]", n)});
   const auto fields = run.fields();
@@ -67,14 +67,14 @@ void expect_shock_tubes(int n) {
   for (std::size_t side = 0; side < 4; ++side) {
     testing::Test::RecordProperty(fmt::format("side_{}", side),
                                   fmt::format("{:.4f} {:.4f}", coarse[side], fine[side]));
-    // Shocks and contacts are smeared over a few cells; contacts narrow more slowly than cells.
+    // Shocks and contacts are smeared over a few cells. Contacts narrow more slowly than cells.
     EXPECT_GT(std::log2(coarse[side] / fine[side]), 0.5) << side << ": " << coarse[side] << " " << fine[side];
     all_coarse += coarse[side];
     all_fine += fine[side];
   }
   EXPECT_GT(std::log2(all_coarse / all_fine), 0.8);
   EXPECT_LT(all_fine,
-            4.0 * 0.4 / (2 * n));  // 0.4 of a cell along each side, whose states differ by 0.2 to 0.5
+            4.0 * 0.4 / (2 * n));  // 0.4 of a cell along each side; states differ by 0.2 to 0.5
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// The record of the state of a run: checkpoint, history and manifest contain every number of it.
+// Checkpoint, history and manifest contain every number of the state of a run.
 #include <apsis/run/manifest.hpp>
 #include <apsis/run/records.hpp>
 
@@ -15,7 +15,7 @@ namespace run_state_test {
 
 namespace {
 
-/// A run stopped in the middle, to a tolerance or with a graded start.
+/// Returns a run stopped in the middle, to a tolerance or with a graded start.
 apsis::simulation started_run(const std::string& more = "time.tolerance=1e-4") {
   apsis::simulation run(
       apsis::load_case("paper/ode", {"time.method=md-imex-6-3", "model.epsilon=1e-3", more}));
@@ -28,7 +28,7 @@ double as_double(const Number& x) {
   return static_cast<double>(x);
 }
 
-/// All numbers by group and name.
+/// Returns all numbers by group and name.
 std::map<std::string, double> numbers_of(const apsis::run_state& state) {
   std::map<std::string, double> all;
   apsis::run_state::visit_records(state, [&all](const std::string& group, const auto& record) {
@@ -57,12 +57,11 @@ TEST(run_state, survives_a_checkpoint_with_every_number) {
     const apsis::run_records records(run);
     const apsis::run_state before = run.save();
     auto written = make_checkpoint(run, records);
-    written.history.rows.push_back(
-        row_of(before.last));  // the records of this test contain the first row only
+    written.history.rows.push_back(row_of(before.last));  // the records of this test have only the first row
     const apsis::run_state after = to_run_state(written);
     EXPECT_EQ(numbers_of(after), numbers_of(before));
     EXPECT_EQ(after.unknowns, before.unknowns);
-    // Compared as text, where NaN (the entropy of this model) equals NaN.
+    // The comparison is by text, in which NaN (the entropy of this model) equals NaN.
     EXPECT_EQ(fmt::format("{}", fmt::join(row_of(after.last), " ")),
               fmt::format("{}", fmt::join(row_of(before.last), " ")));
     EXPECT_EQ(written.numbers.size(), numbers_of(before).size() + 1) << "and the stride of the history";
@@ -75,7 +74,7 @@ TEST(run_state, a_missing_or_wrong_number_is_a_damaged_checkpoint) {
   const auto run = started_run();
   const auto written = make_checkpoint(run, apsis::run_records(run));
   for (const auto& [name, value] : written.numbers) {
-    if (name == "history.stride" || name == "control.proposed") continue;  // its absence: no tolerance
+    if (name == "history.stride" || name == "control.proposed") continue;  // absent without a tolerance
     auto lacking = written;
     lacking.numbers.erase(name);
     EXPECT_THROW(to_run_state(lacking), apsis::io_error) << name;
@@ -95,7 +94,7 @@ TEST(run_state, the_manifest_contains_every_total_and_the_history_every_check) {
   const apsis::run_summary totals = run.summary();
   apsis::run_summary::visit_members(totals, [&](const char* name, const auto& x) {
     ASSERT_TRUE(manifest["result"].contains(name)) << name;
-    if (manifest["result"][name].is_null()) return;  // max_entropy_increase, for a model without entropy
+    if (manifest["result"][name].is_null()) return;  // null without entropy
     EXPECT_EQ(manifest["result"][name].template get<double>(), as_double(x)) << name;
   });
   const auto columns = apsis::run_records(run).history().columns;

@@ -47,7 +47,7 @@ TEST(results_in_space, have_the_shape_of_the_mesh_with_x_slowest) {
     EXPECT_EQ(file.extents("fields/rho"), cells);
     EXPECT_EQ(file.extents("snapshots/T"), with_snapshots);
     EXPECT_EQ(file.extents("geometry/centres"), with_coordinates);
-    // The first snapshot is the initial density, an affine function of x, y and z.
+    // The first snapshot is the initial density, which is affine in x, y and z.
     const std::vector<double> slopes = d == 2 ? std::vector{0.2, 0.3} : std::vector{0.1, 0.02, 0.003};
     std::vector<mesh_axis> axes;
     for (std::size_t k = 0; k < d; ++k) {
@@ -65,7 +65,7 @@ TEST(results_in_space, have_the_shape_of_the_mesh_with_x_slowest) {
         EXPECT_EQ(points[3 * cell + k], x);
         EXPECT_EQ(table.columns.at(axes[k].name)[cell], x);
       }
-      // Sums over velocities lose a few roundings of 2e-16.
+      // Sums over velocities have a few rounding errors of 2e-16.
       EXPECT_NEAR(rho[cell], expected, 1e-13) << cell;
       EXPECT_EQ(table.columns.at("rho")[cell], rho[cell]);
       EXPECT_EQ(points[3 * cell + 2], d == 2 ? 0.0 : centre_of_cell(axes, cell, d - 1));
@@ -105,7 +105,7 @@ TEST(f_at_chosen_points, is_that_of_the_cells_that_contain_them) {
     EXPECT_FALSE(some.has("f"));
     ASSERT_EQ(some.extents("points/f"), (shape{3, 144}));
     const auto f = all.read("f"), rows = some.read("points/f"), x = all.read("x"), y = all.read("y");
-    // Of the cells of width 1/7 and 1/3: (3, 3), and those in two corners.
+    // The points lie in cells of width 1/7 and 1/3: in cell (3, 3) and in those at two corners.
     const std::vector<std::array<std::size_t, 2>> cells = {{3, 3}, {6, 5}, {0, 0}};
     for (std::size_t point = 0; point < 3; ++point) {
       const auto [i, j] = cells[point];
@@ -143,7 +143,8 @@ TEST(memory_need, of_a_run_that_does_not_fit_is_refused_with_the_sizes_that_woul
   const case_config c = parse_case(in_plane, "case.toml", {"space.cells=[70, 60]"});
   const memory_need need(run_setup(c), 2);
   EXPECT_EQ(need.bytes(), bytes({"space.cells=[70, 60]"}));
-  // A hundred times the cells, and ten times the rows at their ends: those are less than a tenth of all here.
+  // There are a hundred times as many cells, and ten times as many rows at their ends. The latter are less
+  // than a tenth of all here.
   EXPECT_LT(need.bytes(), 100.0 * bytes({}));
   EXPECT_GT(need.bytes(), 90.0 * bytes({}));
   EXPECT_THAT(need.text(), HasSubstr("70 x 60 cells x 144 unknowns"));
@@ -180,12 +181,12 @@ TEST(results_in_space, are_initial_data_of_another_run_on_the_same_mesh) {
   run_into(folder / "o", in_plane + "[output]\nevery = 0.001\ndistribution = \"snapshots\"\n");
   const std::string from = "initial.file=" + (folder / "o/solution.h5");
   const auto state_at_start = [](const case_config& c) { return simulation(c).state(); };
-  // The unknowns bit for bit, at the end and at an earlier time.
+  // The data are the unknowns bit for bit, at the end and at an earlier time.
   const auto end = hdf5_file::open(folder / "o/solution.h5").read("f");
   EXPECT_EQ(state_at_start(parse_case(in_plane, "case.toml", {from})), end);
   EXPECT_EQ(state_at_start(parse_case(in_plane, "case.toml", {from, "initial.time=0.001"})),
             hdf5_file::open(folder / "o/snapshots/f-000000001.h5").read("f"));
-  // Equilibria with the fields of a table; a region above them.
+  // From a table the data are equilibria with its fields. A region replaces some of them.
   const std::string table = "initial.file=" + (folder / "o/fields.csv");
   const auto fields = simulation(parse_case(in_plane, "case.toml", {table})).fields();
   const auto rho = hdf5_file::open(folder / "o/solution.h5").read("fields/rho");

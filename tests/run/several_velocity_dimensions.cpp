@@ -1,4 +1,4 @@
-// Results of runs with two and three velocity dimensions contain every component of the velocity.
+// Results of runs with two and three velocity dimensions have every component of the velocity.
 #include "cases.hpp"
 #include "same_results.hpp"
 #include "xdmf_grids.hpp"
@@ -56,13 +56,13 @@ struct moving_gas {
         T(1.1 + 0.1 * std::cos(std::numbers::pi * x)),
         u{0.3 * std::cos(std::numbers::pi * x), -0.4 * std::sin(std::numbers::pi * x), 0.25} {}
 
-  /// The factor of v_k in the Maxwellian, and ρ times it is its marginal.
+  /// Returns the factor of v_k in the Maxwellian. Times ρ it is the marginal.
   double along(std::size_t k, double v) const {
     return std::exp(-0.5 * (v - u.at(k)) * (v - u.at(k)) / T) / std::sqrt(2.0 * std::numbers::pi * T);
   }
 };
 
-/// The Maxwellian of the gas in every cell, the first velocity component slowest.
+/// Returns the Maxwellian of the gas in every cell, the first velocity component slowest.
 std::vector<double> maxwellians(int dimensions, const std::vector<double>& x) {
   std::vector<double> f;
   const std::size_t n = points, second = dimensions > 1 ? n : 1, third = dimensions > 2 ? n : 1;
@@ -77,7 +77,7 @@ std::vector<double> maxwellians(int dimensions, const std::vector<double>& x) {
   return f;
 }
 
-/// Writes the results of a run that is stopped in this state before its first step.
+/// Writes the results of a run that stops in this state before its first step.
 std::string results_of_moving_gas(const test_folder& folder, const case_config& c) {
   simulation run(c);
   auto saved = run.save();
@@ -143,7 +143,7 @@ TEST(several_velocity_dimensions, store_every_component_of_the_bulk_velocity) {
     for (std::size_t k = 0; k < static_cast<std::size_t>(d); ++k) {
       const auto u = file.read("fields/" + names[k]);
       for (std::size_t i = 0; i < x.size(); ++i) {
-        // Δv = 3/4 and v_max = 9: truncation and aliasing are below 1e-12.
+        // With Δv = 3/4 and v_max = 9, truncation and aliasing are below 1e-12.
         EXPECT_NEAR(u[i], moving_gas(x[i]).u.at(k), 1e-11) << names[k] << " " << i;
         // Moments of the stored f with the stored velocities and weights are the same.
         double mass = 0.0, momentum = 0.0;
@@ -193,7 +193,7 @@ TEST(several_velocity_dimensions, are_described_as_grids_with_monotone_axes) {
     EXPECT_EQ(whole.size(), d < 3 ? 3U : 0U) << d;
     EXPECT_EQ(marginal.size(), d > 1 ? 3U : 0U) << d;
     EXPECT_EQ(of_name(grids, "marginal_v_z").size(), d > 2 ? 3U : 0U) << d;
-    // Two of six cells, and all velocities.
+    // The grid has two of six cells and all velocities.
     for (const auto& one : whole)
       EXPECT_EQ(one.points, (std::vector<std::size_t>{d == 1 ? 1U : 2U, d == 1 ? 2U : points, points}));
     for (const auto& one : marginal) EXPECT_THAT(one.points, ElementsAre(1, 2, points));

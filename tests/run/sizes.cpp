@@ -1,4 +1,4 @@
-// Sizes at the limits of the index types, without allocating the memory.
+// Sizes at the limits of the index types. The tests do not allocate the memory.
 #include "cases.hpp"
 
 #include <apsis/core/errors.hpp>
@@ -70,7 +70,7 @@ TEST(sizes, blocks_of_the_longest_range_cover_it) {
 }
 
 TEST(sizes, a_row_of_a_million_velocities_is_transported) {
-  // The product of columns and vectors of a row is 32 768 times 131 072 here, beyond 32 bits.
+  // The product of columns and vectors of a row is 32 768 times 131 072 here, which exceeds 32 bits.
   auto c = small("ssprk-3-3", "finite-difference");
   c.model.epsilon = "1e12";
   c.space.cells = {7};
@@ -82,7 +82,7 @@ TEST(sizes, a_row_of_a_million_velocities_is_transported) {
   apsis::simulation run(c);
   run.advance();
   EXPECT_LE(run.last().conservation_defect[0], 1e-13);
-  EXPECT_GE(run.last().min_value, -1e-15);  // undershoots of WENO where f is zero to rounding
+  EXPECT_GE(run.last().min_value, -1e-15);  // undershoots of WENO where f is zero up to rounding
 }
 
 }  // namespace sizes_test

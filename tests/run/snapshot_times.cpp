@@ -1,5 +1,5 @@
-// Snapshots are taken exactly at the requested times with every step rule, and a finished run continued to a
-// later end gives the bits of an uninterrupted one.
+// Snapshots are taken exactly at the requested times with every step rule. A finished run that continues to a
+// later end has the bits of an uninterrupted one.
 #include "same_results.hpp"
 
 #include <apsis/config/case.hpp>
@@ -18,7 +18,7 @@ using namespace apsis;
 
 namespace {
 
-/// A small gas; `rule` is the step rule.
+/// Returns the case of a small gas with a step rule.
 case_config gas_with(const std::string& rule, double end, double every) {
   std::string text = R"([model]
 name = "bgk"
@@ -82,12 +82,12 @@ TEST(snapshots, shorten_no_step_by_more_than_half_and_lengthen_none) {
   const auto with = longest_of(gas_with("cfl = 0.07", 1.0, 0.1)),
              without = longest_of(gas_with("cfl = 0.07", 1.0, 0.0));
   const double dt = without[1][2];
-  // Every step except the last, which ends at time.end.
+  // The last step ends at time.end and is not compared.
   for (std::size_t n = 1; n + 1 < with.size(); ++n) {
     EXPECT_LE(with[n][2], dt);
     EXPECT_GE(with[n][2], 0.5 * dt);
   }
-  // Ten intervals, each with less than one additional step.
+  // Each of ten intervals has less than one additional step.
   EXPECT_LT(with.size(), without.size() + 10);
 }
 

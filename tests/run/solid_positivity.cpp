@@ -1,5 +1,5 @@
-// Nonnegativity and conservation of gases in the plane and in space between boundaries of all kinds and solid
-// boxes, for every convex method, over more than 1e9 point·stages.
+// Gases in the plane and in space between boundaries of all kinds and solid boxes stay nonnegative and
+// conserve, for every convex method. Runs have more than 1e9 point·stages.
 #include "longest_steps.hpp"
 #include "random_boxes.hpp"
 
@@ -21,8 +21,8 @@ namespace solid_positivity_test {
 
 namespace {
 
-/// Takes steps; false if an open end has a state that is too cold for the velocities, or a gas becomes too
-/// hot for them, which ends a run.
+/// Takes steps. Returns false if an open end is too cold for the velocities, or a gas too hot; either
+/// ends a run.
 bool advance(apsis::simulation& run, int steps, const std::string& text) {
   try {
     for (int step = 0; step < steps; ++step) run.advance();
@@ -35,8 +35,8 @@ bool advance(apsis::simulation& run, int steps, const std::string& text) {
   return true;
 }
 
-/// Runs cases with all convex methods in turn until those that reach their end have this many point·stages.
-/// Every other case has steps r Δt_FE, and those between them the longest that are linearly stable.
+/// Runs cases with all convex methods in turn. The completed runs must have this many point·stages. Every
+/// other case has steps r Δt_FE. The cases in between have the longest steps that are linearly stable.
 void expect_nonnegative(const std::vector<std::string>& models, int dimensions, int steps,
                         double point_stages, unsigned seed) {
   random_boxes cases(seed);
@@ -60,8 +60,8 @@ void expect_nonnegative(const std::vector<std::string>& models, int dimensions, 
       done += static_cast<double>(run.step()) * static_cast<double>(run.state().size()) *
               static_cast<double>(apsis::find_method(method).stages());
   }
-  // The first molecules that cross an empty cell in one long step are hot and fast there. Runs that end for
-  // them are not counted as point·stages, and are fewer than those that do not.
+  // The first molecules that cross an empty cell in one long step are hot and fast there. They may end a run.
+  // Such runs do not count, and fewer runs end than complete.
   EXPECT_LE(ended, runs);
   std::printf(
       "%d dimensions: %d runs and %d that the velocities ended, %.3g point stages, 0 negative values, "
@@ -72,7 +72,7 @@ void expect_nonnegative(const std::vector<std::string>& models, int dimensions, 
 }  // namespace
 
 TEST(solid_positivity, is_lost_in_steps_a_quarter_longer_than_promised) {
-  // The bound on the step matters: the cases are not those in which nothing could become negative.
+  // The bound on the step matters: with longer steps the cases become negative.
   random_boxes cases(7);
   int negative = 0;
   for (int k = 0; k < 6; ++k) {

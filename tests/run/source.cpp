@@ -67,7 +67,7 @@ TEST(source, gives_its_mass_momentum_and_energy) {
     EXPECT_FALSE(run.promises().entropy);
     finish(run);
     EXPECT_LT(run.summary().conservation_defect, 1e-14);
-    // Of a rate that is constant in time; sines have no sum over equidistant cells.
+    // The rate is constant in time. Sums of sines over equidistant cells vanish.
     EXPECT_NEAR(received(run, "source", "mass"), 0.5, 1e-14);
     EXPECT_NEAR(received(run, "source", "momentum"), 0.5 * 0.4, 1e-14);
     EXPECT_NEAR(received(run, "source", "energy"), 0.5 * 0.5 * (0.16 + 3.0 * 1.5), 1e-14);
@@ -88,7 +88,7 @@ TEST(source, closes_the_balance_with_a_force_and_heated_walls) {
 }
 
 TEST(source, has_the_order_of_the_method_in_time) {
-  // The mass of the gas is the integral of the source, by the quadrature of the stages.
+  // The mass of the gas is the integral of the source by the quadrature of the stages.
   const auto error = [](int steps) {
     simulation run = run_of("[source]\nrho = \"(1 - exp(-4*t))^2\"\nT = 1\n",
                             {fmt::format("time.dt={:.17g}", 0.5 / steps), "space.limiter=none"});
@@ -96,13 +96,13 @@ TEST(source, has_the_order_of_the_method_in_time) {
     const double exact = 0.5 - (1.0 - std::exp(-2.0)) / 2.0 + (1.0 - std::exp(-4.0)) / 8.0;
     return std::abs(received(run, "source", "mass") - exact);
   };
-  // The next term changes the slope by a tenth at these steps.
+  // At these steps the next term changes the slope by a tenth.
   EXPECT_NEAR(std::log2(error(40) / error(80)), 3.0, 0.15);
 }
 
 TEST(source, has_its_limit_solution_with_third_order) {
-  // As ε → 0 a gas at rest stays so if its pressure is uniform: with the rate s = 1 + sin(2πx)/2 at the
-  // temperature 1/s the pressure is 1 + t, and the density 1 + 0.3 cos(2πx) + ts.
+  // As ε → 0 a gas at rest stays at rest if its pressure is uniform. With the rate s = 1 + sin(2πx)/2 and the
+  // temperature 1/s the pressure is 1 + t. The density is 1 + 0.3 cos(2πx) + ts.
   const std::string more = "[source]\nrho = \"1 + sin(2*pi*x)/2\"\nT = \"1/(1 + sin(2*pi*x)/2)\"\n";
   const auto error = [&](int cells) {
     simulation run =
@@ -137,8 +137,8 @@ TEST(source, flows_out_at_its_rate_in_the_steady_state) {
 }
 
 TEST(source, is_a_function_of_the_velocity) {
-  // By the formula of a Maxwellian in g and h it is the source of its moments, up to the mass beyond the
-  // grid.
+  // If g and h have the formula of a Maxwellian, the source is that of its moments, up to the mass
+  // beyond the grid.
   simulation f = run_of(
                  "[source]\ng = \"(1 + t)*exp(-(v_x - 0.3)^2/2)/sqrt(2*pi)\"\nh = \"2*(1 + t)*exp(-(v_x - "
                  "0.3)^2/2)/sqrt(2*pi)\"\n"),
@@ -150,14 +150,14 @@ TEST(source, is_a_function_of_the_velocity) {
 }
 
 TEST(source, that_becomes_negative_ends_the_run) {
-  // At a later time only the run can know.
+  // The source becomes negative at a later time, which only the run can detect.
   simulation run = run_of("[source]\nrho = \"0.01 - t\"\nT = 1\n");
   EXPECT_THROW(finish(run), apsis::numerical_error);
 }
 
 namespace {
 
-/// Shallow water on 40 cells with a source.
+/// Returns a case of shallow water on 40 cells with a source.
 std::string water_with(const std::string& source, const std::string& step = "cfl = 0.5") {
   return fmt::format(R"toml(
 [model]
@@ -190,7 +190,7 @@ simulation finished(const std::string& text, const std::vector<std::string>& ove
 }  // namespace
 
 TEST(source, of_a_law_depends_on_its_variables) {
-  // Uniform water with friction −3q|q|/h: q' = −3q² from 1/2. Without a source of h, which stays 1.
+  // Uniform water with the friction −3q|q|/h satisfies q' = −3q² from 1/2. h has no source and stays 1.
   const auto error = [](double dt) {
     const simulation run = finished(water_with("q = \"-3*q*abs(q)/h\"\n"), {fmt::format("time.dt={}", dt)});
     const auto fields = run.fields();
@@ -198,13 +198,13 @@ TEST(source, of_a_law_depends_on_its_variables) {
     return std::abs(fields.values[1].front() - 0.5 / (1.0 + 1.5));
   };
   const double coarse = error(0.02), fine = error(0.01);
-  // The method has order 3; the next term changes the slope by a tenth.
+  // The method has order 3, and the next term changes the slope by a tenth.
   EXPECT_NEAR(std::log2(coarse / fine), 3.0, 0.2);
   EXPECT_LT(fine, 1e-5);
 }
 
 TEST(source, of_a_law_keeps_the_balance_of_what_it_gives) {
-  // Rain and friction over a wave: the balances contain them, on averages too.
+  // The balances contain rain and friction over a wave, also on averages.
   for (const char* form : {"finite-volume", "finite-difference"}) {
     const simulation run =
         finished(water_with("h = \"0.1*x\"\nq = \"-q/h\"\n"),
@@ -215,7 +215,8 @@ TEST(source, of_a_law_keeps_the_balance_of_what_it_gives) {
 }
 
 TEST(source, of_a_law_adds_no_term_of_size_epsilon) {
-  // u_t + (u²/2)_x = −u with uniform data: u = e^−t exactly for every ε, because the source keeps equilibria.
+  // u_t + (u²/2)_x = −u with uniform data. u = e^−t is exact for every ε, because the
+  // source keeps equilibria.
   const std::string text = R"toml(
 [model]
 name = "NAME"
@@ -245,7 +246,7 @@ end = 1
   const simulation law =
                        finished(replaced("conservation-law", "variables = [\"u\"]\nflux = [\"u^2/2\"]", "u")),
                    relaxation = finished(replaced("relaxation", "flux = \"burgers\"", "u1"));
-  // The error of the method, 1e-8; a source of another flux would leave the flux wrong by ε.
+  // The error of the method is 1e-8. A source of another flux would make the flux wrong by ε.
   EXPECT_NEAR(law.fields().values[0].front(), std::exp(-1.0), 1e-7);
   EXPECT_NEAR(relaxation.fields().values[0].front(), std::exp(-1.0), 1e-7);
   EXPECT_NEAR(relaxation.fields().values[1].front(), 0.5 * std::exp(-2.0), 1e-6);

@@ -1,4 +1,4 @@
-// Gases in the plane and in space: a problem of fewer dimensions inside, symmetries, exact free flight,
+// Gases in the plane and in space: embedded problems of fewer dimensions, symmetries, exact free flight,
 // accuracy, and solid boxes.
 #include <apsis/config/case.hpp>
 #include <apsis/core/errors.hpp>
@@ -56,7 +56,8 @@ std::vector<double> result_of(const std::vector<std::string>& overrides) {
   return run.state();
 }
 
-/// Component (i, j) of velocities on a 12 x 12 lattice with two sets, with its indices exchanged.
+/// Returns the number of component (i, j) with its indices exchanged, for velocities on a 12 x 12 lattice
+/// with two sets.
 std::size_t exchanged(std::size_t k) {
   constexpr std::size_t n = 12;
   return k / (n * n) * n * n + k % n * n + k / n % n;
@@ -65,8 +66,8 @@ std::size_t exchanged(std::size_t k) {
 }  // namespace
 
 TEST(space_dimensions, a_problem_on_a_line_is_the_same_along_x_in_the_plane_and_in_space) {
-  // Differences along y and z are exactly 0, so that not a bit changes. Without limiter: that of a velocity
-  // depends on its motion along y too.
+  // Differences along y and z are exactly 0, so all bits agree. There is no limiter, because the limiter of a
+  // velocity depends on its motion along y too.
   const auto line = result_of({"space.limiter=none"});
   const auto plane = result_of({"space.cells=[12,7]", "space.domain=[[0,1],[0,2]]", "space.limiter=none"});
   const std::size_t row = line.size() / 12;
@@ -87,7 +88,8 @@ TEST(space_dimensions, a_problem_on_a_line_is_the_same_along_y) {
     for (std::size_t j = 0; j < 12; ++j)
       for (std::size_t k = 0; k < row; ++k)
         largest = std::max(largest, std::abs(plane[(i * 12 + j) * row + exchanged(k)] - line[j * row + k]));
-  // Sums over velocities are in another order: some roundings of values up to 0.2, in 10 steps of 6 stages.
+  // Sums over velocities have another order. In 10 steps of 6 stages this gives some roundings of values up
+  // to 0.2.
   EXPECT_LT(largest, 1e-14);
 }
 
@@ -114,7 +116,7 @@ TEST(space_dimensions, three_velocity_dimensions_carry_a_line_along_each_axis) {
                              "space.domain=[[0,1],[0,1],[0,1]]", "initial.rho=1 + 0.2*sin(2*pi*" + axis + ")",
                              fmt::format("initial.u=[\"{}\",\"{}\",\"{}\"]", u[0], u[1], u[2]),
                              "initial.T=1 + 0.1*" + along});
-    // Velocity indices (a, b, c) of the line with a along x are those with a along the axis.
+    // The velocity indices (a, b, c) of the line, with a along x, correspond to those with a along the axis.
     const std::array<std::size_t, 3> strides = {n * n, n, 1};
     double largest = 0.0;
     for (std::size_t i = 0; i < 12; ++i)
@@ -135,7 +137,7 @@ TEST(space_dimensions, a_rotation_by_a_right_angle_rotates_the_result) {
   auto one = plane, other = plane;
   one.insert(one.end(), {"initial.rho=1 + 0.5*exp(-8*((x - 0.3)^2 + (y + 0.1)^2))",
                          "initial.u=[\"0.3*y\",\"0.2*x\"]", "initial.T=1 + 0.2*sin(pi*x)"});
-  // Rotated counter-clockwise: (x, y) → (−y, x), so that f'(x, y) = f(y, −x).
+  // The rotation is counter-clockwise, (x, y) → (−y, x), so f'(x, y) = f(y, −x).
   other.insert(other.end(), {"initial.rho=1 + 0.5*exp(-8*((y - 0.3)^2 + (-x + 0.1)^2))",
                              "initial.u=[\"-0.2*y\",\"0.3*(-x)\"]", "initial.T=1 + 0.2*sin(pi*y)"});
   const auto a = result_of(one), b = result_of(other);
@@ -145,11 +147,11 @@ TEST(space_dimensions, a_rotation_by_a_right_angle_rotates_the_result) {
     for (std::size_t j = 0; j < n; ++j)
       for (std::size_t k = 0; k < row; ++k) {
         const std::size_t vx = k % set / 12, vy = k % 12;
-        // The cell and velocity (i, j), (vx, vy) go to (−j, i), (−vy, vx).
+        // The cell (i, j) and the velocity (vx, vy) are mapped to (−j, i) and (−vy, vx).
         const std::size_t to = (n - 1 - j) * n + i, velocity = k / set * set + (11 - vy) * 12 + vx;
         largest = std::max(largest, std::abs(b[to * row + velocity] - a[(i * n + j) * row + k]));
       }
-  // WENO weights divide by squares of differences, whose roundings have other signs after the rotation.
+  // WENO weights divide by squares of differences. Their rounding errors have other signs after the rotation.
   EXPECT_LT(largest, 1e-13);
 }
 
@@ -167,7 +169,7 @@ TEST(space_dimensions, waves_at_45_degrees_fly_freely_with_fifth_order) {
     const std::size_t row = f.size() / static_cast<std::size_t>(n * n);
     const auto vx = run.setup().equation->velocities().speeds(0),
                vy = run.setup().equation->velocities().speeds(1);
-    // f(t, x, v) = f(0, x − v t, v), where f(0, ·, v) is ρ times a function of v alone.
+    // The solution is f(t, x, v) = f(0, x − v t, v). f(0, ·, v) is ρ times a function of v alone.
     double sum = 0.0;
     std::vector<double> mean(row, 0.0);
     for (std::size_t c = 0; c < f.size(); ++c) mean[c % row] += f[c] / (1.0 * n * n);
@@ -187,7 +189,7 @@ TEST(space_dimensions, waves_at_45_degrees_fly_freely_with_fifth_order) {
 
 namespace {
 
-/// A box of 20 x 16 cells with two solid boxes, heated and moving walls.
+/// Returns overrides for 20 x 16 cells with two solid boxes, heated and moving walls.
 std::vector<std::string> with_boxes(std::vector<std::string> more = {}) {
   std::vector<std::string> all = {"space.cells=[20,16]",
                                   "space.domain=[[0,1],[0,0.8]]",
@@ -222,9 +224,9 @@ TEST(solids, a_box_over_the_lower_half_leaves_the_problem_above_it) {
       for (std::size_t k = 0; k < row; ++k) {
         largest =
             std::max(largest, std::abs(whole[(i * 18 + j + 9) * row + k] - above[(i * 9 + j) * row + k]));
-        EXPECT_EQ(whole[(i * 18 + j) * row + k], 0.0);  // solid
+        EXPECT_EQ(whole[(i * 18 + j) * row + k], 0.0);  // zero in solid cells
       }
-  EXPECT_LT(largest, 1e-15);  // coordinates differ by their rounding
+  EXPECT_LT(largest, 1e-15);  // coordinates differ by rounding
 }
 
 TEST(solids, keep_the_gas_nonnegative_and_close_every_balance_to_rounding) {
@@ -237,11 +239,11 @@ TEST(solids, keep_the_gas_nonnegative_and_close_every_balance_to_rounding) {
     EXPECT_TRUE(run.promises().conservation);
     while (!run.finished()) run.advance();
     EXPECT_EQ(run.summary().negative_values, 0) << epsilon;
-    // Of order 20 steps of 6 stages with 2e5 unknowns each.
+    // About 20 steps of 6 stages with 2e5 unknowns each.
     EXPECT_LT(run.summary().conservation_defect, 1e-13) << epsilon;
     EXPECT_EQ(run.setup().open_faces(),
               (std::vector<std::string>{"left", "right", "bottom", "top", "solid-1", "corner"}));
-    // No mass passes a wall, and no energy the specular one.
+    // No mass passes any wall, and no energy passes the specular one.
     const auto& received = run.last().received;
     const std::size_t count = run.setup().equation->invariants().size();
     for (std::size_t face = 0; face < 6; ++face) EXPECT_NEAR(received[face * count], 0.0, 1e-15) << epsilon;

@@ -1,4 +1,4 @@
-// Linear stability limits, time.safety relative to them, and instabilities that a run notices.
+// Linear stability limits, time.safety relative to them, and instabilities that a run detects.
 #include "gas_between_walls.hpp"
 
 #include <apsis/core/log.hpp>
@@ -35,7 +35,7 @@ double limit_of(const std::string& method, const std::string& scheme) {
   return cfl_limit(find_integrator(method).growth(), *reconstruct);
 }
 
-/// Heat between plates whose temperatures differ by 2 %, 12 half-range velocities.
+/// Returns a case of heat between plates with 12 half-range velocities. The temperatures differ by 2 %.
 case_config plates(const std::string& method, const std::string& scheme, const std::string& time,
                    double delta = 10.0, double end = 6.0) {
   return parse_case(fmt::format(R"toml([model]
@@ -70,7 +70,7 @@ end = {}
                     "plates.toml");
 }
 
-/// Heat at the left plate after every step.
+/// Returns the heat at the left plate after every step.
 std::vector<double> fluxes_of(const case_config& c) {
   simulation run(c);
   const std::size_t energy = run.setup().equation->invariants().size() - 1;
@@ -79,7 +79,8 @@ std::vector<double> fluxes_of(const case_config& c) {
   return flux;
 }
 
-/// The largest deviation of a flux in the last fifth of the steps from the mean of its neighbours, relative.
+/// Returns the largest relative deviation of a flux from the mean of its neighbours, in the last fifth
+/// of the steps.
 double alternation_of(const std::vector<double>& flux) {
   double largest = 0.0;
   for (std::size_t k = flux.size() - flux.size() / 5; k + 1 < flux.size(); ++k)
@@ -105,7 +106,7 @@ TEST(linear_edges, of_all_reconstructions_are_exact_for_their_polynomials) {
     const auto scheme = one->make();
     const auto edge = linear_edge(*scheme);
     const int g = scheme->ghost_width();
-    // Averages of x^p over [k − 1/2, k + 1/2] give (1/2)^p. Differences of 1e-7 have 9 digits.
+    // Averages of x^p over [k − 1/2, k + 1/2] must give (1/2)^p. Differences over 1e-7 have 9 digits.
     for (int p = 0; p < scheme->order(); ++p) {
       double sum = 0.0;
       for (int k = -g; k <= g; ++k)
@@ -116,8 +117,8 @@ TEST(linear_edges, of_all_reconstructions_are_exact_for_their_polynomials) {
   }
 }
 
-// In several directions z is a mean of points of the curve, so that the limit of one direction holds for the
-// sum of the CFL numbers.
+// In several directions z is a mean of points of the curve. The limit of one direction thus holds for the sum
+// of the CFL numbers.
 TEST(transport_symbols, of_all_reconstructions_enclose_a_convex_region_without_growth) {
   for (const reconstruction_entry* one : reconstruction_entries()) {
     const auto edge = linear_edge(*one->make());
@@ -127,27 +128,27 @@ TEST(transport_symbols, of_all_reconstructions_enclose_a_convex_region_without_g
     for (std::size_t k = 1; k + 1 < z.size(); ++k) {
       const auto before = z[k] - z[k - 1], after = z[k + 1] - z[k];
       EXPECT_LE(z[k].real(), 1e-8) << one->name;
-      // Turns of one direction; rounding of the coefficients is 1e-9.
+      // The curve turns in one direction only. The coefficients have rounding errors of 1e-9.
       EXPECT_LE(before.real() * after.imag() - before.imag() * after.real(), 1e-8) << one->name << ", " << k;
     }
   }
 }
 
-// Motamed, Macdonald, Ruuth, J. Sci. Comput. 47 (2011) 127–149: 1.43 for SSPRK(3,3) with WENO5; with upwind1
-// the real axis decides, 2.5127/2 and 2.7853/2.
+// The limit is 1.43 for SSPRK(3,3) with WENO5 (Motamed, Macdonald, Ruuth, J. Sci. Comput. 47 (2011) 127–149).
+// With upwind1 the real axis determines the limits 2.5127/2 and 2.7853/2.
 TEST(cfl_limits, of_known_methods_are_those_of_the_literature) {
   EXPECT_NEAR(limit_of("ssprk-3-3", "weno5-z"), 1.43, 0.01);
   EXPECT_NEAR(limit_of("ssprk-3-3", "weno5-js"), 1.43, 0.01);
   EXPECT_NEAR(limit_of("ssprk-3-3", "upwind1"), 2.5127 / 2.0, 2e-3);
   EXPECT_NEAR(limit_of("kutta-4", "upwind1"), 2.7853 / 2.0, 2e-3);
   EXPECT_NEAR(limit_of("forward-backward-euler", "upwind1"), 1.0, 2e-3);
-  // Order 2 amplifies waves that fifth order does not damp; Euler's method, every wave.
+  // Order 2 amplifies waves that fifth order does not damp. Euler's method amplifies every wave.
   EXPECT_LT(limit_of("ssprk-2-2", "upwind5"), 0.5);
   EXPECT_LT(limit_of("forward-backward-euler", "upwind5"), 0.02);
 }
 
-// Strong stability in the 2-norm: upwind1 is a contraction up to CFL 1, and collisions are. Hence safety does
-// not change with it.
+// Strong stability in the 2-norm: upwind1 up to CFL 1 and collisions are contractions. Safety is therefore
+// the same with upwind1.
 TEST(cfl_limits, with_first_order_upwind_are_at_least_the_ssp_coefficient) {
   std::vector<std::string> names = method_names();
   names.insert(names.end(), {"md-imex-chain-7-2", "md-imex-plateau-free-6-2", "exponential-2"});
@@ -162,8 +163,8 @@ TEST(cfl_limits, with_first_order_upwind_are_at_least_the_ssp_coefficient) {
     EXPECT_GE(limit_of(name, "upwind1"), find_integrator(name).ssp_coefficient) << name;
 }
 
-// The definition checked against a matrix: the two-velocity gas f±_t ± f±_x = (ρ(1 ± a)/2 − f±)/ε with every
-// θ, a and Δt/ε, a few per cent below the limit, does not grow; and transport alone grows above it.
+// A matrix confirms the definition for the gas of two velocities, f±_t ± f±_x = (ρ(1 ± a)/2 − f±)/ε. With
+// every θ, a and Δt/ε it does not grow at a few per cent below the limit. Transport alone grows above it.
 TEST(cfl_limits, keep_a_relaxing_gas_of_two_velocities_stable) {
   using complex = std::complex<double>;
   using matrix2 = std::array<std::array<complex, 2>, 2>;
@@ -214,14 +215,13 @@ TEST(cfl_limits, keep_a_relaxing_gas_of_two_velocities_stable) {
 TEST(safety_without_limiter, comes_to_rest_between_plates_with_every_reconstruction) {
   for (const char* method : {"md-imex-5-2", "md-imex-3-2", "md-imex-6-2-mixed", "md-imex-9-3-large-r"})
     for (const char* scheme : {"weno5-z", "weno5-js", "upwind5"})
-      // The slow approach to the steady state changes the flux by 1e-5 in a step, and once when steps are
-      // shortened to meet the end. Beyond the limit it
-      // alternates by 3e-4 to 400.
+      // The slow approach to the steady state changes the flux by 1e-5 in a step. So does a change of the
+      // step before the end. Beyond the limit the flux alternates by 3e-4 to 400.
       EXPECT_LT(alternation_of(fluxes_of(plates(method, scheme, "safety = 1"))), 3e-5)
           << method << ", " << scheme;
 }
 
-// The mean flux of a step depends on Δt/ε: a last step of another length had a heat flux that was wrong by
+// The mean flux of a step depends on Δt/ε. After a last step of another length the heat flux was wrong by
 // 3e-3 to 1.5 here.
 TEST(the_last_row_of_the_history, belongs_to_a_step_like_those_before_it) {
   for (const char* method : {"md-imex-8-3-mixed", "md-imex-3-2", "md-imex-6-3"})
@@ -268,7 +268,8 @@ TEST(an_instability, is_noticed_during_the_run_and_ends_it_before_overflow) {
     for (const double beyond : {2.5, 4.0}) {
       const double cfl = beyond * limit_of(method, "upwind5");
       const auto log = log_of(plates(method, "upwind5", fmt::format("cfl = {}", cfl)));
-      // Fast growth breaks conservation before eight steps are judged: large values of both signs cancel.
+      // Fast growth breaks conservation before eight steps are judged, because large values of
+      // both signs cancel.
       EXPECT_THAT(log, testing::AnyOf(HasSubstr("ended: the solution is lost to an instability"),
                                       HasSubstr("because the steps are unstable (CFL number")))
           << method << ", " << beyond;

@@ -24,7 +24,7 @@ apsis::case_config ode(const std::string& method, const std::string& epsilon, co
 
 const std::string out_of_equilibrium, near_equilibrium = "initial = \"given\"\nu1 = 2.0\nu2 = 0.90930499\n";
 
-/// Stops after `steps`, continues in a new run, and compares with an uninterrupted one.
+/// Stops after `steps`, continues in a new run, and compares it with an uninterrupted one.
 void expect_same_after_restart(const apsis::case_config& c, long steps) {
   apsis::simulation whole(c), first(c), second(c);
   for (long k = 0; k < steps; ++k) {
@@ -80,8 +80,9 @@ TEST(startup, restarts_in_its_middle_bit_for_bit) {
 }
 
 TEST(startup, takes_fewer_steps_with_a_larger_ratio) {
-  // 5·4/(256·1e-4) = 781 first steps of doubling times are 2^9.6, of fourfold times with a first step twice
-  // as long 4^4.3, and of eightfold times with a first step four times as long 8^2.5.
+  // The first step is 5·4/(256·1e-4) = 781 times as long as the shortest one, which is 2^9.6 with doubling
+  // times. With fourfold times the shortest step is twice as long, so the ratio is 4^4.3. With eightfold
+  // times it is four times as long, and the ratio is 8^2.5.
   for (const auto& [growth, steps] : std::vector<std::pair<int, long>>{{2, 11}, {4, 6}, {8, 4}}) {
     auto c = ode("extrapolated-euler-7", "1e-4", "graded");
     c.time.startup_growth = growth;
@@ -105,7 +106,7 @@ TEST(startup, follows_the_smallest_epsilon_of_the_mesh_and_keeps_the_promises) {
       EXPECT_EQ(run.summary().negative_values, 0);
       return run.summary().startup_steps;
     };
-    // From 1e-6 to 1: each factor of a thousand in ε costs ten steps.
+    // ε ranges from 1e-6 to 1. Each factor of a thousand in ε costs ten steps.
     const long spread = steps("10^(-6*(x < 1 ? 1 : 2 - x))"), thin = steps("1e-6"), wide = steps("1e-3");
     EXPECT_EQ(spread, thin);
     EXPECT_NEAR(static_cast<double>(thin - wide), 10.0, 1.0);

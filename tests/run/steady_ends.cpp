@@ -18,7 +18,7 @@
 namespace steady_ends_test {
 namespace {
 
-/// A kind of end at the left, with its keys, and an end at the right with which a flow is steady.
+/// A kind of end on the left with its keys, and an end on the right for which the flow is steady.
 struct ends {
   std::string kind, keys, right;
 };
@@ -44,7 +44,7 @@ std::vector<ends> all_ends() {
           {"vacuum", "", "kind = \"inflow\"\nrho = 1.1\nu = -0.3\nT = 1.1\n"}};
 }
 
-/// The keys of a kind; those of a given row name its parts, (g, h) of a model with internal energy.
+/// Returns the keys of a kind. Those of a given row are g and h if the model has internal energy.
 std::string keys_of(const ends& of, const std::string& model) {
   if (of.kind != "given") return of.keys;
   const std::string row = "*exp(-(v_x - 0.1)^2/1.8)\"\n";
@@ -77,8 +77,8 @@ double largest_difference(const apsis::field& a, const apsis::field& b) {
   return largest;
 }
 
-/// Steps of a method whose steady state is that of the equation, as short as forward Euler's method needs to
-/// be stable with this reconstruction.
+/// Takes steps of a method whose steady state is that of the equation. They are so short that forward Euler's
+/// method is stable with this reconstruction.
 apsis::field after_steps(const apsis::simulation& run, const apsis::field& start) {
   const auto problem = run.setup().make_problem();
   apsis::stepper steps(apsis::find_method("forward-backward-euler"), *problem);
@@ -98,8 +98,8 @@ TEST_P(steady_ends, have_the_state_of_the_time_integrator) {
     const apsis::simulation run = found(GetParam(), model);
     EXPECT_LE(run.step(), GetParam().kind == "outflow" ? 100 : 60);
     const apsis::field state = state_of(run);
-    // The tolerance of the residual is 1e-11 of what the ends exchange while a molecule crosses the domain.
-    // The steps take less time than that, and change the initial state by 1e-3 and more.
+    // The tolerance of the residual is 1e-11 of the exchange between the ends while a molecule crosses the
+    // domain. The steps take less time than that. They change the initial state by 1e-3 and more.
     EXPECT_LT(largest_difference(after_steps(run, state), state), 1e-11);
     const apsis::field start = run.setup().initial_state();
     EXPECT_GT(largest_difference(after_steps(run, start), start), 1e-3);
@@ -109,7 +109,7 @@ TEST_P(steady_ends, have_the_state_of_the_time_integrator) {
 INSTANTIATE_TEST_SUITE_P(kinds, steady_ends, testing::ValuesIn(all_ends()));
 
 TEST(steady_ends, of_every_kind_are_tested) {
-  std::vector<std::string> tested = {"axis"};  // not the end of a line: tests of axisymmetric flow
+  std::vector<std::string> tested = {"axis"};  // tests of axisymmetric flow cover the axis
   for (const ends& one : all_ends()) tested.push_back(one.kind);
   std::vector<std::string> known;
   for (const apsis::boundary_entry* one : apsis::boundary_entries()) known.push_back(one->name);

@@ -1,4 +1,5 @@
-// Estimates of time.steady: the rate of change, and from its decay the distance from the steady state.
+// Estimates for time.steady: the rate of change, and the distance from the steady state that follows
+// from its decay.
 #include <apsis/run/steady_estimate.hpp>
 
 #include "gas_between_walls.hpp"
@@ -54,7 +55,7 @@ TEST(a_steady_estimate, of_a_change_that_does_not_decay_is_unknown) {
 }
 
 TEST(a_steady_estimate, of_a_gas_between_plates_is_the_distance_of_a_longer_run) {
-  // Δt/ε = 1: the diffusion of heat across the gap takes 20 units of time.
+  // Δt/ε = 1. The diffusion of heat across the gap takes 20 units of time.
   const auto with = [](const char* steady) {
     return between_walls::case_of({"md-imex-8-3-mixed",
                                    fmt::format("cfl = 0.8\nend = 2000\nsteady = {}", steady), "",
@@ -68,7 +69,7 @@ TEST(a_steady_estimate, of_a_gas_between_plates_is_the_distance_of_a_longer_run)
   const double distance = between_walls::distance(here, there) /
                           between_walls::distance(here, std::vector<double>(here.size(), 0.0));
   ASSERT_TRUE(found.has_distance());
-  // The distance is several hundred times what time.steady suggests; one more slow mode is 30 % of it.
+  // The distance is several hundred times as large as time.steady. One more slow mode is 30 % of it.
   EXPECT_GT(distance, 1e-4);
   EXPECT_NEAR(found.distance / distance, 1.0, 0.3);
   const auto json = to_json(early.computed(), early.records());
@@ -76,8 +77,7 @@ TEST(a_steady_estimate, of_a_gas_between_plates_is_the_distance_of_a_longer_run)
   EXPECT_EQ(json["steady"]["distance"].get<double>(), found.distance);
 }
 
-/// Steps as long as epsilon move the steady state of methods with second derivatives, whatever time.steady
-/// is.
+/// Steps as long as epsilon move the steady state of methods with second derivatives, for any time.steady.
 TEST(a_steady_estimate, a_method_whose_steady_state_depends_on_the_step_warns_of_it) {
   const auto warnings = [](const std::string& method, const std::string& time) {
     run_session run(

@@ -17,7 +17,7 @@ namespace {
 using apsis::simulation;
 using testing::HasSubstr;
 
-/// A gas that enters on the left with a mass flux of 0.2.
+/// Returns a case in which gas enters on the left with a mass flux of 0.2.
 std::string blown(const std::string& temperature, const std::string& outlet) {
   return "[model]\nname = \"bgk\"\ndegrees_of_freedom = 3\nepsilon = 0.05\n[initial]\nrho = 1\nT = 1\n"
          "[space]\ncells = 40\nformulation = \"finite-difference\"\n[boundary.left]\nkind = \"mass-flow\"\n"
@@ -49,19 +49,19 @@ TEST(steady_fallbacks, continue_where_an_iterate_is_too_hot_for_the_velocities_a
   const double left = run.last().flux[2], right = run.last().flux[5];
   EXPECT_GT(left, 0.01);
   EXPECT_NEAR(left, -right, 1e-6);
-  // The velocities hold the state that is found.
+  // The velocities resolve the steady state.
   EXPECT_LT(run.summary().velocity_missed, 0.01);
 }
 
 TEST(steady_fallbacks, do_not_find_a_flow_whose_pressure_no_end_fixes) {
-  // A far field at rest fixes u - 2a/(γ - 1): u = 3 (a(T) - a(1)), ρ = m/u, and the momentum flux is ρT + m
-  // u.
+  // A far field at rest fixes u - 2a/(γ - 1), so u = 3 (a(T) - a(1)) and ρ = m/u. The momentum flux is ρT
+  // + m u.
   for (const double T : {1.05, 1.21}) {
     const double u = 3.0 * (std::sqrt(5.0 / 3.0 * T) - std::sqrt(5.0 / 3.0));
     const simulation run = found(blown(fmt::format("{}", T), "\"far-field\"\nrho = 1\nT = 1"));
     EXPECT_NEAR(run.last().flux[1], 0.2 / u * T + 0.2 * u, 1e-5) << T;
   }
-  // With a(T) = a(1) the density has no limit.
+  // For a(T) = a(1) the density has no limit.
   try {
     static_cast<void>(found(blown("1", "\"far-field\"\nrho = 1\nT = 1")));
     FAIL();

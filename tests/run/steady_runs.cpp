@@ -1,4 +1,4 @@
-// Cases with a table [steady]: the same flows as in time, in tens of iterations.
+// Cases with a table [steady] have the same flows as in time, after tens of iterations.
 #include <apsis/config/case.hpp>
 #include <apsis/config/case_schema.hpp>
 #include <apsis/core/errors.hpp>
@@ -35,8 +35,8 @@ void end_of(const std::string& name, const keys& more) {
   while (!run.finished()) run.advance();
 }
 
-/// A flow of cases/gas and the most iterations it may take; of those in the plane and in space small
-/// versions.
+/// A flow of cases/gas and the largest number of iterations allowed. Flows in the plane and in space are
+/// small versions.
 struct flow {
   const char* name;
   keys more;
@@ -77,7 +77,7 @@ TEST_P(shipped_flows, settle_in_tens_of_iterations) {
   EXPECT_LE(run.step(), most);
   EXPECT_LE(run.last().residual.front(), 1e-8);
   EXPECT_LE(run.last().change, 1e-8);
-  // The gas loses as much as it receives, in units of its content and the crossing time of a molecule.
+  // The net rates vanish, in units of the content of the gas and the crossing time of a molecule.
   for (const double rate : run.last().conservation_defect) EXPECT_LT(rate, 1e-7);
 }
 
@@ -142,7 +142,7 @@ TEST(steady_run, needs_no_table_of_time) {
 }
 
 TEST(steady_run, solves_moment_equations_in_space_that_are_too_large_for_factors) {
-  // 1701 cells of 5 moments, above the 8000 unknowns that are factorized.
+  // The case has 1701 cells with 5 moments, more than the 8000 unknowns that are factorized.
   const std::string text = R"toml(
 [parameters]
 delta = 5
@@ -178,7 +178,7 @@ tolerance = 1e-6
   simulation run(apsis::parse_case(text, "cube.toml"));
   while (!run.finished()) run.advance();
   EXPECT_LE(run.step(), 60);
-  // All walls together give nothing; the fluxes of each are of mass, momentum and energy.
+  // The fluxes are of mass, momentum and energy through each wall. Their sums over all walls vanish.
   const auto& flux = run.last().flux;
   ASSERT_EQ(flux.size(), 7u * 5u);
   for (std::size_t i = 0; i < 5; ++i) {
@@ -205,7 +205,7 @@ TEST(steady_run, is_not_finished_where_the_iterations_are_over) {
 TEST(steady_run, says_that_the_iterations_are_over_or_lead_nowhere) {
   bad_input::expect_refused({
       {[&] { end_of("gas/couette", {"steady.iterations=3"}); }, {"no steady state in 3 iterations"}, 3},
-      // f jumps along rays from the ends of the lid, where the weights of WENO never settle.
+      // f jumps along rays from the ends of the lid. There the weights of WENO never settle.
       {[&] {
          end_of("gas/cavity", {"steady.iterations=1000", "space.cells=[16, 16]", "velocity.points=12",
                                "parameters.delta=1", "space.reconstruction=weno5-z"});
@@ -219,7 +219,7 @@ TEST(steady_run, finds_a_shock_between_open_ends_and_before_a_step) {
   const simulation shock = found("gas/shock", {});
   for (const double net : shock.last().conservation_defect) EXPECT_LT(net, 1e-9);
   EXPECT_LE(shock.step(), 200);
-  // The line cuts off a part of the thicker structure of this shock: the fluxes of its ends differ.
+  // The domain is too short for the thicker structure of this shock, so the fluxes at its ends differ.
   bad_input::expect_refused({
       {[&] { end_of("gas/shock", {"parameters.M=3", "steady.tolerance=1e-8"}); },
        {"a front has no position at which"},
@@ -231,7 +231,7 @@ TEST(steady_run, finds_a_shock_between_open_ends_and_before_a_step) {
   const auto rho =
       step.fields()
           .values[static_cast<std::size_t>(std::find(names.begin(), names.end(), "rho") - names.begin())];
-  // Behind a normal shock of Mach number 2 the density is 16/7 (Rankine, Hugoniot), at the wall higher.
+  // Behind a normal shock of Mach number 2 the density is 16/7 (Rankine, Hugoniot). At the wall it is higher.
   EXPECT_GT(*std::max_element(rho.begin(), rho.end()), 16.0 / 7.0);
 }
 
@@ -255,7 +255,7 @@ TEST(steady_run, marches_where_the_iteration_leaves_the_states_with_an_equilibri
               testing::AllOf(HasSubstr("is not positive); steps in time from the first state until t = "),
                              testing::Not(HasSubstr("smaller step"))));
   EXPECT_LE(run.last().residual.front(), 1e-8);
-  // Mass is that of the start, and the other net rates vanish.
+  // The mass is that of the start, and the other net rates vanish.
   EXPECT_NEAR(run.last().total[0], run.initial_record().total[0], 1e-12);
   for (const double net : run.last().conservation_defect) EXPECT_LT(net, 1e-7);
   EXPECT_GT(run.last().min_value, 0.0);
@@ -268,7 +268,7 @@ TEST(steady_run, continues_from_rarer_gases_where_no_pseudo_time_term_helps) {
   EXPECT_THAT(
       testing::internal::GetCapturedStderr(),
       HasSubstr("steady states with 1024, 256, 64, 16, 4 times the epsilon, one after the other, give"));
-  // The gas keeps its mass, and passes on the heat that it gets.
+  // The gas keeps its mass. The heat that enters leaves again.
   EXPECT_NEAR(run.last().total[0], run.initial_record().total[0], 1e-12);
   const double left = run.last().flux[2], right = run.last().flux[5];
   EXPECT_GT(right, 0.01);
@@ -308,7 +308,7 @@ TEST(steady_run, settles_at_the_ends_of_a_lid_with_schemes_that_say_so) {
 
 namespace {
 
-/// A flow whose steady state is negative somewhere without a limiter.
+/// A flow whose steady state is negative somewhere without a limiter, and its keys.
 struct strong_flow {
   const char* name;
   keys more;
@@ -323,7 +323,7 @@ std::vector<strong_flow> all_strong_flows() {
   std::vector<strong_flow> all;
   for (const char* delta : {"0.1", "10", "100"}) {
     const std::string rarefaction = std::string("parameters.delta=") + delta;
-    // Walls with temperatures 9 and 1, of both models, and a lid with Mach number 1.2.
+    // Walls with temperatures 9 and 1 for both models, and a lid with Mach number 1.2.
     const keys plates = {rarefaction, "boundary.left.T=9", "velocity.max=18", "velocity.points=48"};
     for (const std::string model : {"model.tails=nonnegative", "model.name=es-bgk"}) {
       if (delta == std::string("0.1") && model == "model.name=es-bgk") continue;  // nonnegative anyway
@@ -373,7 +373,7 @@ TEST(steady_run, with_a_source_and_the_limiter_is_nonnegative) {
 INSTANTIATE_TEST_SUITE_P(gases, strong_flows, testing::ValuesIn(all_strong_flows()));
 
 TEST(steady_run, settles_at_an_outflow_at_every_speed_and_rarefaction) {
-  // The outflow copies what enters, and in a rare gas only collisions change it.
+  // The outflow copies the last row. In a rare gas only collisions change what enters there.
   const keys hypersonic = {"parameters.M=4", "parameters.Kn=2", "velocity.max=18", "velocity.points=28",
                            "space.cells=[18, 12]"};
   const keys coarse = {"space.cells=[30, 20]"};

@@ -13,7 +13,7 @@
 
 #include <gtest/gtest.h>
 
-/// Streams past a body and a solid box, in the plane and in space, and the tables of their walls.
+/// Streams past a body and a solid box in the plane and in space, and the tables of their walls.
 namespace streams_past_bodies {
 
 using namespace apsis;
@@ -69,10 +69,10 @@ length = 1.6
 centre = [-0.4, 0.1]
 )toml";
 
-/// A stream past a disc that turns, beside a box.
+/// A stream past a rotating disc, beside a box.
 inline const std::string flat = open_stream + disc + box + loads_of_stream;
 
-/// The same in space.
+/// The same flow in space.
 inline const std::string deep =
     gas_tables({.degrees = "", .velocity = "max = 5\npoints = 10\n", .end = "0.02"}) + R"toml(
 [initial]
@@ -104,13 +104,13 @@ up = [0, 0, 1]
 centre = [-0.2, 0.3, 0.2]
 )toml";
 
-/// The runs of both, made once.
+/// Returns the run of one of the two texts, computed once.
 inline const simulation& run_of(const std::string& text) {
   static const simulation in_plane = finished(flat), in_space = finished(deep);
   return text == flat ? in_plane : in_space;
 }
 
-/// The columns of a table by name.
+/// Returns the columns of a table by name.
 using columns = std::map<std::string, std::vector<double>>;
 
 inline columns columns_of(const surface_table& table) {

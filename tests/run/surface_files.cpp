@@ -1,4 +1,4 @@
-// Files of surfaces: content, units, continued runs, and names that are refused.
+// Files of surfaces: content, units, continued runs, and refused names.
 #include "cases_in_space.hpp"
 #include "support/folder.hpp"
 
@@ -73,7 +73,7 @@ struct table {
   std::map<std::string, std::vector<double>> columns;
 };
 
-/// A table whose first column is text.
+/// Reads a table with text in the first column.
 table read_surface(const std::string& path) {
   std::istringstream file(text_of(path));
   table out;
@@ -109,7 +109,7 @@ TEST(files_of_surfaces, have_the_face_first_and_are_those_of_the_case_alone) {
   const table left = read_surface(folder / "o/surfaces/left.csv"),
               block = read_surface(folder / "o/surfaces/block.csv");
   EXPECT_EQ(left.faces, std::vector<std::string>(5, "left"));
-  // It stands on the floor: no gas below it.
+  // The box stands on the floor, with no gas below it.
   EXPECT_THAT(block.faces, ElementsAre("right", "right", "top", "left", "left"));
   EXPECT_GT(left.columns.at("pressure").at(2), 0.9);
   run_into(folder / "o", gas, {"output.surfaces=[\"top\"]"});
@@ -142,7 +142,7 @@ TEST(files_of_surfaces, are_in_the_units_of_the_results_as_the_history_is) {
       const double expected = own.columns.at(name)[k] * scales.unit(dims);
       EXPECT_NEAR(si.columns.at(name)[k], expected, 1e-14 * std::abs(expected)) << name;
     }
-  // The reference pressure is 10 Pa; the force of a plane is one per length.
+  // The reference pressure is 10 Pa. In the plane a force is one per length.
   EXPECT_NEAR(si.columns.at("pressure")[2], 10.0, 1.0);
   double force = 0.0;
   for (std::size_t k = 0; k < 5; ++k) force += si.columns.at("area")[k] * si.columns.at("momentum_x")[k];
@@ -184,7 +184,7 @@ TEST(files_of_surfaces, of_a_continuation_without_a_step_are_those_of_the_last_s
                     second = text_of(folder / "second/surfaces/left.csv");
   EXPECT_EQ(first, second);
   EXPECT_THAT(first, testing::Not(HasSubstr("nan")));
-  // A checkpoint without them, or that of another case, is not one of their run.
+  // A checkpoint without surface budgets, or with those of another case, does not match this run.
   checkpoint other = read_checkpoint(folder / "first/checkpoint.h5");
   EXPECT_EQ(other.budget.size(), (2 * 5 + 5 + 6 + 5) * 4U);
   other.budget.pop_back();
@@ -204,7 +204,7 @@ TEST(files_of_surfaces, of_a_run_without_a_step_have_places_and_no_values) {
   EXPECT_NEAR(left.columns.at("y").at(4), 0.9, 1e-15);
   for (const char* name : {"mass", "energy", "pressure", "shear_stress", "heat_flux"})
     EXPECT_TRUE(std::isnan(left.columns.at(name).at(0))) << name;
-  EXPECT_GT(left.columns.at("T").at(0), 1.0);  // the state is known: half of it comes from the hot wall
+  EXPECT_GT(left.columns.at("T").at(0), 1.0);  // the hot wall emits half of the gas
 }
 
 TEST(surfaces_of_a_case, are_read_back_from_its_text) {

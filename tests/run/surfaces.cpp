@@ -30,7 +30,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// A gas of three degrees of freedom between walls, on few velocities; tables for the walls follow.
+/// Returns a gas of three degrees of freedom between walls, on few velocities. `walls` has the tables
+/// for the walls.
 std::string gas_between(const std::string& space, const std::string& walls) {
   return R"toml(
 [model]
@@ -57,7 +58,7 @@ boundary = "diffuse"
          walls;
 }
 
-/// In the plane, with a moving wall, a hot one and a cold box.
+/// A gas in the plane with a moving wall, a hot one and a cold box.
 const std::string cavity = gas_between("cells = [6, 5]\ndomain = [[0.0, 1.2], [-1.0, 1.0]]\n", R"toml(
 [boundary.top]
 velocity = [0.3, 0]
@@ -99,7 +100,7 @@ double largest(const std::vector<double>& values) {
   return size;
 }
 
-/// Σ area · value.
+/// Returns Σ area · value.
 double total(const surface_table& surface, const std::string& name) {
   const auto area = column(surface, "area"), values = column(surface, name);
   double sum = 0.0;
@@ -107,7 +108,7 @@ double total(const surface_table& surface, const std::string& name) {
   return sum;
 }
 
-/// Checks that what the tables give over each step is what the history receives.
+/// Checks that the tables, summed over the steps, give the amounts that the history receives.
 void expect_balance(const std::string& text, const std::vector<std::string>& overrides = {}) {
   simulation run = run_of(text, overrides);
   const auto faces = run.setup().open_faces(), invariants = run.setup().equation->invariants();
@@ -123,7 +124,8 @@ void expect_balance(const std::string& text, const std::vector<std::string>& ove
         const std::size_t at = face * invariants.size() + k;
         double size = std::abs(run.last().received[at]);
         for (const double one : column(tables[face], invariants[k])) size += std::abs(one) * dt;
-        // Roundings of the sum over the cell faces, of quotients and products, and of the sum over the steps.
+        // The tolerance covers the roundings of the sum over the cell faces, of quotients and products, and
+        // of the sum over the steps.
         EXPECT_NEAR(given, before[at] - run.last().received[at], 1e-15 * size)
             << faces[face] << invariants[k];
         EXPECT_NEAR(given, -run.last().flux[at] * dt, 1e-15 * size) << faces[face] << invariants[k];
@@ -145,7 +147,8 @@ TEST(surfaces, give_what_the_history_receives_on_a_line_in_the_plane_and_in_spac
                              "[boundary.back]\nT = 1.2\nvelocity = [0.1, 0.2, 0]\n"
                              "[[space.solid]]\nfrom = [0.25, 0, 0.25]\n"
                              "to = [0.75, \"1/3\", 0.5]\n"));
-  // Open ends and a periodic direction; a conservation law, and collisions of cell averages.
+  // Further cases have open ends and a periodic direction, a conservation law, and collisions
+  // of cell averages.
   expect_balance(in_plane + "[output]\nsurfaces = [\"all\"]\n");
   expect_balance(
       "[model]\nname = \"broadwell\"\nepsilon = 0.1\n[space]\ncells = 10\nboundary = \"outflow\"\n"
@@ -157,7 +160,7 @@ TEST(surfaces, of_a_gas_at_rest_feel_its_pressure_and_nothing_else) {
   run.advance();
   for (const surface_table& one : run.surfaces()) {
     for (const double p : column(one, "pressure")) EXPECT_NEAR(p, 1.0, 1e-13) << one.name;
-    // Sums over 64 velocities of terms of the size of the pressure.
+    // The columns are sums over 64 velocities of terms of the size of the pressure.
     for (const char* nothing : {"mass", "energy", "shear_stress", "heat_flux"})
       EXPECT_LT(largest(column(one, nothing)), 1e-14) << one.name << nothing;
     for (const char* one_of_rest : {"rho", "T"})
@@ -174,7 +177,8 @@ TEST(surfaces, have_a_row_for_every_cell_face_with_its_place) {
               ElementsAre("s", "x", "y", "n_x", "n_y", "area", "mass", "momentum_x", "momentum_y", "energy",
                           "pressure", "shear_stress", "heat_flux", "rho", "u_x", "u_y", "T", "mass_arriving",
                           "mass_leaving", "energy_arriving", "energy_leaving", "T_w"));
-  // Cells of 0.2 x 0.4; the box is two cells wide and one high. Counter-clockwise from (0.4, -0.2).
+  // Cells have the size 0.2 x 0.4. The box is two cells wide and one high. Its faces are counter-clockwise
+  // from (0.4, -0.2).
   EXPECT_THAT(box.faces, ElementsAre("bottom", "bottom", "right", "top", "top", "left"));
   const auto near = [](std::vector<double> expected) {
     return testing::Pointwise(testing::DoubleNear(1e-15), std::move(expected));
@@ -186,7 +190,7 @@ TEST(surfaces, have_a_row_for_every_cell_face_with_its_place) {
   EXPECT_THAT(top.faces, testing::Each("top"));
   EXPECT_THAT(column(top, "s"), near({0.1, 0.3, 0.5, 0.7, 0.9, 1.1}));
   EXPECT_THAT(column(top, "y"), testing::Each(1.0));
-  // The force of the gas at a pressure near 1 points into the box: its normal momentum has the sign of n.
+  // The pressure is near 1, and its force points into the box. The normal momentum has the sign of n.
   const auto x = column(box, "momentum_x"), y = column(box, "momentum_y");
   EXPECT_GT(x[5], 0.5);
   EXPECT_LT(x[2], -0.5);
@@ -196,7 +200,7 @@ TEST(surfaces, have_a_row_for_every_cell_face_with_its_place) {
   EXPECT_EQ(column(box, "pressure")[0], y[0]);
   EXPECT_EQ(column(box, "shear_stress")[2], y[2]);
   EXPECT_EQ(column(box, "shear_stress")[0], x[0]);
-  // The lid pulls the gas to the right and is pulled to the left, and it has done work on the gas.
+  // The lid pulls the gas to the right, and the gas pulls the lid to the left. The lid does work on the gas.
   const auto shear = column(top, "shear_stress"), energy = column(top, "energy"),
              heat = column(top, "heat_flux");
   for (std::size_t k = 0; k < shear.size(); ++k) {
@@ -206,7 +210,7 @@ TEST(surfaces, have_a_row_for_every_cell_face_with_its_place) {
 }
 
 TEST(surfaces, in_a_steady_cavity_with_a_box_balance_to_rounding) {
-  // Without sources the amounts that all walls give add up to the change of the content per unit of time.
+  // Without sources the amounts from all walls add up to the change of the content per unit of time.
   const std::vector<std::string> steady = {"time.steady=5e-15"};
   simulation run = run_of(cavity, steady);
   finish(run);
@@ -228,7 +232,7 @@ TEST(surfaces, in_a_steady_cavity_with_a_box_balance_to_rounding) {
 }
 
 TEST(surfaces, of_a_symmetric_flow_have_symmetric_profiles) {
-  // Heated below, with a cold box in the middle: x and 1 − x are alike.
+  // The cavity is heated below and has a cold box in the middle. It is symmetric in x and 1 − x.
   simulation run = run_of(gas_between("cells = [8, 6]\n", R"toml(
 [boundary.bottom]
 T = "1.2 + 0.1*cos(2*pi*(x - 0.5))"
@@ -247,7 +251,7 @@ T = 0.9
     for (double& x : back) x *= sign;
     return back;
   };
-  // Some hundred steps with roundings that differ.
+  // Rounding errors of some hundred steps differ.
   const auto near = [](std::vector<double> expected) {
     return testing::Pointwise(testing::DoubleNear(1e-13), std::move(expected));
   };
@@ -258,7 +262,7 @@ T = 0.9
       const auto values = column(surface_of(run, face), name);
       EXPECT_THAT(values, near(mirrored(values, along_x))) << face << name;
     }
-    // Of the box: bottom 0 … 3, right 4, 5, top 6 … 9, left 10, 11.
+    // Faces of the box: bottom 0 … 3, right 4, 5, top 6 … 9, left 10, 11.
     const auto values = column(box, name);
     for (std::size_t k = 0; k < 2; ++k) {
       EXPECT_NEAR(values[k], along_x * values[3 - k], 1e-13) << name;
@@ -267,7 +271,7 @@ T = 0.9
     }
   }
   EXPECT_GT(largest(column(left, "shear_stress")), 1e-4);
-  EXPECT_GT(column(box, "heat_flux")[1], 0.01);  // what the hot wall below gives
+  EXPECT_GT(column(box, "heat_flux")[1], 0.01);  // heat from the hot wall below
 }
 
 TEST(surfaces, of_couette_flow_in_the_plane_have_the_stress_of_the_line) {
@@ -295,7 +299,7 @@ velocity = [0.3, 0]
   finish(plane);
   const surface_table top = surface_of(plane, "top");
   ASSERT_EQ(top.faces.size(), 4U);
-  // Sums over the velocities in another order, over 40 steps.
+  // Sums over the velocities have another order, over 40 steps.
   for (const double one : column(top, "shear_stress")) EXPECT_NEAR(one, stress, 1e-14);
   for (const double one : column(top, "heat_flux")) EXPECT_NEAR(one, heat, 1e-14);
   for (const double one : column(surface_of(plane, "bottom"), "pressure"))
@@ -303,10 +307,10 @@ velocity = [0.3, 0]
 }
 
 TEST(surfaces, without_collisions_have_the_stress_and_heat_flux_of_free_molecules) {
-  // Each half of the velocities carries the Maxwellian of the wall it left, with densities such that equal
-  // numbers J cross: ρ₁ √T₁ = ρ₂ √T₂ and ρ₁ + ρ₂ = 2, so that
-  //   J = √(2/π) √(T₁ T₂)/(√T₁ + √T₂),
-  // and a molecule that crosses has the mean energy 2 T + U²/2 and momentum U.
+  // Each half of the velocities has the Maxwellian of the wall that it left. The densities are such that
+  // equal numbers J cross: ρ₁ √T₁ = ρ₂ √T₂ and ρ₁ + ρ₂ = 2, so
+  //   J = √(2/π) √(T₁ T₂)/(√T₁ + √T₂).
+  // A molecule that crosses has the mean energy 2 T + U²/2 and momentum U.
   std::string text = gas_between("cells = [3, 4]\n", R"toml([boundary.bottom]
 kind = "diffuse"
 [boundary.top]
@@ -334,9 +338,8 @@ velocity = [0.3, 0]
     EXPECT_NEAR(column(bottom, "heat_flux")[k], heat_below, 1e-4 * heat_below);
     EXPECT_NEAR(column(top, "heat_flux")[k], heat_above, 1e-4 * std::abs(heat_above));
     EXPECT_NEAR(column(top, "energy")[k], -heat_below, 1e-4 * heat_below);
-    // The gas is the same everywhere: ρ₁ : ρ₂ = √T₂ : √T₁, u = U ρ₁/2, and with the energy of both halves the
-    // temperature √(T₁T₂) + U² ρ₁ρ₂/12 for three degrees of freedom. It slips along, and is colder than, the
-    // upper wall.
+    // The gas is uniform: ρ₁ : ρ₂ = √T₂ : √T₁ and u = U ρ₁/2. With the energy of both halves its temperature
+    // is √(T₁T₂) + U² ρ₁ρ₂/12 for three degrees of freedom. It is slower and colder than the upper wall.
     const double rho1 = 2.0 * std::sqrt(T2) / (std::sqrt(T1) + std::sqrt(T2)), rho2 = 2.0 - rho1;
     for (const surface_table* wall : {&top, &bottom}) {
       EXPECT_NEAR(column(*wall, "rho")[k], 1.0, 1e-4);
@@ -348,18 +351,18 @@ velocity = [0.3, 0]
 }
 
 TEST(surfaces, have_the_state_of_the_gas_from_the_distribution_at_the_face) {
-  // Beside a vacuum only the half that leaves is there: of a Maxwellian at rest, half of its density, the
-  // velocity √(2/π) and the temperature (3 − 2/π)/3. Before the first step, and without one.
+  // Beside a vacuum only the half that leaves exists. For a Maxwellian at rest it has half of the density,
+  // the velocity √(2/π) and the temperature (3 − 2/π)/3. The run has taken no step.
   for (const char* face : {"left", "right"})
     for (const char* points : {"24", "25"}) {
       std::string text = gas_between("cells = 6\n", fmt::format("[boundary.{}]\nkind = \"vacuum\"\n", face));
       text.replace(text.find("max = 6.5\npoints = 8\n"), 21, fmt::format("max = 7\npoints = {}\n", points));
-      const bool odd = std::string(points) == "25";  // with a velocity along the face, which counts whole
+      const bool odd = std::string(points) == "25";  // has a velocity along the face, which counts fully
       if (!odd) text.replace(text.find("max = 7\n"), 8, "set = \"half-range-gauss-hermite\"\n");
       const simulation run = run_of(text);
       const surface_table end = surface_of(run, face);
       const double sign = std::string(face) == "right" ? 1.0 : -1.0, pi = std::numbers::pi;
-      // The midpoint rule of a half Maxwellian has an error of Δv²/12 times its slope.
+      // The midpoint rule for a half Maxwellian has an error of Δv²/12 times its slope.
       const double near = odd ? 0.05 : 1e-6;
       EXPECT_NEAR(column(end, "rho")[0], odd ? 0.5 + 0.5 * 14.0 / 25.0 / std::sqrt(2.0 * pi) : 0.5,
                   odd ? 1e-6 : 1e-6);
@@ -372,8 +375,8 @@ TEST(surfaces, have_the_state_of_the_gas_from_the_distribution_at_the_face) {
 }
 
 TEST(surfaces, of_kramers_problem_have_the_velocity_of_the_gas_at_the_wall) {
-  // In units of k times the gradient of u beyond the Knudsen layer, k = ε √2, the velocity of the gas at a
-  // wall is σ_P − Y(0) with the slip coefficient σ_P = 1.0158 and Y(0) = .30908 (Loyalka, Petrellis,
+  // The unit is k = ε √2 times the gradient of u beyond the Knudsen layer. In this unit the velocity of the
+  // gas at a wall is σ_P − Y(0). The slip coefficient is σ_P = 1.0158, and Y(0) = .30908 (Loyalka, Petrellis,
   // Storvick, Phys. Fluids 18, 1975). The plates are 10 k apart, and the layers have decayed in the middle.
   std::string text = gas_between("cells = 40\n", "[boundary.right]\nvelocity = [0, 0.1]\n");
   text.replace(text.find("max = 6.5\npoints = 8\n"), 21,

@@ -1,4 +1,4 @@
-// Runs between planes of symmetry, against periodic runs of twice the length.
+// Runs between planes of symmetry agree with periodic runs of twice the length.
 #include <apsis/config/case.hpp>
 #include <apsis/run/setup.hpp>
 #include <apsis/run/simulation.hpp>
@@ -15,7 +15,7 @@ namespace {
 using apsis::parse_case;
 using apsis::simulation;
 
-/// Data that are even about x = 0 and x = 1: ρ and T even, u odd.
+/// Returns a case with data that are even about x = 0 and x = 1: ρ and T even, u odd.
 std::string gas(const std::string& domain, int cells, const std::string& boundary, const std::string& more) {
   return "[model]\nname = \"bgk\"\ndegrees_of_freedom = 3\nepsilon = \"0.01*(2 + cos(pi*x))\"\n"
          "[initial]\nrho = \"1 + 0.4*cos(pi*x)\"\nu = \"0.3*sin(pi*x)\"\nT = \"1 - 0.3*cos(2*pi*x)\"\n"
@@ -43,7 +43,7 @@ TEST(symmetry, at_both_ends_is_half_of_a_periodic_run_with_even_data) {
     double largest = 0.0;
     for (std::size_t k = 0; k < a.size(); ++k)
       largest = std::max(largest, std::abs(a[k] - b[20 * width + k]));
-    // The mirrored half differs by rounding, which WENO weights and some hundred steps amplify.
+    // The mirrored half differs by rounding errors. WENO weights and some hundred steps amplify them.
     EXPECT_LT(largest, 1e-12) << formulation;
     EXPECT_EQ(half.summary().negative_values, 0);
   }
@@ -66,7 +66,7 @@ TEST(symmetry, conserves_mass_and_energy_to_rounding) {
   const auto [mass, energy] = totals();
   while (!run.finished()) run.advance();
   const auto [mass_at_end, energy_at_end] = totals();
-  // Six stages in each of some hundred steps.
+  // There are six stages in each of some hundred steps.
   EXPECT_NEAR(mass_at_end, mass, 1e-12 * mass);
   EXPECT_NEAR(energy_at_end, energy, 1e-12 * energy);
 }

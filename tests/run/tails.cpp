@@ -1,4 +1,4 @@
-// Shakhov's target with its published, signed tails, and what a cut-off target changes.
+// Shakhov's target with its published, signed tails, and the effect of cut tails.
 #include "same_results.hpp"
 
 #include <apsis/config/case.hpp>
@@ -23,8 +23,8 @@ using testing::Not;
 
 namespace {
 
-/// A homogeneous gas with f = M [1 + q v_x (|v|² − 5)/5], integrated over the velocities that the grid does
-/// not resolve, whose heat flux q decays like exp(−Pr t).
+/// A homogeneous gas with f = M [1 + q v_x (|v|² − 5)/5], integrated over unresolved velocities. Its heat
+/// flux q decays like exp(−Pr t).
 const std::string reduced = R"toml(
 [parameters]
 q = 0.1
@@ -45,7 +45,7 @@ end = 1
 dt = 0.05
 )toml";
 
-/// The same with all velocities, and a heat flux in every direction.
+/// The same gas with all velocities, and a heat flux in every direction.
 const std::string resolved = R"toml(
 [parameters]
 q = 0.1
@@ -74,7 +74,7 @@ double field_of(const simulation& run, const std::string& name) {
   return fields.values.at(static_cast<std::size_t>(at)).front();
 }
 
-/// q(1)/q(0).
+/// Returns q(1)/q(0).
 double decay(simulation& run, const std::string& name) {
   const double before = field_of(run, name);
   while (!run.finished()) run.advance();
@@ -96,7 +96,7 @@ TEST(tails, by_default_the_heat_flux_decays_with_the_prandtl_number_whatever_its
       auto run = run_of(reduced, {std::string("parameters.q=") + q, space});
       EXPECT_NEAR(field_of(run, "heat_flux"), std::stod(q), 1e-8) << "f is the given function";
       EXPECT_NEAR(field_of(run, "stress"), 0.0, 1e-8);
-      // Third order with steps of a twentieth of the relaxation time.
+      // The error is of third order, with steps of a twentieth of the relaxation time.
       EXPECT_NEAR(decay(run, "heat_flux"), published, 1e-5) << q << space;
       EXPECT_EQ(run.summary().largest_cut, 0.0);
       EXPECT_FALSE(run.promises().positivity);
@@ -111,7 +111,7 @@ TEST(tails, decay_with_the_prandtl_number_in_three_dimensions) {
 }
 
 TEST(tails, that_are_cut_off_make_another_gas_and_the_run_measures_how_much) {
-  // Nothing is cut where the target is nonnegative: the same bits.
+  // A nonnegative target is not cut, so all bits agree.
   const std::vector<std::string> weak = {"parameters.q=0.001"},
                                  cut_weak = {"parameters.q=0.001", "model.tails=nonnegative"};
   auto whole = run_of(reduced, weak), bounded = run_of(reduced, cut_weak);
@@ -119,7 +119,7 @@ TEST(tails, that_are_cut_off_make_another_gas_and_the_run_measures_how_much) {
   decay(bounded, "heat_flux");
   EXPECT_TRUE(same_bits(whole.state(), bounded.state()));
   EXPECT_EQ(bounded.summary().largest_cut, 0.0);
-  // The larger q, the more is cut; in the end all of the term in q, which leaves BGK with Pr = 1.
+  // A larger q means a larger cut. In the end all of the term in q is cut, which leaves BGK with Pr = 1.
   double last = published;
   for (const char* q : {"0.1", "0.2", "0.5"}) {
     auto run = run_of(reduced, {std::string("parameters.q=") + q, "model.tails=nonnegative"});

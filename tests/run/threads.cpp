@@ -13,7 +13,7 @@ namespace threads_test {
 
 namespace {
 
-/// Sets OMP_NUM_THREADS during a test and restores it.
+/// Sets OMP_NUM_THREADS during a test and restores it afterwards.
 class environment {
  public:
   explicit environment(const char* value) {

@@ -1,4 +1,4 @@
-// time.tolerance: steps chosen by the estimated error in a production run.
+// With time.tolerance the estimated error determines the steps of a production run.
 #include "ode_runs.hpp"
 #include "support/catalogue.hpp"
 
@@ -28,7 +28,7 @@ apsis::case_config ode(const std::string& method, const std::string& more) {
                            "c.toml");
 }
 
-/// Smallest value of ũ after one step of r Δt_FE.
+/// Returns the smallest value of ũ in three steps of r Δt_FE.
 double smallest_of_embedded(const std::string& method, const std::string& epsilon,
                             const std::string& scheme) {
   const auto c = apsis::load_case(
@@ -58,12 +58,13 @@ TEST(tolerance, bounds_the_error) {
   // Below 1e-4 errors off equilibrium have less weight until steps resolve epsilon/C (docs/methods.md).
   EXPECT_LT(fine, 1e-2 * coarse);
   EXPECT_LT(fine, 1e-5);
-  // dt = 0.5 alone, here only the largest step, does not resolve the layer of width 0.002.
+  // Without a tolerance dt = 0.5 does not resolve the layer of width 0.002. With one it is only
+  // the largest step.
   EXPECT_GT(error_at_one(ode("md-imex-8-3-mixed", "")), 1e3 * fine);
 }
 
 TEST(tolerance, counts_rejected_steps_and_respects_the_step_rule) {
-  // Steps that begin to resolve ε from above are tried too long.
+  // Steps that begin to resolve ε are at first too long.
   const auto done =
       finished(apsis::load_case("paper/ode", {"time.method=md-imex-16-4-accurate", "time.dt=0.5",
                                               "time.tolerance=1e-8", "model.epsilon=1e-3"}));
@@ -96,7 +97,7 @@ TEST(tolerance, restarts_bit_for_bit) {
 }
 
 TEST(tolerance, is_kept_by_explicit_additive_and_exponential_methods) {
-  // By weights of their own, or one step against two halves.
+  // The estimates use weights of the method, or compare one step with two halves.
   for (const char* name :
        {"kutta-4", "ssprk-10-4", "dop853", "ars-443", "ssp3-433", "ark-548", "bhr-553", "exponential-2"}) {
     const auto of = [&](const char* tolerance) {
@@ -105,7 +106,7 @@ TEST(tolerance, is_kept_by_explicit_additive_and_exponential_methods) {
     const double coarse = error_at_one(of("1e-4")), fine = error_at_one(of("1e-7"));
     EXPECT_LT(coarse, 1e-2) << name;  // 100 tolerances
     EXPECT_LT(fine, 1e-5) << name;
-    // Steps of explicit methods end at the limit of stability, with errors far below the tolerance.
+    // Steps of explicit methods end at the limit of stability. Their errors are far below the tolerance.
     EXPECT_LT(fine, std::max(coarse / 20, 1e-7)) << name;
   }
   const auto done = finished(apsis::load_case(
@@ -153,13 +154,14 @@ TEST(embedded_solution, is_positive_up_to_the_step_of_the_method_for_any_epsilon
 }
 
 TEST(tolerance, with_a_graded_start_resolves_the_layer) {
-  // Time in which D₀ changes u by tol^{1/2} = 0.01, with ε/C = 1e-2/5 and |D₀|/|u| = sin(2)/2.
+  // The first step is the time in which D₀ changes u by tol^{1/2} = 0.01. Here ε/C = 1e-2/5 and
+  // |D₀|/|u| = sin(2)/2.
   const std::string near =
       "[model]\nname = \"ode\"\nepsilon = 1e-2\ninitial = \"given\"\nu1 = 2.0\nu2 = 0.90930499\n"
       "[time]\nmethod = \"md-imex-3-2\"\nend = 1.0\ndt = 0.5\ntolerance = 1e-3\n";
   const auto first = [](const apsis::case_config& c) { return apsis::simulation(c).dt(); };
   EXPECT_NEAR(first(ode("md-imex-3-2", "tolerance = 1e-4\n")), 2e-3 * 0.01 * 2.0 / std::sin(2.0), 1e-9);
-  // The layer changes the moments by 9e-4 |u|/2: a larger tolerance does not resolve it.
+  // The layer changes the moments by 9e-4 |u|/2, so a larger tolerance does not resolve it.
   EXPECT_GT(first(ode("md-imex-3-2", "tolerance = 1e-3\n")), 0.02);
   // For data near equilibrium the first step follows the slow solution unless a graded start is requested.
   EXPECT_GT(first(apsis::parse_case(near, "c.toml")), 0.02);
@@ -180,8 +182,8 @@ TEST(tolerance, below_the_plateau_of_a_method_is_warned_about_at_the_start) {
 }
 
 TEST(dense_newton, of_more_than_200_unknowns_is_warned_about_once_before_the_run) {
-  // A lattice of n × n velocities with a collision (0, 0) + (i, j) ↔ (i, 0) + (0, j) for each i, j ≥ 1: these
-  // are independent, so that a stage has (n − 1)² unknowns.
+  // On a lattice of n × n velocities there is a collision (0, 0) + (i, j) ↔ (i, 0) + (0, j) for each i, j ≥
+  // 1. They are independent, so a stage has (n − 1)² unknowns.
   const auto warning_of = [](int n, const std::string& method) {
     std::string velocities, collisions;
     for (int i = 0; i < n; ++i)
@@ -220,14 +222,15 @@ TEST(explicit_method, for_a_stiff_collision_is_warned_about_with_the_number_of_s
 
 namespace {
 
-/// Knudsen numbers from 1e-5 to 1 on point values, so that runs with different steps solve the same system.
+/// Returns a case with Knudsen numbers from 1e-5 to 1 and point values. Runs with different steps thus solve
+/// the same system.
 apsis::case_config mixed_bgk(const std::string& method, double tolerance) {
   auto c = small(method, "finite-difference");
-  c.space.limiter = apsis::limiter_choice::none;  // that of short steps of one length is another one
+  c.space.limiter = apsis::limiter_choice::none;  // depends on the length of the step
   c.time.cfl = 4.0;                               // only the tolerance limits the step
   c.time.end = 0.01;
   c.time.tolerance = tolerance;
-  // Those that are asymptotic preserving for consistent data only, which they are warned about.
+  // These methods are asymptotic preserving for consistent data only, so runs warn about them.
   if (apsis::find_method(method).is_tableau()) c.time.startup = apsis::startup_choice::graded;
   return c;
 }
@@ -247,7 +250,7 @@ double relative(const std::vector<double>& u, const std::vector<double>& v) {
   return std::sqrt(difference / size);
 }
 
-/// Steps of 2.5e-7, a fortieth of the smallest ε/C.
+/// Returns the state after steps of 2.5e-7, a fortieth of the smallest ε/C.
 const std::vector<double>& converged() {
   static const std::vector<double> state = [] {
     auto c = mixed_bgk("md-imex-8-3-mixed", 1.0);
@@ -259,7 +262,7 @@ const std::vector<double>& converged() {
   return state;
 }
 
-/// The analogue of tests/integrate/tolerance_table.cpp for the ODE model.
+/// Checks errors and steps as tests/integrate/tolerance_table.cpp does for the ODE model.
 void check_mixed_bgk(const std::string& method, const std::vector<double>& tolerances) {
   long before = 0;
   for (const double tolerance : tolerances) {
@@ -286,14 +289,14 @@ TEST(tolerance_of_mixed_bgk, costs_at_most_30_per_decade_and_is_kept_or_warned_a
 }
 
 TEST(tolerance_of_mixed_bgk, is_not_forecast_for_explicit_methods) {
-  // They resolve the relaxation or are unstable, and no term of size epsilon is left.
+  // Explicit methods resolve the relaxation or are unstable, so no term of size epsilon remains.
   testing::internal::CaptureStderr();
   const apsis::simulation run(mixed_bgk("dop853", 1e-7));
   EXPECT_THAT(testing::internal::GetCapturedStderr(), testing::Not(HasSubstr("terms of size epsilon")));
 }
 
 TEST(tolerance_of_mixed_bgk, is_warned_about_if_the_first_step_skips_the_initial_layer) {
-  // One step of ark-436 is 3e-3 off and its embedded solution agrees with it to 1e-4.
+  // One step of ark-436 has an error of 3e-3, but its embedded solution agrees with it to 1e-4.
   const auto words_of = [](apsis::case_config c) {
     testing::internal::CaptureStderr();
     const apsis::simulation run(c);
@@ -303,7 +306,7 @@ TEST(tolerance_of_mixed_bgk, is_warned_about_if_the_first_step_skips_the_initial
   EXPECT_THAT(words_of(c), testing::Not(HasSubstr("initial layer")));
   c.time.startup = apsis::startup_choice::none;
   EXPECT_THAT(words_of(c), HasSubstr("give time.startup = \"graded\""));
-  c.time.method = "ars-443";  // by step doubling
+  c.time.method = "ars-443";  // step doubling
   EXPECT_THAT(words_of(c), HasSubstr("initial layer"));
   EXPECT_THAT(words_of(mixed_bgk("md-imex-8-3-mixed", 1e-4)), testing::Not(HasSubstr("initial layer")));
 }

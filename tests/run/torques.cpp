@@ -41,7 +41,7 @@ boundary = "outflow"
 
 }  // namespace
 
-/// A closed surface under a uniform pressure has no force and no torque, wherever the origin is.
+/// Under a uniform pressure a closed surface has neither force nor torque, for any origin.
 TEST(torques, of_a_gas_at_rest_vanish) {
   for (const std::string& text :
        {plane + "[[space.body]]\nshape = 'polygon'\npoints = [[-0.7, -0.5], [1.1, 0.1], [-0.1, 0.9]]\n",
@@ -51,7 +51,7 @@ TEST(torques, of_a_gas_at_rest_vanish) {
                 "[1, 2, -1, 25]\n"}) {
     const simulation run = finished(text);
     const body_load load = body_loads(run.setup(), run.last()).front();
-    // Sums of some hundred terms of the size of the pressure times the area of a cell.
+    // The loads are sums of some hundred terms of the size of the pressure times the area of a cell.
     constexpr double rounding = 1e-13;
     for (const double force : load.force) EXPECT_NEAR(force, 0.0, rounding) << text;
     for (const double torque : load.torque) EXPECT_NEAR(torque, 0.0, rounding) << text;

@@ -22,20 +22,20 @@ namespace {
 
 using namespace apsis;
 
-/// A gas in a box with the keys of [space] after its cells; `velocity`: those of [velocity].
+/// Returns a gas in a box. `space` has the keys of [space], `velocity` those of [velocity].
 std::string gas_in(const std::string& space, const std::string& velocity = "max = 6\npoints = 12\n") {
   return gas_tables({.epsilon = "0.1", .velocity = velocity, .method = "md-imex-5-2", .end = "0.02"}) +
          "[initial]\nrho = 1\nT = 1\n[space]\n" + space;
 }
 
-/// The mass per unit of time through a side or solid box in the last step.
+/// Returns the mass per unit of time through a side or solid box in the last step.
 double flow_through(const simulation& run, const std::string& side) {
   const auto names = run.setup().open_faces();
   const auto place = std::find(names.begin(), names.end(), side) - names.begin();
   return run.last().flux.at(static_cast<std::size_t>(place) * run.setup().equation->invariants().size());
 }
 
-/// A side with a total flow.
+/// Returns the table of a side with a total flow.
 std::string with_flow(const std::string& side, const std::string& flow) {
   return fmt::format("[boundary.{}]\nkind = \"mass-flow\"\ntotal_flow = {}\n", side, flow);
 }
@@ -46,7 +46,7 @@ void set_up(const std::string& text, const std::vector<std::string>& more = {}) 
 
 const std::string disc = "[[space.body]]\nshape = \"circle\"\ncentre = [0, 0.55]\nradius = 0.25\nT = 1\n";
 
-/// Sums of some hundred terms of size 1 in each of 5 stages.
+/// The flows are sums of some hundred terms of size 1 in each of 5 stages.
 constexpr double rounding = 1e-13;
 
 }  // namespace
@@ -74,7 +74,7 @@ TEST(total_flow, in_the_plane_crosses_what_boxes_and_bodies_leave_open) {
 }
 
 TEST(total_flow, is_uniform_over_the_open_area) {
-  // The disc covers 0.5 of 1.1, up to its polygon: chords of the cut cells deviate by h²/8R = 0.005 at most.
+  // The disc covers 0.5 of 1.1, up to its polygon. Chords of the cut cells deviate by at most h²/8R = 0.005.
   const std::string space = "cells = [20, 22]\ndomain = [[0, 1], [0, 1.1]]\nboundary = \"symmetry\"\n" + disc;
   const auto total = finished(gas_in(space + with_flow("left", "0.12"))),
              flux = finished(gas_in(space + "[boundary.left]\nkind = \"mass-flow\"\nflux = 0.2\n"));
@@ -98,7 +98,7 @@ TEST(total_flow, in_space_crosses_an_area) {
   for (const std::string& body : {std::string(), ball}) {
     const auto run = finished(
         gas_in(space, "max = 5\npoints = 8\n") + with_flow("left", "\"0.3 + t\"") + body, {"time.end=0.01"});
-    // The mean over a step of a formula that is linear in t.
+    // The flow is the mean over a step of a formula that is linear in t.
     EXPECT_NEAR(flow_through(run, "left"), 0.3 + run.last().t - 0.5 * run.last().dt, rounding) << body;
   }
 }
@@ -113,7 +113,7 @@ TEST(total_flow, about_an_axis_crosses_rings) {
     EXPECT_NEAR(flow_through(run, "left"), 0.5, rounding) << body;
     EXPECT_NEAR(flow_through(run, "top"), -0.7, rounding) << body;
   }
-  // Per length along the axis, through the circumference 2πr of both cylinders.
+  // The flow is per length along the axis, through the circumference 2πr of both cylinders.
   const auto line =
       finished(gas_in(sides + "cells = 8\ndomain = [0.5, 1.5]\n", velocity) + with_flow("left", "0.4") +
                "[boundary.right]\nkind = \"mass-flow\"\nflux = -0.05\n");

@@ -18,7 +18,7 @@ namespace {
 
 const std::string both[] = {"finite-volume", "finite-difference"};
 
-/// A cold gas, Δv = 2√T, expanding into a density of 1e-300.
+/// Returns a cold gas with Δv = 2√T that expands into a density of 1e-300.
 apsis::case_config expansion(const std::string& how, const std::string& epsilon,
                              apsis::equilibrium_choice equilibrium) {
   auto c = small("md-imex-6-3", how);
@@ -87,8 +87,8 @@ TEST(vacuum, rows_of_zeros_of_subnormal_numbers_and_of_one_velocity_are_integrat
       value(10, k) = k == 7 || k == 8 ? 0.5 : 0.0;
       value(11, k) = k == 0 || k == width - 1 ? 0.5 : 0.0;
     }
-    // The mass differs from that of the case: ten steps, without promises relative to the start. Half the
-    // molecules at either end of the velocities are a gas that these cannot represent.
+    // The mass differs from that of the case, so ten steps are taken without promises relative to the start.
+    // If half the molecules are at either end of the velocities, these cannot resolve the gas.
     run.restore(saved);
     for (int step = 0; step < 10; ++step) {
       try {

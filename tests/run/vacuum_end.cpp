@@ -1,4 +1,4 @@
-// Ends behind which there is vacuum: the solution of free flight, the flow of a continuum, and the promises.
+// Ends with a vacuum behind them: the solution of free flight, the flow of a continuum, and the promises.
 #include <apsis/config/case.hpp>
 #include <apsis/core/errors.hpp>
 #include <apsis/run/setup.hpp>
@@ -53,7 +53,8 @@ void finish(simulation& run) {
   while (!run.finished()) run.advance();
 }
 
-/// Mean of |f − f₀(x − vt)|/f₀ᵐᵃˣ with f₀ = 0 outside of [0, 1]: no molecule enters or collides.
+/// Returns the mean of |f − f₀(x − vt)|/f₀ᵐᵃˣ with f₀ = 0 outside of [0, 1], as no molecule
+/// enters or collides.
 double error_of_free_flight(const lines& overrides) {
   simulation run = run_of(overrides);
   const auto middle = run.row(run.mesh().size() / 2);
@@ -80,14 +81,15 @@ double error_of_free_flight(const lines& overrides) {
 TEST(vacuum_end, lets_free_molecules_fly_away) {
   const double coarse = error_of_free_flight({"space.cells=40"}),
                fine = error_of_free_flight({"space.cells=80"});
-  // Fifth order in space, third in time with Δt ~ Δx, of data with three continuous derivatives at the ends.
+  // The order is five in space and three in time with Δt ~ Δx. The data have three continuous derivatives at
+  // the ends.
   EXPECT_GT(std::log2(coarse / fine), 2.8);
   EXPECT_LT(fine, 2e-4);
 }
 
 TEST(vacuum_end, receives_what_leaves_a_uniform_gas) {
-  // Until the other end is felt, Σ_{v>0} v M of molecules per time and area leave, 1/√(2π); half-range points
-  // compute the integral exactly.
+  // Before the other end has an effect, Σ_{v>0} v M = 1/√(2π) molecules leave per time and area. Half-range
+  // points compute the integral exactly.
   for (const char* set : {"", "velocity.set=half-range-gauss-hermite"}) {
     lines how = {
         "initial.rho=1", "boundary.left.kind=symmetry", "boundary.right.kind=vacuum", "space.cells=200",
@@ -114,9 +116,9 @@ TEST(vacuum_end, receives_what_leaves_a_uniform_gas) {
 }
 
 TEST(vacuum_end, of_a_continuum_passes_the_mass_of_a_sonic_flow) {
-  // A rarefaction of the Euler equations beside the face, at its speed of sound there: ρ = ρ₀
-  // (2/(γ+1))^{2/(γ−1)}, u = 2 a₀/(γ+1). A kinetic layer at the face, where half of the velocities are
-  // missing, hands it on.
+  // Beside the face the solution is a rarefaction of the Euler equations, with the speed of sound at the
+  // face: ρ = ρ₀ (2/(γ+1))^{2/(γ−1)}, u = 2 a₀/(γ+1). A kinetic layer at the face lacks half of the
+  // velocities but has the same mass flux.
   simulation run = run_of({"initial.rho=1", "model.degrees_of_freedom=3", "model.epsilon=5e-4",
                            "boundary.left.kind=symmetry", "boundary.right.kind=vacuum", "space.cells=100",
                            "velocity.max=7", "velocity.points=28", "space.reconstruction=weno5-z",
@@ -137,7 +139,7 @@ TEST(vacuum_end, empties_a_vessel) {
     finish(run);
     EXPECT_EQ(run.summary().negative_values, 0);
     EXPECT_LT(run.summary().conservation_defect, 1e-13);
-    // Some crossing times, of the slowest molecules too.
+    // The run lasts some crossing times, also for the slowest molecules.
     EXPECT_LT(run.last().total[0], 0.05) << epsilon;
     EXPECT_GE(run.last().total[0], 0.0);
   }
@@ -158,7 +160,7 @@ RC_GTEST_PROP(vacuum_end, keeps_the_promises_of_every_model_and_method, ()) {
       "time.method=" + *rc::gen::element<std::string>("md-imex-3-2", "md-imex-6-3"),
       "initial.rho=\"x < 0.4 ? 1 : " + *rc::gen::element<std::string>("1e-12", "0.1") + "\"",
       "initial.u=" + *rc::gen::element<std::string>("0", "1", "-1")};
-  // The target of Shakhov's model as published makes densities beside a vacuum negative.
+  // Beside a vacuum the published target of Shakhov's model makes densities negative.
   if (model == "shakhov") overrides.push_back("model.tails=nonnegative");
   simulation run = run_of(overrides);
   RC_ASSERT(run.promises().conservation);

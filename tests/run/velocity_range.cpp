@@ -1,5 +1,5 @@
-// One rule for the range and the spacing of velocities: before a run for data, walls, ends and sources, in a
-// run for every cell.
+// One rule covers the range and the spacing of velocities. Before a run it applies to data, walls, ends and
+// sources. During a run it applies to every cell.
 #include <apsis/config/case.hpp>
 #include <apsis/core/errors.hpp>
 #include <apsis/run/manifest.hpp>
@@ -27,7 +27,7 @@ using testing::IsEmpty;
 using testing::Not;
 using overrides = std::vector<std::string>;
 
-/// Two jets that meet: the energy of their motion becomes T = 9.
+/// Two jets that meet. The energy of their motion becomes T = 9.
 const std::string jets = R"toml(
 title = "Jets"
 [model]
@@ -76,7 +76,7 @@ dt = 0.005
 end = 0.01
 )toml";
 
-/// The messages of a run and its end.
+/// The messages of a run and its outcome.
 struct outcome {
   std::string warnings, error;
   int code = 0;
@@ -109,14 +109,14 @@ long times_in(const std::string& text, const std::string& word) {
   return count;
 }
 
-/// The number after a word of a message.
+/// Returns the number after a word of a message.
 double number_after(const std::string& text, const std::string& word) {
   const auto at = text.find(word);
   EXPECT_NE(at, std::string::npos) << text;
   return at == std::string::npos ? 0.0 : std::stod(text.substr(at + word.size()));
 }
 
-/// Share of the mass and the energy of a Maxwellian at rest beyond ±κ √T.
+/// Returns the share of the mass, or of the energy, of a Maxwellian at rest beyond ±κ √T.
 double mass_beyond(double kappa) {
   return std::erfc(kappa / std::sqrt(2.0));
 }
@@ -143,7 +143,7 @@ TEST(velocity_range, a_gas_that_grows_beyond_the_grid_ends_the_run_with_the_valu
                                     HasSubstr("give at least "), HasSubstr("cell "), HasSubstr("step ")))
         << model;
     EXPECT_LE(times_in(narrow.warnings, "velocity.max = 4.8 is too small"), 1) << narrow.warnings;
-    // The value does, though T is far from its largest when the run ends.
+    // The suggested value suffices, although T is far from its maximum when the run ends.
     const double max = number_after(narrow.error, "give at least "),
                  points = number_after(narrow.error, "velocity.points = ");
     const outcome wide =
@@ -152,7 +152,7 @@ TEST(velocity_range, a_gas_that_grows_beyond_the_grid_ends_the_run_with_the_valu
     EXPECT_EQ(wide.code, 0) << wide.error;
     EXPECT_THAT(wide.warnings, Not(HasSubstr("velocity.max"))) << model;
     EXPECT_LT(wide.summary.velocity_missed, 1e-3) << model;
-    EXPECT_LT(max, 30.0) << model;  // and is no multiple of what is needed
+    EXPECT_LT(max, 30.0) << model;  // and is not much larger than necessary
   }
 }
 
@@ -163,7 +163,7 @@ TEST(velocity_range, in_the_middle_a_run_warns_once_and_reports_what_it_missed) 
       << middle.warnings;
   EXPECT_GT(middle.summary.velocity_missed, 1e-3);
   EXPECT_LT(middle.summary.velocity_missed, 0.1);
-  // Of a gas nearly at rest the shares are those of the normal distribution.
+  // The gas is nearly at rest, so the shares are those of the normal distribution.
   const double kappa = middle.summary.velocity_room;
   EXPECT_NEAR(middle.summary.velocity_beyond / mass_beyond(kappa), 1.0, 0.5);
   EXPECT_NEAR(middle.summary.velocity_missed / energy_beyond(kappa), 1.0, 0.5);
@@ -193,7 +193,7 @@ TEST(velocity_range, without_collisions_the_maxwellian_does_not_matter) {
 }
 
 TEST(velocity_range, cells_with_little_mass_do_not_end_a_run) {
-  // Molecules that fly ahead of a gas into empty space have velocities next to the end of the grid.
+  // Molecules that move ahead of a gas into empty space have velocities near the end of the grid.
   const outcome empty = run_of(gas, {"space.boundary=outflow", "initial.rho=\"x < 0.5 ? 1 : 1e-30\"",
                                      "time.end=0.06", "space.cells=16"});
   EXPECT_EQ(empty.code, 0) << empty.error;
@@ -210,7 +210,7 @@ TEST(velocity_range, is_the_same_for_uniform_sets_and_files_of_their_velocities)
                   other = run_of(by_file, {"space.boundary=periodic"});
     EXPECT_EQ(one.code, other.code) << max;
     EXPECT_EQ(one.warnings.empty(), other.warnings.empty()) << max << one.warnings << other.warnings;
-    // The bands of the rule, for a gas at rest with T = 1.
+    // The rule has these bands for a gas at rest with T = 1.
     const double missed = energy_beyond(max);
     EXPECT_EQ(one.code, missed > 0.1 ? 2 : 0) << max << one.error;
     EXPECT_EQ(one.warnings.empty(), missed > 0.1 || missed < 1e-3) << max << one.warnings;
@@ -218,7 +218,8 @@ TEST(velocity_range, is_the_same_for_uniform_sets_and_files_of_their_velocities)
 }
 
 TEST(velocity_range, of_published_decks_is_accepted) {
-  // ±5 and ±6 thermal speeds of the reference state, with gas and walls that are hotter than it.
+  // Velocities up to ±5 and ±6 thermal speeds of the reference state suffice for gas and walls
+  // that are hotter.
   EXPECT_EQ(run_of(gas, {"velocity.max=5", "boundary.left.T=1.3"}).code, 0);
   EXPECT_THAT(run_of(gas, {"velocity.max=5", "boundary.left.T=1.3"}).warnings, IsEmpty());
   EXPECT_EQ(run_of(gas, {"velocity.max=6", "initial.T=2"}).code, 0);
@@ -254,7 +255,7 @@ end = "20 ns"
 )toml";
   const outcome found = run_of(argon);
   EXPECT_EQ(found.code, 0) << found.error;
-  // √(RT) = 499.7 m/s at 1200 K; six of them.
+  // √(RT) = 499.7 m/s at 1200 K, and the range is six times as large.
   EXPECT_THAT(found.warnings,
               AllOf(HasSubstr("[1250 m/s] is too small"), HasSubstr("[1200 K]"), HasSubstr("[2999 m/s]")));
 }
@@ -266,14 +267,15 @@ TEST(velocity_range, a_force_that_presses_the_gas_against_the_end_is_seen) {
   const outcome ended = run_of(gas, strong);
   EXPECT_EQ(ended.code, 3) << ended.error;
   EXPECT_THAT(ended.error, HasSubstr("velocity.max = 7 is too small for the gas"));
-  // The value foresees the velocity at the end: 4 · 2, and six thermal speeds.
+  // The suggested value includes the velocity at the end, 4 · 2, and six thermal speeds.
   EXPECT_GE(number_after(ended.error, "give at least "), 14.0);
   EXPECT_LT(number_after(ended.error, "give at least "), 15.0);
 }
 
 TEST(velocity_range, the_mass_that_a_force_moves_into_the_last_velocities_is_what_they_gain) {
-  // Without collisions nothing else changes it. f = M(v − at): ½ erfc((w − at)/√2) is beyond the lower edge w
-  // = V − Δv of the last cell; the reconstruction, which sees the molecules that pile up there, moves more.
+  // Without collisions only the force changes the mass. For f = M(v − at), ½ erfc((w − at)/√2) is beyond the
+  // lower edge w = V − Δv of the last cell. The reconstruction uses the molecules that accumulate there, and
+  // moves more.
   const overrides fall = {
       "space.boundary=periodic", "model.epsilon=1e12", "force.acceleration=1", "time.end=2", "time.dt=0.01",
       "velocity.max=4",          "velocity.points=80"};
@@ -287,7 +289,7 @@ TEST(velocity_range, the_mass_that_a_force_moves_into_the_last_velocities_is_wha
   EXPECT_GT(held, moved);
   EXPECT_LT(held, 1.5 * moved);
   EXPECT_EQ(times_in(warnings, "the force moves the gas into the ends of the velocity grid"), 1) << warnings;
-  // The share of the energy that is lost grows above one percent.
+  // The lost share of the energy grows above one percent.
   EXPECT_GT(run.summary().force_lost_energy, 0.01);
   EXPECT_EQ(times_in(warnings, "the force gives the gas less energy than it should"), 1) << warnings;
   const outcome none = run_of(gas, {"space.boundary=periodic", "force.acceleration=0.1"});
@@ -295,7 +297,7 @@ TEST(velocity_range, the_mass_that_a_force_moves_into_the_last_velocities_is_wha
 }
 
 TEST(velocity_range, advice_for_a_beam_at_the_end_is_beyond_the_present_velocities) {
-  // Moments of the gas do not show the beam: a Maxwellian with them ends at 7.2.
+  // The moments of the gas do not reveal the beam: a Maxwellian with them ends at 7.2.
   std::string text = gas;
   text.replace(text.find("rho = 1\nT = 1\n"), 14,
                "g = \"0.98*exp(-v_x^2/2)/sqrt(2*pi) + (abs(v_x - 7.5) < 0.5 ? 0.02 : 0)\"\n"

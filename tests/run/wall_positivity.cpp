@@ -1,5 +1,5 @@
-// Nonnegativity of gases between walls of all kinds, for every convex method, over more than 1e9
-// point·stages.
+// Gases between walls of all kinds stay nonnegative, for every convex method. Runs have more
+// than 1e9 point·stages.
 #include "longest_steps.hpp"
 
 #include <apsis/config/case.hpp>
@@ -56,7 +56,7 @@ class generator {
   std::string pick(const std::vector<std::string>& from) {
     return from[static_cast<std::size_t>(below(static_cast<int>(from.size())))];
   }
-  /// ε from 0 to 1e12.
+  /// Returns ε from 0 to 1e12.
   std::string epsilon() {
     return below(8) == 0 ? "0" : fmt::format("{:.3e}", std::pow(10.0, number(-16.0, 12.0)));
   }
@@ -99,8 +99,8 @@ bool says_velocities_end(const std::exception& problem) {
   return text.find("velocity.max") != std::string::npos && text.find("too small") != std::string::npos;
 }
 
-/// Returns the run of a case with steps r Δt_FE, or with the longest that are linearly stable; nothing if its
-/// walls emit a gas beyond the velocities.
+/// Returns a run with steps r Δt_FE, or with the longest that are linearly stable. Returns null if the walls
+/// emit a gas beyond the velocities.
 std::unique_ptr<apsis::simulation> started(const std::string& text, bool longest) {
   try {
     return std::make_unique<apsis::simulation>(
@@ -111,7 +111,7 @@ std::unique_ptr<apsis::simulation> started(const std::string& text, bool longest
   }
 }
 
-/// Takes steps, which throw where a promise is broken. Returns false if the gas leaves its velocities, which
+/// Takes steps, which throw if a promise is broken. Returns false if the gas leaves its velocities, which
 /// ends a run.
 bool takes_steps(apsis::simulation& run, int steps) {
   try {
@@ -146,7 +146,7 @@ void expect_nonnegative(const std::string& model, double point_stages, unsigned 
               model.c_str(), done, left, runs);
 }
 
-/// Outcomes of runs with the published targets, whose tails are negative.
+/// Numbers of outcomes of runs with the published targets, which have negative tails.
 struct outcomes {
   int nonnegative = 0, negative = 0, failed = 0;
 };
@@ -173,7 +173,7 @@ outcomes of_signed_tails(const std::string& model, int runs, unsigned seed) {
 }  // namespace
 
 TEST(wall_positivity, is_lost_with_the_published_tails) {
-  // The bound on the target matters: the cases above are not those in which nothing could become negative.
+  // The bound on the target matters: without it the cases above become negative.
   for (const char* model : {"shakhov", "es-bgk"})
     EXPECT_GT(of_signed_tails(model, 12, 1).negative, 0) << model;
 }

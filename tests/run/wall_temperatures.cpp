@@ -1,4 +1,4 @@
-// The mean temperatures of walls that find them, in records, history and results.
+// The mean temperatures of walls without a given temperature, in records, history and results.
 #include "gas_tables.hpp"
 
 #include <apsis/config/case.hpp>
@@ -57,7 +57,7 @@ kind = "adiabatic"
 accommodation = 0.8
 )toml");
 
-/// Σ A T_w/Σ A over the rows of a surface.
+/// Returns Σ A T_w/Σ A over the rows of a surface.
 double mean_of(const simulation& run, const std::string& name) {
   const auto tables = run.surfaces();
   const auto table =
@@ -80,14 +80,14 @@ std::vector<std::string> names_of(const simulation& run) {
   return names;
 }
 
-/// Compares the records of the start and of every step with the tables of the surfaces.
+/// Compares the records at the start and after every step with the tables of the surfaces.
 void expect_means(const std::string& text, const std::vector<std::string>& names) {
   simulation run(parse_case(text, "walls.toml"));
   EXPECT_EQ(names_of(run), names);
   const auto compare = [&] {
     const auto& found = run.last().wall_temperature;
     ASSERT_EQ(found.size(), names.size());
-    // Both are sums of some tens of terms of size 1.
+    // Both values are sums of some tens of terms of size 1.
     for (std::size_t k = 0; k < names.size(); ++k)
       EXPECT_NEAR(found[k], mean_of(run, names[k]), 1e-14) << names[k] << run.step();
   };
@@ -105,7 +105,7 @@ void expect_means(const std::string& text, const std::vector<std::string>& names
 
 TEST(wall_temperatures, are_the_means_over_sides_boxes_and_bodies) {
   expect_means(plane, {"left", "plate", "disc"});
-  // On a line, where the data have no y.
+  // On a line the data have no y.
   std::string line = gas_in("cells = 12\nboundary = \"diffuse\"\n[boundary.right]\nkind = \"adiabatic\"\n");
   line.replace(line.find("*x*y"), 4, "*x");
   expect_means(line, {"right"});

@@ -22,7 +22,7 @@ namespace {
 
 using apsis::simulation;
 
-/// A monatomic gas between diffuse walls, the left one heated and, with two velocity dimensions, moving.
+/// A monatomic gas between diffuse walls. The left wall is heated, and moves in two velocity dimensions.
 const std::string gas_between_walls = R"toml(
 title = "Gas between walls"
 [parameters]
@@ -64,7 +64,7 @@ void finish(simulation& run) {
   while (!run.finished()) run.advance();
 }
 
-/// Received through the left and the right face: [2][invariant].
+/// Returns the amount received through the left or the right face. The order is [2][invariant].
 double received(const simulation& run, int side, const std::string& invariant) {
   const auto names = run.setup().equation->invariants();
   const auto at = std::find(names.begin(), names.end(), invariant) - names.begin();
@@ -80,7 +80,7 @@ double flux(const simulation& run, int side, const std::string& invariant) {
 }  // namespace
 
 TEST(walls, balances_close_to_rounding_with_heat_and_motion) {
-  // Every step is checked by the promise; here the sums over the run.
+  // The promise checks every step. Here the sums over the run are checked.
   for (const char* formulation : {"finite-difference", "finite-volume"})
     for (const char* method : {"md-imex-6-3", "md-imex-3-2", "md-imex-8-3-mixed"}) {
       simulation run =
@@ -94,7 +94,7 @@ TEST(walls, balances_close_to_rounding_with_heat_and_motion) {
       EXPECT_LT(std::abs(received(run, 1, "mass")), 1e-15);
       EXPECT_GT(received(run, 0, "energy"), 0.01);
       EXPECT_GT(std::abs(received(run, 0, "momentum_y")), 0.001);
-      // Momentum of about p t from each side.
+      // Each side gives a momentum of about p t.
       EXPECT_NEAR(received(run, 0, "momentum_x"), 0.2, 0.05);
       EXPECT_NEAR(received(run, 1, "momentum_x"), -0.2, 0.05);
     }
@@ -103,7 +103,7 @@ TEST(walls, balances_close_to_rounding_with_heat_and_motion) {
 TEST(walls, mass_does_not_drift) {
   simulation run = run_of({"time.end=1000", "space.cells=10", "velocity.points=12", "velocity.max=6.5"});
   for (int step = 0; step < 5000; ++step) run.advance();
-  // Five thousand times the rounding of one flux at random.
+  // The tolerance covers five thousand random rounding errors of one flux.
   EXPECT_LT(run.last().conservation_defect[0], 1e-14);
 }
 
@@ -136,7 +136,7 @@ RC_GTEST_PROP(walls, keep_the_promises_of_every_method_kind_and_epsilon, ()) {
   } else if (kind == "diffuse") {
     overrides.push_back("boundary.right.accommodation=" + *rc::gen::element<std::string>("0", "0.3", "1"));
   }
-  // Data with a jump and nearly a vacuum.
+  // The data have a jump and nearly a vacuum.
   overrides.insert(overrides.end(),
                    {"initial.rho=\"x < 0.4 ? 1 : " + *rc::gen::element<std::string>("1e-12", "0.1") + "\"",
                     "initial.u=" + *rc::gen::element<std::string>("0", "1", "-1")});
@@ -148,8 +148,8 @@ RC_GTEST_PROP(walls, keep_the_promises_of_every_method_kind_and_epsilon, ()) {
 }
 
 RC_GTEST_PROP(walls, entropy_grows_by_no_more_than_the_walls_give, ()) {
-  // Darrozes & Guiraud: S − Σ (E − u_w·m)/T_w of what the walls gave decays, for walls of different
-  // temperatures too.
+  // S − Σ (E − u_w·m)/T_w decays, where m and E are the amounts that the walls gave (Darrozes & Guiraud). The
+  // walls may have different temperatures.
   const auto text = [](double x) { return std::to_string(x); };
   const auto number = [](double from, double to) {
     return from + (to - from) * *rc::gen::inRange(0, 1001) / 1e3;
@@ -177,7 +177,7 @@ RC_GTEST_PROP(walls, entropy_grows_by_no_more_than_the_walls_give, ()) {
 }
 
 TEST(walls, give_entropy_by_cooling_a_gas) {
-  // The bound is not that of a closed gas: S itself grows, and the corrected change is negative.
+  // The bound is not that of a closed gas. S itself grows, but the corrected change is negative.
   simulation run = run_of({"space.reconstruction=upwind1", "boundary.left.T=0.7", "boundary.right.T=0.7"});
   ASSERT_TRUE(run.promises().entropy);
   const double before = run.initial_record().entropy;
@@ -192,7 +192,7 @@ TEST(walls, whose_entropy_is_not_bounded_promise_no_decay) {
        {std::vector<std::string>{"boundary.left.T=\"1 + 0.1*sin(t)\""},
         {"boundary.right.kind=inflow", "boundary.right.rho=1", "boundary.right.T=1"},
         {"boundary.right.kind=outflow"},
-        // The discrete Maxwellian on few velocities has other slopes than the formula.
+        // On few velocities the discrete Maxwellian has other slopes than the formula.
         {"velocity.points=8"},
         {"force.acceleration=0.1"}}) {
     std::vector<std::string> overrides = {"space.reconstruction=upwind1"};
@@ -211,9 +211,9 @@ TEST(walls, beyond_the_step_limit_values_become_negative) {
 }
 
 TEST(walls, free_molecular_heat_and_shear_are_those_of_half_maxwellians) {
-  // Without collisions each half of the velocities carries the emission of its wall: f± = ρ± M[1, u±, T±]
-  // with equal mass fluxes. Fluxes by discrete sums over the midpoints, where Maxwellians of density 1 are
-  // exact to spectral accuracy; mass, shear stress and heat flux of the run must equal them once the slowest
+  // Without collisions each half of the velocities has the emission of its wall: f± = ρ± M[1, u±, T±] with
+  // equal mass fluxes. The expected fluxes are discrete sums over the midpoints, where Maxwellians of density
+  // 1 have spectral accuracy. Mass, shear stress and heat flux of the run must equal them after the slowest
   // molecules have crossed.
   const double hot = 1.2, U = 0.3;
   simulation run = run_of({"model.epsilon=1e12", "space.cells=8", "model.velocity_dimensions=2",
@@ -235,7 +235,7 @@ TEST(walls, free_molecular_heat_and_shear_are_those_of_half_maxwellians) {
         energy[side] += v * 0.5 * (v * v + w * w + T) * g;
       }
   }
-  // The density: total mass 1 in steady state is that of both halves.
+  // In the steady state the total mass 1 is that of both halves.
   const double ratio = -mass[0] / mass[1];  // ρ₋/ρ₊
   const double plus = 2.0 / (1.0 + ratio), minus = ratio * plus;
   shear = plus * mass[0] * U;
@@ -253,7 +253,7 @@ TEST(walls, a_steady_state_ends_the_run) {
   finish(run);
   EXPECT_LT(run.t(), 100.0);
   EXPECT_LE(run.last().change, 1e-6);
-  // The heat that enters on one side leaves on the other; its difference heats the gas at the rate `change`.
+  // The heat that enters on one side leaves on the other. The difference heats the gas at the rate `change`.
   EXPECT_GT(flux(run, 0, "energy"), 0.01);
   EXPECT_NEAR(flux(run, 0, "energy"), -flux(run, 1, "energy"), 1e-5);
 
@@ -301,12 +301,12 @@ TEST(walls, values_of_formulas_that_no_wall_has_are_refused_with_their_place) {
       refused({"boundary.right.accommodation=\"0.95 + 10*t\""}),
       testing::ContainsRegex("override '.*accommodation.*': the accommodation of \\[boundary\\.right\\] is "
                              "1\\.[0-9]+ at t = 0\\.[0-9]+ near \\(1\\) \\(a number from 0 to 1"));
-  // It jumps, so that no temperature is too low for the velocities.
+  // The temperature jumps, so no value is too low for the velocities before.
   EXPECT_THAT(
       refused({"boundary.right.T=\"t < 0.02 ? 1 : -1\""}),
       testing::ContainsRegex("\\[boundary\\.right\\] has no Maxwellian at t = 0\\.[0-9]+ near \\(1\\) "
                              "\\(temperature -1 is not positive\\)"));
-  // Before it passes 0, no velocities are fine enough for it.
+  // Before the temperature passes 0, no velocities are fine enough for it.
   EXPECT_THAT(refused({"boundary.right.T=\"1 - 12*t\""}),
               testing::ContainsRegex("\\[boundary\\.right\\] has no Maxwellian at t = 0\\.[0-9]+ "
                                      "\\(temperature -0\\.[0-9]+ is not positive\\); change its values"));
@@ -325,14 +325,14 @@ TEST(walls, a_remainder_of_rounding_before_the_end_makes_no_sliver) {
   const double whole = last_change(fmt::format("{:.17g}", 50.0 * dt), 50),
                one_more = last_change(fmt::format("{:.17g}", 50.0 * dt * (1.0 + 1e-13)), 51);
   EXPECT_GT(whole, 1e-6);
-  // Steps shorter by 2 % change the rate by as much at most; a step of 1e-13 would have one of 3e-2 by
-  // rounding.
+  // Steps shorter by 2 % change the rate by at most as much. In a step of 1e-13 rounding would give a change
+  // of 3e-2.
   EXPECT_NEAR(one_more / whole, 1.0, 0.02);
 }
 
 TEST(walls, fields_of_a_steady_gas_are_the_fluxes_through_its_walls) {
-  // Stress plus pressure and heat flux are constant, and those that the walls feel; point values and edge
-  // values of the second-order scheme at the wall differ by some 1e-3 of the heat flux.
+  // The heat flux and the sum of stress and pressure are constant and equal those at the walls. Point values
+  // and edge values of the second-order scheme at the wall differ by some 1e-3 of the heat flux.
   for (const char* model : {"bgk", "shakhov", "es-bgk"}) {
     auto config = apsis::parse_case(
         gas_between_walls, "walls.toml",

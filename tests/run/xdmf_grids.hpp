@@ -20,7 +20,7 @@ inline std::string text_of(const std::string& path) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-/// Strictly.
+/// Returns true if v is strictly monotone.
 inline bool is_monotone(const std::vector<double>& v) {
   return std::adjacent_find(v.begin(), v.end(), std::greater_equal<>()) == v.end() ||
          std::adjacent_find(v.begin(), v.end(), std::less_equal<>()) == v.end();
@@ -39,8 +39,8 @@ struct described_grid {
   std::vector<std::size_t> points;  ///< slowest axis first
 };
 
-/// The grids of a description. Checks that their axes are strictly monotone and as long as the topology
-/// states.
+/// Returns the grids of a description. Checks that their axes are strictly monotone, and that their lengths
+/// are those of the topology.
 inline std::vector<described_grid> checked_grids(const std::string& folder) {
   const std::string text = text_of(folder + "/solution.xdmf");
   static const std::regex grid(
@@ -66,7 +66,7 @@ inline std::vector<described_grid> checked_grids(const std::string& folder) {
       EXPECT_EQ(nodes.size(), one.points.at(--k)) << source;
     }
     EXPECT_EQ(k, 0U) << one.name;
-    // The series of all snapshots of a field has a description of its own.
+    // The series of all snapshots of a field has its own description.
     for (std::sregex_iterator item(attributes.begin(), attributes.end(), value); item != end; ++item) {
       const auto extents = apsis::hdf5_file::open(folder + "/" + (*item)[2].str()).extents((*item)[3].str());
       EXPECT_EQ(product_of((*item)[1].str()),

@@ -1,4 +1,4 @@
-// Kernels against their formulas on single numbers, point by point: the same bits in every instruction set.
+// Kernels and their formulas on single numbers have the same bits in every instruction set, at every point.
 #include <apsis/core/random_source.hpp>
 #include <apsis/scheme/formulas/limiter.hpp>
 #include <apsis/scheme/formulas/row.hpp>
@@ -30,7 +30,7 @@ struct edges {
 
 using stencil5 = std::array<double, 5>;
 
-/// Edges of the middle cell; `outflow` is that of the direction of motion.
+/// Returns the edges of the middle cell. `outflow` is the edge in the direction of motion.
 template <class Weights, class N>
 edges weno5_edges(const stencil5& u, bool forward) {
   namespace weno5 = scalar::weno5;

@@ -1,4 +1,4 @@
-// Kernels of every instruction set against scalar implementations of the published formulas.
+// Kernels of every instruction set agree with scalar implementations of the published formulas.
 #include <apsis/core/random_source.hpp>
 #include <apsis/exec/aligned.hpp>
 #include <apsis/scheme/reconstruction_registry.hpp>
@@ -19,7 +19,7 @@ namespace {
 using apsis::aligned_vector;
 using stencil5 = std::array<long double, 5>;
 
-/// Jiang & Shu 1996, (2.16) and (2.17).
+/// Returns the smoothness indicators of Jiang & Shu 1996, (2.16) and (2.17).
 std::array<long double, 3> indicators(const stencil5& u) {
   const auto [a, b, c, d, e] = u;
   const auto square = [](long double x) { return x * x; };
@@ -42,7 +42,7 @@ long double right_edge(const stencil5& u, const std::function<long double(std::s
   return sum / weights;
 }
 
-/// Expected value and tolerance of a kernel, whose smoothness indicators have rounding errors.
+/// Expected value and tolerance of a kernel. Its smoothness indicators have rounding errors.
 struct expected {
   double value, uncertainty;
 };
@@ -65,7 +65,8 @@ expected borges(const stencil5& u) {
   return {static_cast<double>(with(tau)), static_cast<double>(std::abs(with(tau + lost) - with(tau)))};
 }
 
-/// Fu, Hu & Adams 2016, (9) to (13), with C_T = 1e-5 and q = 6. A candidate at the cutoff may be kept or not.
+/// The scheme of Fu, Hu & Adams 2016, (9) to (13), with C_T = 1e-5 and q = 6. A candidate at the cutoff may
+/// be used or not.
 expected fu_hu_adams(const stencil5& u) {
   const auto beta = indicators(u);
   const long double delta = 1e-200L + 1e-6L * u[2] * u[2];
@@ -83,7 +84,7 @@ expected fu_hu_adams(const stencil5& u) {
   return {static_cast<double>(value), static_cast<double>(uncertainty)};
 }
 
-/// Rows of a velocity distribution with tails below 1e-150, perturbed, with zeros and isolated spikes of the
+/// Perturbed rows of a velocity distribution with tails below 1e-150, zeros, and isolated spikes of the
 /// height `spike`.
 struct pencil {
   int width, cells, ghosts;
@@ -122,8 +123,8 @@ stencil5 mirrored(stencil5 u) {
   return u;
 }
 
-/// A few rounding errors in β change an edge by that fraction of the largest value in the stencil. The floor
-/// of β at 1e-40 of the largest is far below that.
+/// A relative change of β by a few rounding errors changes an edge by that share of the largest value in the
+/// stencil. The floor of β, 1e-40 of the largest β, is much smaller.
 constexpr double rounding = 2e-14;
 
 void expect_edges(const std::string& name, expected (*formula)(const stencil5&), int width, double spike) {
@@ -181,7 +182,7 @@ TEST(kernels, a_scheme_that_defines_both_edges_alone_gets_its_outflow_edges_from
 
 TEST(kernels, edges_agree_with_the_literature_for_every_instruction_set) {
   for_each_instruction_set([] {
-    // Products of the indicators of a spike of 1e60 overflow, numerators alone with one of 1e37.
+    // For a spike of 1e60 products of the indicators overflow. For 1e37 only numerators do.
     for (const int width : {1, 3, 8, 40, 152})
       for (const double spike : {1e3, 1e37, 1e60}) {
         expect_edges("weno5-z", borges, width, spike);
@@ -192,7 +193,7 @@ TEST(kernels, edges_agree_with_the_literature_for_every_instruction_set) {
 }
 
 TEST(kernels, edges_depend_on_their_own_stencil_alone_whatever_the_size_of_other_data) {
-  // Otherwise results would depend on the partition into pencils, that is on the number of threads.
+  // Otherwise results would depend on the partition into pencils, and thus on the number of threads.
   for_each_instruction_set([] {
     for (const char* name : {"weno5-z", "weno5-js", "teno5"})
       for (const int width : {1, 3, 8, 40})
@@ -219,7 +220,7 @@ TEST(kernels, edges_depend_on_their_own_stencil_alone_whatever_the_size_of_other
   });
 }
 
-/// Both may be used in one run; the flux limiter uses the same edges as the limiter of averages.
+/// One run may use both instruction sets. The flux limiter and the limiter of averages use the same edges.
 TEST(kernels, are_tested_for_the_baseline_and_at_least_one_other_instruction_set) {
   int sets = 0;
   for_each_instruction_set([&sets] { ++sets; });

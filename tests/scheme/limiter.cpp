@@ -30,7 +30,7 @@ TEST(limiter, makes_edge_and_interior_values_nonnegative) {
 }
 
 TEST(limiter, keeps_a_forward_euler_step_at_its_limit_nonnegative_in_floating_point) {
-  // c − κ(out − in) with κ = 1/12 and in ≥ 0, for any rounding of the sum.
+  // The step is c − κ(out − in) with κ = 1/12 and in ≥ 0, for any rounding of the sum.
   check_property("update", [] {
     const double c = any_average();
     double l = any_edge(c), r = any_edge(c);

@@ -13,7 +13,7 @@ TEST(quartic, meets_its_five_conditions_and_gauss_integrates_it) {
     const auto number = [] { return *rc::gen::inRange(-1000, 1000) * 1e-3; };
     const double m = number(), c = number(), p = number(), l = number(), r = number();
     const apsis::quartic q(m, c, p, l, r);
-    // Averages over [a, a+1] by the antiderivative.
+    // The antiderivative gives averages over [a, a+1].
     const auto average = [&q](double a) {
       const auto primitive = [&q](double x) {
         return x * (q.c + q.d0 + x * (q.d1 / 2 + x * (q.d2 / 3 + x * (q.d3 / 4 + x * q.d4 / 5))));

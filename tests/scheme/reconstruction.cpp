@@ -14,7 +14,7 @@ namespace {
 
 using apsis::reconstruction;
 
-/// Edge values of the middle one of several cells with rows of width one.
+/// Edge values of the middle of several cells with rows of width one.
 struct edges {
   double left, right;
 };
@@ -26,8 +26,8 @@ edges edges_of(const reconstruction& scheme, const std::vector<double>& cells) {
   return e;
 }
 
-/// Returns the largest edge error for cell averages of f(x) = exp(sin 2πx) on n cells of [0, 1], where the
-/// exact averages come from a ten times finer Simpson rule (error below 1e-15 here).
+/// Returns the largest edge error for cell averages of f(x) = exp(sin 2πx) on n cells of [0, 1]. The averages
+/// come from a ten times finer Simpson rule, with an error below 1e-15 here.
 double edge_error(const reconstruction& scheme, int n) {
   const auto f = [](double x) { return std::exp(std::sin(2.0 * std::numbers::pi * x)); };
   const double h = 1.0 / n;
@@ -54,7 +54,7 @@ double edge_error(const reconstruction& scheme, int n) {
 }  // namespace
 
 TEST(reconstruction, says_whether_it_is_linear) {
-  // Jumps at every place: weights of TENO are constant where data are smooth enough.
+  // There are jumps everywhere, because weights of TENO are constant for sufficiently smooth data.
   const std::vector<double> a = {0.6, 0.3, 1.1, 0.2, 0.9, 0.4, 0.5};
   for (const auto* entry : apsis::reconstruction_entries()) {
     const auto scheme = entry->make();
@@ -68,15 +68,15 @@ TEST(reconstruction, says_whether_it_is_linear) {
       defect = std::max(defect, std::abs(edges_of(*scheme, sum).right - edges_of(*scheme, a).right -
                                          2.0 * edges_of(*scheme, b).right));
     }
-    EXPECT_EQ(defect < 1e-9, entry->linear) << entry->name << ": " << defect;  // rounding is that of 1e3
+    EXPECT_EQ(defect < 1e-9, entry->linear) << entry->name << ": " << defect;  // rounding of 1e3
   }
 }
 
 TEST(reconstruction, every_scheme_reaches_its_order_at_the_edges) {
   for (const auto* entry : apsis::reconstruction_entries()) {
     const auto scheme = entry->make();
-    // Jiang–Shu weights lose order near smooth extrema in the maximum norm until 1e-6 dominates β, that is on
-    // fine meshes; 80 → 160 cells is fine enough for both.
+    // In the maximum norm Jiang–Shu weights lose order near smooth extrema unless 1e-6 dominates β. Meshes of
+    // 80 and 160 cells are fine enough for that.
     const double slope = std::log2(edge_error(*scheme, 80) / edge_error(*scheme, 160));
     EXPECT_GT(slope, scheme->order() - 0.25) << entry->name;
   }
@@ -91,7 +91,7 @@ TEST(reconstruction, is_exact_for_constants_and_mirror_symmetric) {
       for (int i = 0; i < n; ++i) cells.push_back(*rc::gen::inRange(-1000, 1000) * 1e-3);
       const std::vector<double> mirrored(cells.rbegin(), cells.rend());
       const edges a = edges_of(*scheme, cells), b = edges_of(*scheme, mirrored);
-      // The order of summation differs: a few rounding errors of numbers of size one.
+      // The order of summation differs, with a few rounding errors of numbers of size one.
       RC_ASSERT(std::abs(a.left - b.right) <= 1e-13);
       RC_ASSERT(std::abs(a.right - b.left) <= 1e-13);
       const edges c = edges_of(*scheme, std::vector<double>(static_cast<std::size_t>(n), 0.7));
@@ -102,8 +102,8 @@ TEST(reconstruction, is_exact_for_constants_and_mirror_symmetric) {
 }
 
 TEST(reconstruction, uses_the_linear_weights_for_tiny_data) {
-  // At 1e-150 every β underflows; the edge value must be that of the unlimited fifth-order polynomial,
-  // (2a − 13b + 47c + 27d − 3e)/60, as the weights of smooth data give it.
+  // At 1e-150 every β underflows. The edge value must be that of the fifth-order polynomial, (2a − 13b + 47c
+  // + 27d − 3e)/60, as for weights of smooth data.
   for (const char* name : {"weno5-z", "weno5-js"}) {
     const auto scheme = apsis::find_reconstruction(name).make();
     const std::vector<double> shape = {1.0, 0.9, 0.7, 0.65, 0.2};

@@ -1,4 +1,4 @@
-// Heap allocations of a step: the buffers of its schedule at the first step, none afterwards.
+// Heap allocations of a step. The first step allocates the buffers of its schedule, later steps nothing.
 #include "bgk_case.hpp"
 
 #include <apsis/exec/parallel.hpp>
@@ -25,8 +25,8 @@ void* counted_allocation(std::size_t size, std::size_t alignment) {
 
 }  // namespace
 
-// Replace the global allocation functions of the test program. The compiler sees only half of a pair where it
-// inlines the other half.
+// These functions replace the global allocation functions of the test program. If the compiler inlines one
+// half of a pair, it does not recognise the other half.
 #if defined(__GNUC__) && !defined(__clang__)
 #pragma GCC diagnostic ignored "-Wmismatched-new-delete"
 #endif
@@ -80,8 +80,8 @@ heap_use measure(const std::string& method, unknowns what) {
   const apsis::grid mesh = apsis::grid::line(cells, 0.0, 2.0);
   auto problem = problem_of(*m, mesh, what);
   apsis::stepper stepper(apsis::find_method(method), problem);
-  // Equilibria that the grid resolves, far from its ends: no Newton iteration, which would allocate scratch
-  // memory at its first use in a thread.
+  // The grid resolves these equilibria far from its ends. Newton's method is not needed; it would allocate
+  // scratch memory at its first use in a thread.
   apsis::field u = sample(mesh, m->components(), false, [](double x, int k) {
     return (1.5 + std::sin(3.0 * x)) * std::exp(-0.14 * (k - 20.0) * (k - 20.0));
   });
@@ -109,10 +109,10 @@ TEST(allocations, the_first_step_takes_the_buffers_of_its_schedule_and_later_ste
       const auto points = measure(method, unknowns::points), averages = measure(method, unknowns::averages),
                  centres = measure(method, unknowns::averages_at_centres);
       EXPECT_EQ(points.fields, plan.buffers() - 1) << method << ", u^n belongs to the user";
-      // Collisions of cell averages read the old values of their neighbours, so the new ones need a second
-      // buffer.
+      // Collisions of cell averages read the old values of neighbours. The new values therefore need
+      // a second buffer.
       EXPECT_EQ(averages.fields, plan.buffers() - 1 + (plan.implicit_solves() > 0 ? 1 : 0)) << method;
-      // At centres also the changes of the point values, which neighbours read.
+      // At centres the changes of the point values, which neighbours read, need a buffer too.
       const bool collides = plan.implicit_solves() > 0 || plan.collision_evaluations() > 0;
       EXPECT_EQ(centres.fields, averages.fields + (collides ? 1 : 0)) << method;
       EXPECT_EQ(centres.in_later_steps, 0) << method << ", " << threads << " threads";
@@ -125,7 +125,8 @@ TEST(allocations, the_first_step_takes_the_buffers_of_its_schedule_and_later_ste
 
 namespace {
 
-/// A boundary of a kind, with values that are functions of time, or numbers; ρ, T, p and f need them.
+/// Returns a boundary of a kind with values that are functions of time, or numbers. ρ, T, p and
+/// f need values.
 std::shared_ptr<const apsis::boundary> end_of(const apsis::boundary_entry& kind, const apsis::model& gas,
                                               bool constant) {
   apsis::face_quantities values;
@@ -142,7 +143,8 @@ std::shared_ptr<const apsis::boundary> end_of(const apsis::boundary_entry& kind,
   return apsis::make_boundary(kind.name, gas, values);
 }
 
-/// Allocations of five steps with this end at all faces, on a line or in the plane around a solid box.
+/// Returns the number of allocations of five steps with this end at all faces, on a line or in the plane
+/// around a solid box.
 long allocations_beside(const apsis::boundary_entry& kind, bool in_plane, bool constant, unknowns what) {
   const auto gas = small_bgk(in_plane ? 14 : 40, in_plane ? 7.0 : 8.0, in_plane ? 2 : 1);
   const auto side = end_of(kind, *gas, constant);
@@ -190,7 +192,7 @@ long allocations_beside(const apsis::boundary_entry& kind, bool in_plane, bool c
 TEST(allocations, are_none_after_the_first_steps_at_ends_of_every_kind) {
   for (const apsis::boundary_entry* kind : apsis::boundary_entries())
     for (const bool constant : {true, false}) {
-      if (kind->name == "axis") continue;  // it needs axisymmetric flow
+      if (kind->name == "axis") continue;  // needs axisymmetric flow
       for (const auto what : {unknowns::points, unknowns::averages})
         EXPECT_EQ(allocations_beside(*kind, false, constant, what), 0) << kind->name << constant;
       EXPECT_EQ(allocations_beside(*kind, true, constant, unknowns::points), 0) << kind->name << constant;

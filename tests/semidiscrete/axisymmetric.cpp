@@ -1,4 +1,4 @@
-// Axisymmetric flow without collisions: uniform gas past a body, conservation, positivity, order and the way
+// Axisymmetric flow without collisions: uniform gas past a body, conservation, positivity, order, and flight
 // through the axis.
 #include "blocks.hpp"
 #include "polar_gas.hpp"
@@ -17,12 +17,12 @@ namespace {
 
 using namespace polar_gas_test;
 
-/// A ball of radius 0.3 on the axis, in the middle of 0 ≤ x ≤ 1.
+/// A ball of radius 0.33 with its centre on the axis at x = 0.52.
 double ball(const position& x) {
   return std::hypot(x[0] - 0.52, x[1]) - 0.33;
 }
 
-/// Steps of the SSP Runge–Kutta method of order 3 (Shu & Osher 1988).
+/// Takes steps of the SSP Runge–Kutta method of order 3 (Shu & Osher 1988).
 field advanced(const polar_flow& flow, field u, double dt, int steps) {
   const auto add = [&](field& to, double old, double share, const field& from) {
     for (int cell = 0; cell < to.cells(); ++cell)
@@ -56,7 +56,7 @@ TEST(axisymmetric, uniform_gas_stays_uniform_past_a_body_and_a_box_on_the_axis) 
 }
 
 TEST(axisymmetric, mass_axial_momentum_and_energy_are_conserved_to_rounding) {
-  // Between periodic ends and a wall with specular reflection at r = R.
+  // The gas is between periodic ends and a wall at r = R with specular reflection.
   apsis::random_source random(5);
   for (int repetition = 0; repetition < 60; ++repetition) {
     choices of{.dimensions = random.integer(1, 3),
@@ -71,10 +71,10 @@ TEST(axisymmetric, mass_axial_momentum_and_energy_are_conserved_to_rounding) {
     flow.problem = flow.builder->build();
     const field u = random_state(flow.mesh(), flow.equation->components(), random);
     const auto rates = integrals(flow, flow.step(u, 0.0, 1.0)), sizes = integrals(flow, u);
-    // Terms of u times a speed over a width: 1.7 · 10, and 1.3 · 16/(2π 0.05).
+    // The terms are u times a speed over a width: 1.7 · 10, and 1.3 · 16/(2π 0.05).
     const double rounding = 1e-15 * 100.0 * sizes[0];
     for (const std::size_t k : {0U, 3U, 4U}) EXPECT_NEAR(rates[k], 0.0, rounding) << repetition << " " << k;
-    // The budget has the others too.
+    // The budget contains the other invariants too.
     std::vector<double> received(5);
     const auto budget = flow.problem->budget_rates();
     for (std::size_t k = 0; k < budget.size(); ++k) received[k % 5] += budget[k];
@@ -85,8 +85,8 @@ TEST(axisymmetric, mass_axial_momentum_and_energy_are_conserved_to_rounding) {
 }
 
 TEST(axisymmetric, rotation_gives_the_flux_of_momentum_around_the_axis) {
-  // Without gradients along r of F, transport vanishes away from the ends: the change is that of rotation,
-  // and Σ v_r dF/dt = Σ v_θ² F/r up to the fifth order in the angle.
+  // If F has no gradient along r, transport vanishes away from the ends. Only rotation changes F. Then Σ v_r
+  // dF/dt = Σ v_θ² F/r up to the fifth order in the angle.
   const polar_flow flow = make({.cells = 16, .angles = 32});
   const polar_gas& gas = *flow.equation;
   field u(flow.mesh().size(), gas.components());
@@ -137,13 +137,13 @@ TEST(axisymmetric, steps_within_dt_fe_keep_any_data_nonnegative) {
 }
 
 TEST(axisymmetric, steps_above_dt_fe_make_values_negative) {
-  // All mass in one component next to the axis, that which limits the step; first order.
+  // All mass next to the axis is in the component that limits the step. The scheme is of first order.
   const polar_flow flow = make({.scheme = "upwind1"});
   const polar_gas& gas = *flow.equation;
   field u(flow.mesh().size(), gas.components());
   for (int k = 0; k < gas.components(); ++k)
     if (gas.v_r(k) < 0.0) u.row(0)[k] = 1.0;
-  // Isolated angles: neighbours of the one above π/2, which are upstream and downstream, are empty.
+  // The angles are isolated. The upstream and downstream neighbours of the angle above π/2 are empty.
   for (int k = 0; k < gas.components(); ++k)
     if (const int angle = k / 4 % 16; angle != 4 && angle != 11) u.row(0)[k] = 0.0;
   const double tau = flow.problem->forward_euler_step(0.0, u);
@@ -152,7 +152,7 @@ TEST(axisymmetric, steps_above_dt_fe_make_values_negative) {
 }
 
 TEST(axisymmetric, limiter_shortens_no_step) {
-  // The largest rate is that of a velocity towards the axis, |cos ω| + s (M/π) |sin ω_e| in units of v/Δr.
+  // A velocity towards the axis has the largest rate, |cos ω| + s (M/π) |sin ω_e| in units of v/Δr.
   for (const int angles : {12, 16, 32, 64}) {
     const field u(12, 2 * angles * 4);
     const double free = make({.angles = angles}).problem->forward_euler_step(0.0, u);
@@ -168,7 +168,7 @@ TEST(axisymmetric, limiter_shortens_no_step) {
 }
 
 TEST(axisymmetric, rotation_has_fifth_order_in_the_angle) {
-  // Transport of F = r g(ω) along r is exact away from the ends, so that T = v_⊥ sin ω g'(ω).
+  // Transport of F = r g(ω) along r is exact away from the ends, so T = v_⊥ sin ω g'(ω).
   const auto error = [](int angles, const std::string& scheme) {
     const polar_flow flow = make({.cells = 16, .angles = angles, .speeds = {1.0}, .scheme = scheme});
     const polar_gas& gas = *flow.equation;
@@ -190,8 +190,8 @@ TEST(axisymmetric, rotation_has_fifth_order_in_the_angle) {
 }
 
 TEST(axisymmetric, free_flight_converges_in_radius_and_angle) {
-  // f(t, x, v) = f0(x − v t, v) with f0 = exp(−4|x|² + 0.5 x·v + 0.3 x×v), which is symmetric about the axis.
-  // At x = (r, 0), v = (v_r, v_θ).
+  // The solution is f(t, x, v) = f0(x − v t, v) with f0 = exp(−4|x|² + 0.5 x·v + 0.3 x×v), which is symmetric
+  // about the axis. The points are x = (r, 0) with v = (v_r, v_θ).
   const auto solution = [](double t, double r, double vr, double vt) {
     const double x = r - vr * t, y = -vt * t;
     return r * std::exp(-4.0 * (x * x + y * y) + 0.5 * (x * vr + y * vt) + 0.3 * (x * vt - y * vr));
@@ -223,7 +223,7 @@ TEST(axisymmetric, free_flight_converges_in_radius_and_angle) {
         sum += std::abs(u.row(cell)[k] - expected.row(cell)[k]) / (cells * gas.components());
     return sum;
   };
-  // At the axis images keep the mass, at second order in Δr; elsewhere the schemes are of fifth order.
+  // Images at the axis conserve mass with second order in Δr. Elsewhere the schemes are of fifth order.
   const double coarse = error(20, 16), middle = error(40, 32), fine = error(80, 64);
   EXPECT_LT(fine, 2e-5);
   EXPECT_GT(std::log2(coarse / middle), 1.9);
@@ -231,8 +231,8 @@ TEST(axisymmetric, free_flight_converges_in_radius_and_angle) {
 }
 
 TEST(axisymmetric, disturbances_decay_between_the_axis_and_a_diffuse_wall) {
-  // Random disturbances of a half, over more than a hundred transits of the slow ring at the least number of
-  // angles. Waves that grow would exceed them.
+  // Random disturbances of a half decay over more than a hundred transits of the slow ring, at the smallest
+  // number of angles. Growing waves would exceed the tolerance.
   for (const double cfl : {0.5, 1.0}) {
     const polar_flow flow = make({.cells = 10, .angles = 12, .speeds = {0.5, 1.0}, .along = {1.0}});
     apsis::random_source random(3);
@@ -253,7 +253,7 @@ TEST(axisymmetric, a_ring_of_molecules_crosses_the_axis) {
   const polar_flow flow =
       make({.cells = 40, .angles = 32, .speeds = {1.0}, .along = {-1.0, 1.0}, .length = 2.0});
   const polar_gas& gas = *flow.equation;
-  // Molecules at r = 0.5 that move towards the axis, v_r < 0, within some angles of −r.
+  // Initially molecules at r = 0.5 move towards the axis, v_r < 0, within some angles of −r.
   field u(flow.mesh().size(), gas.components());
   for (int cell = 0; cell < u.cells(); ++cell)
     for (int k = 0; k < gas.components(); ++k) {
@@ -267,7 +267,8 @@ TEST(axisymmetric, a_ring_of_molecules_crosses_the_axis) {
   const auto after = integrals(flow, u);
   EXPECT_NEAR(after[0], before[0], 1e-13 * before[0] * steps);
   EXPECT_NEAR(after[4], before[4], 1e-13 * before[4] * steps);
-  // All molecules now move away from the axis, at the distance 0.7 or more of its other side.
+  // At the end all molecules move away from the axis. They are at a distance of 0.7 or more on
+  // its other side.
   double inwards = 0.0, near = 0.0, sum = 0.0;
   for (int cell = 0; cell < u.cells(); ++cell)
     for (int k = 0; k < gas.components(); ++k) {
@@ -295,7 +296,7 @@ TEST(axisymmetric, rows_that_are_even_in_the_azimuthal_velocity_stay_even_to_the
 }
 
 TEST(axisymmetric, epsilon_and_sources_are_those_of_f) {
-  // With the rate ρ, Q(F) = r² Q(f): the change by collisions of r f is r times that of f.
+  // With the rate ρ, Q(F) = r² Q(f). Collisions thus change r f by r times the change of f.
   for (const bool by_density : {false, true}) {
     polar_flow flow = make({.by_density = by_density});
     flow.builder->with_epsilon([](const position& x) { return 0.5 + x[0]; })

@@ -1,4 +1,4 @@
-// A uniform gas, at rest or in a stream along the axis, without collisions.
+// A uniform gas without collisions, at rest or in a stream along the axis, stays uniform.
 #include "polar_gas.hpp"
 
 #include <cmath>
@@ -13,9 +13,9 @@ namespace {
 
 using namespace polar_gas_test;
 
-/// F = r f with the f that walls emit. Speeds of 1.7/Δr and of rotation, 1.3 · 16/(2π r), times values up to
-/// 1 give terms of some tens; limited fluxes have margins of 1e-13 of them. Reconstructions of a higher order
-/// are exact for F. `ends`: kinds at the ends of the axis.
+/// Checks F = r f with the f that walls emit. The terms are speeds of 1.7/Δr, and of rotation, 1.3 · 16/(2π
+/// r), times values up to 1. They are some tens. Limited fluxes have margins of 1e-13 of them.
+/// Reconstructions of higher order are exact for F. `ends` are kinds at the ends of the axis.
 void expect_uniform(double speed, const std::vector<std::string>& ends) {
   for (const int dimensions : {1, 2})
     for (const std::string scheme : {"upwind5", "weno5-z"})
@@ -35,7 +35,7 @@ void expect_uniform(double speed, const std::vector<std::string>& ends) {
                   fmt::format("{} {} {} {} {} {}", dimensions, scheme, limited, outer, end, inner);
               const field u = flow.stream(speed), change = flow.step(u, 0.0, 1.0);
               EXPECT_LT(largest(change), limited ? 1e-11 : 1e-13) << where;
-              // Of f = F/r in the cells at the axis, whose r is the smallest.
+              // The change of f = F/r is checked at the axis, where r is smallest.
               for (int cell = 0; cell < u.cells() && inner == 0.0; ++cell)
                 for (int k = 0; k < u.components() && flow.r(cell) < 0.1; ++k)
                   EXPECT_LT(std::abs(change.row(cell)[k]) / flow.r(cell), limited ? 1e-10 : 1e-12) << where;

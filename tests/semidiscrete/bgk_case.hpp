@@ -16,7 +16,7 @@
 
 #include <support/property.hpp>
 
-/// A small BGK model for tests of the operators.
+/// Returns a small BGK model for tests of the operators.
 inline std::unique_ptr<apsis::relaxation_model> small_bgk(int points = 40, double max = 8.0,
                                                           int dimensions = 1) {
   apsis::model_config config = apsis::default_config(apsis::find_model("bgk"));
@@ -36,13 +36,13 @@ inline std::shared_ptr<apsis::domain> space_of(const apsis::grid& mesh,
   return std::make_shared<apsis::domain>(apsis::make_domain(mesh, kind));
 }
 
-/// The transport without a source, for which the meaning of the unknowns is irrelevant.
+/// Returns the transport without a source, which does not use the meaning of the unknowns.
 inline apsis::upwind_transport upwind(const apsis::model& m, std::shared_ptr<apsis::domain> space,
                                       apsis::limited_reconstruction edges) {
   return {m, std::move(space), std::move(edges), apsis::point_values()};
 }
 
-/// A problem with such a transport.
+/// Returns a problem with such a transport.
 inline apsis::semidiscrete_problem upwind_problem(const apsis::model& m,
                                                   const std::shared_ptr<apsis::domain>& space,
                                                   apsis::limited_reconstruction edges,
@@ -52,7 +52,7 @@ inline apsis::semidiscrete_problem upwind_problem(const apsis::model& m,
           std::move(q)};
 }
 
-/// Nonnegative rows with zeros, jumps and values of very different magnitudes.
+/// Returns nonnegative rows with zeros, jumps and values of very different magnitudes.
 inline apsis::field random_rows(const apsis::grid& mesh, int components) {
   apsis::field u(mesh.size(), components);
   for (int i = 0; i < mesh.size(); ++i)
@@ -69,7 +69,7 @@ inline double smallest(const apsis::field& u) {
   return lowest;
 }
 
-/// Cell averages or point values of g(x, k).
+/// Returns cell averages or point values of g(x, k).
 template <class Function>
 apsis::field sample(const apsis::grid& mesh, int components, bool averages, Function g) {
   apsis::field u(mesh.size(), components);
@@ -80,8 +80,8 @@ apsis::field sample(const apsis::grid& mesh, int components, bool averages, Func
         u.row(i)[k] = g(x, k);
         continue;
       }
-      // Five-point Gauss quadrature on four parts of a cell: exact to rounding for the smooth functions of
-      // these tests.
+      // Five-point Gauss quadrature on four parts of a cell is exact up to rounding for the smooth functions
+      // of these tests.
       constexpr double node[3] = {0.0, 0.538469310105683091, 0.906179845938663993};
       constexpr double weight[3] = {0.568888888888888889, 0.478628670499366468, 0.236926885056189088};
       double sum = 0.0;

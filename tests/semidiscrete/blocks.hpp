@@ -11,8 +11,8 @@
 #include <fmt/format.h>
 #include <support/processes.hpp>
 
-/// Compares 2u + 0.01 T(u) and the forward Euler step of a flow on blocks of its mesh with those on the whole
-/// mesh, bit for bit. make_part(processes) returns the flow of a process. Throws where they differ.
+/// Compares 2u + 0.01 T(u) and the forward Euler step of a flow on blocks with those on the whole mesh, bit
+/// for bit. make_part(processes) returns the flow of a process. Throws if they differ.
 template <class Flow, class MakePart>
 void check_blocks(const Flow& whole, const apsis::field& u, const std::array<int, 3>& blocks,
                   const MakePart& make_part) {

@@ -27,7 +27,7 @@ using apsis::grid;
 using testing::ElementsAre;
 using targets = std::vector<apsis::target<budgeted_state, double>>;
 
-/// Two velocity dimensions of a gas in the plane, 12 × 12 velocities.
+/// Returns a gas in the plane with two velocity dimensions and 12 × 12 velocities.
 std::unique_ptr<apsis::model> gas_in_plane() {
   apsis::model_config config = apsis::default_config(apsis::find_model("bgk"));
   config.space_dimensions = 2;
@@ -36,7 +36,7 @@ std::unique_ptr<apsis::model> gas_in_plane() {
   return apsis::find_model("bgk").make(config);
 }
 
-/// A periodic square of 4 × 4 cells.
+/// Returns the builder of a periodic square of 4 × 4 cells.
 apsis::problem_builder builder_of(const apsis::model& m) {
   apsis::problem_builder builder(m);
   builder.on(grid(2, {4, 4, 1}, {}, {1.0, 1.0, 1.0}))
@@ -47,7 +47,7 @@ apsis::problem_builder builder_of(const apsis::model& m) {
 }  // namespace
 
 TEST(boundary_budget, of_every_end_is_the_pressure_on_its_cell_face_in_a_gas_at_rest) {
-  // Periodic along y; a box of 2 × 1 of 7 × 6 cells.
+  // The mesh has 7 × 6 cells, is periodic along y, and has a box of 2 × 1 cells.
   const auto m = gas_in_plane();
   const grid mesh =
       grid(2, {7, 6, 1}, {0.0, 0.0, 0.0}, {0.7, 1.2, 1.0}).with_solids({{{3, 2, 0}, {2, 1, 1}}});
@@ -60,7 +60,7 @@ TEST(boundary_budget, of_every_end_is_the_pressure_on_its_cell_face_in_a_gas_at_
       .with_solid(0, wall);
   field u(mesh.size(), m->components());
   const auto v = m->velocities();
-  double pressure = 0.0;  // Σ w v_x² f on these velocities
+  double pressure = 0.0;  // Σ w v_x² f for these velocities
   for (int cell = 0; cell < mesh.size(); ++cell)
     for (std::size_t j = 0; j < v.weights().size(); ++j) {
       const double vx = v.speeds(0)[j], vy = v.speeds(1)[j];
@@ -75,7 +75,8 @@ TEST(boundary_budget, of_every_end_is_the_pressure_on_its_cell_face_in_a_gas_at_
     budgeted_state next{field(mesh.size(), m->components()), {}};
     const double dt = 0.25;
     problem.add_transport(0.0, {u, {}}, targets{{&next, 1.0, dt, true}});
-    // Left and right 6 ends each; of the box 1 left, 1 right, 2 bottom, 2 top: 18 ends of 4 invariants.
+    // Left and right have 6 ends each. The box has 1 left, 1 right, 2 bottom and 2 top ends. In total there
+    // are 18 ends of 4 invariants.
     const std::vector<double>& amounts = next.budget.amounts();
     ASSERT_EQ(amounts.size(), 18U * 4U);
     const double dy = 0.2, dx = 0.1;
@@ -84,7 +85,7 @@ TEST(boundary_budget, of_every_end_is_the_pressure_on_its_cell_face_in_a_gas_at_
       const bool to_the_right = end < 6 || end == 13, upwards = end >= 16;
       const double force = pressure * dt * (along_x ? dy : dx);
       const double* got = &amounts[4 * end];
-      // Sums of 144 numbers of the size of the pressure.
+      // The amounts are sums of 144 numbers of the size of the pressure.
       EXPECT_NEAR(got[0], 0.0, 1e-15) << end;
       EXPECT_NEAR(got[1], along_x ? (to_the_right ? force : -force) : 0.0, 1e-14) << end;
       EXPECT_NEAR(got[2], along_x ? 0.0 : (upwards ? force : -force), 1e-14) << end;
@@ -104,7 +105,7 @@ TEST(boundary_budget, is_combined_like_the_rows_of_the_states) {
   EXPECT_THAT(fresh.amounts(), ElementsAre(4.0, 12.0));
   EXPECT_THAT(old.amounts(), ElementsAre(4.0, 0.0));
   EXPECT_THAT(none.amounts(), ElementsAre(1.0, 10.0));
-  // Nothing has crossed a face of u yet.
+  // So far nothing has crossed a face of u.
   boundary_budget first({5.0, 5.0});
   first.combine(1.0, {}, 2.0, rates, true);
   EXPECT_THAT(first.amounts(), ElementsAre(1.0, -4.0));

@@ -33,7 +33,7 @@ std::vector<double> at_centres(const grid& mesh, double (*f)(double)) {
   return values;
 }
 
-/// Smooth data off equilibrium.
+/// Returns smooth data off equilibrium.
 field smooth(const apsis::relaxation_model& m, const grid& mesh, bool averages) {
   std::vector<double> row(static_cast<std::size_t>(m.components()));
   return sample(mesh, m.components(), averages, [&](double x, int k) {

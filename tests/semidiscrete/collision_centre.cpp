@@ -24,7 +24,7 @@ std::vector<double> at_centres(const grid& mesh, const std::function<double(doub
   return values;
 }
 
-/// Smooth data off equilibrium.
+/// Sets smooth data off equilibrium.
 void smooth_row(const apsis::relaxation_model& m, double x, std::vector<double>& row) {
   m.initial()[2].point_value({x}, row);
 }
@@ -37,8 +37,8 @@ field smooth(const apsis::relaxation_model& m, const grid& mesh) {
   });
 }
 
-/// Largest difference in the l1 norm between the averages after a stage and those of the exact solution of
-/// v = u + a Q(v)/ε at each point, over cells first … n−1−first.
+/// Returns the largest l1 difference between the averages after a stage and those of the exact solution. The
+/// exact solution is v = u + a Q(v)/ε at each point. Only the cells first … n−1−first count.
 double error_of_stage(const apsis::relaxation_model& m, int n, const std::string& ends, int first) {
   constexpr double a = 0.3;
   const grid mesh = grid::line(n, 0.0, 2.0);
@@ -61,7 +61,7 @@ double error_of_stage(const apsis::relaxation_model& m, int n, const std::string
   return sum / n;
 }
 
-/// Rows that jump by many powers of ten between cells and velocities, or by six between two halves.
+/// Returns rows that jump by many powers of ten between cells and velocities, or by six between two halves.
 field rough(int cells, int components) {
   field u(cells, components);
   const bool two_halves = *rc::gen::arbitrary<bool>();
@@ -74,7 +74,7 @@ field rough(int cells, int components) {
   return u;
 }
 
-/// The value at the centre of a cell; average(i) points to that of cell i − 6.
+/// Returns the value at the centre of a cell; average(i) points to the average of cell i − 6.
 template <class Average>
 double value_at_centre(const Average& average, bool limited) {
   std::array<const double*, 2 * centre_rows::reach + 1> rows{};
@@ -87,7 +87,7 @@ double value_at_centre(const Average& average, bool limited) {
 }  // namespace
 
 TEST(collision_centre, values_invert_averages_up_to_the_tail_of_the_inverse) {
-  // p_i = cos(θ i) has δ²p = −2(1 − cos θ) p, so that M is a factor.
+  // For p_i = cos(θ i), δ²p = −2(1 − cos θ) p, so M is a factor.
   constexpr double pi = std::numbers::pi;
   for (const double theta : {0.1, 0.7, 2.0, pi}) {
     const double factor = 1.0 - (1.0 - std::cos(theta)) / 12.0;
@@ -95,13 +95,13 @@ TEST(collision_centre, values_invert_averages_up_to_the_tail_of_the_inverse) {
     for (int i = -centre_rows::reach; i <= centre_rows::reach; ++i)
       averages[static_cast<std::size_t>(i + centre_rows::reach)] = factor * std::cos(theta * i);
     const double p = value_at_centre([&](std::size_t i) { return &averages[i]; }, false);
-    // The rest of the series, A Σ_{k>6} |ρ|^k |2 cos(θk) − 2| ≤ 4 A |ρ|⁷/(1 − |ρ|).
+    // The tolerance covers the rest of the series, A Σ_{k>6} |ρ|^k |2 cos(θk) − 2| ≤ 4 A |ρ|⁷/(1 − |ρ|).
     EXPECT_NEAR(p, 1.0, 2e-9) << theta;
   }
 }
 
 TEST(collision_centre, values_of_constant_data_are_the_averages) {
-  // The differences vanish in floating point too.
+  // The differences vanish in floating point arithmetic too.
   for (const double average : {1.0, 0.1, 1e-300, 3e200}) {
     EXPECT_EQ(value_at_centre([&](std::size_t) { return &average; }, true), average);
   }
@@ -162,9 +162,10 @@ TEST(collision_centre, lower_limits_points_where_the_average_would_be_negative_o
 TEST(collision_centre, is_of_fourth_order) {
   const auto m = small_bgk();
   EXPECT_GT(std::log2(error_of_stage(*m, 32, "periodic", 0) / error_of_stage(*m, 64, "periodic", 0)), 3.9);
-  // Apart from the cells at the ends, and all but their neighbours, on which M^-1 depends exponentially less.
+  // Cells at the ends and most of their neighbours are excluded. M^-1 depends exponentially less
+  // on farther cells.
   EXPECT_GT(std::log2(error_of_stage(*m, 32, "outflow", 4) / error_of_stage(*m, 64, "outflow", 8)), 3.9);
-  // There the position is off by h/24, in two cells of n: second order in the l1 norm.
+  // In the two end cells of n, the position is wrong by h/24. This means second order in the l1 norm.
   EXPECT_GT(std::log2(error_of_stage(*m, 32, "outflow", 0) / error_of_stage(*m, 64, "outflow", 0)), 1.9);
 }
 
@@ -185,8 +186,8 @@ TEST(collision_centre, keeps_any_nonnegative_data_so_and_conserves) {
         RC_ASSERT(u.row(i)[k] >= 0.0);
         size += before.row(i)[k];
       }
-    // Momentum and energy weigh f by up to v and v²/2 of the small grid, |v| ≤ 15: 1e-14 of the mass in
-    // roundings.
+    // Momentum and energy weigh f by up to v and v²/2 of the small grid, |v| ≤ 15. The mass has rounding
+    // errors of 1e-14.
     const std::array<double, 3> largest = {1.0, 8.0, 32.0};
     for (int k = 0; k < 3; ++k) {
       const double error = std::abs(total(*m, u, k) - total(*m, before, k));
@@ -230,7 +231,7 @@ TEST(collision_centre, rate_is_the_slope_of_a_short_stage) {
     q->solve(0.0, a, 0.0, stage);
     const apsis::target<field, double> to{&rate, 0.0, 1.0, true};
     q->add_collision(0.0, u, {&to, 1});
-    // The slope differs by a/(2ε) relative to rates below 10, and by the roundings of u, 1e-16/a.
+    // The slope differs by a/(2ε) relative to rates below 10. The roundings of u add 1e-16/a.
     for (int i = 0; i < u.cells(); ++i)
       for (int k = 0; k < u.components(); ++k)
         EXPECT_NEAR((stage.row(i)[k] - u.row(i)[k]) / a, rate.row(i)[k], 1e-5) << ends << i << " " << k;

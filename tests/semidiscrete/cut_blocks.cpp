@@ -33,7 +33,7 @@ choices random_flow(apsis::random_source& random) {
   return one;
 }
 
-/// Compares 2u + 0.01 T(u) on the blocks with that on the whole mesh.
+/// Compares 2u + 0.01 T(u) on the blocks and on the whole mesh.
 void expect_the_bits_of_one_process(const choices& flow, const std::array<int, 3>& blocks, unsigned seed) {
   std::mt19937 generator(seed);
   const gas_past_bodies whole = make(flow);
@@ -49,13 +49,13 @@ TEST(cut_blocks, have_the_bits_of_one_process_past_random_bodies) {
   int tested = 0;
   for (unsigned repetition = 0; repetition < 30; ++repetition) {
     const choices flow = random_flow(random);
-    // Blocks of a few cells, so that groups lie in several of them.
+    // The blocks have a few cells, so groups lie in several of them.
     std::array<int, 3> blocks = {random.integer(1, 5), random.integer(1, 5),
                                  flow.dimensions == 3 ? random.integer(1, 3) : 1};
     try {
       make(flow);
     } catch (const apsis::input_error&) {
-      continue;  // a body that is refused
+      continue;  // the body is refused
     }
     ++tested;
     ASSERT_NO_THROW(expect_the_bits_of_one_process(flow, blocks, repetition)) << repetition;

@@ -1,4 +1,4 @@
-// Loops over the rows of cut cells have the bits of the formulas of single numbers.
+// Loops over the rows of cut cells have the bits of their formulas on single numbers.
 #include <apsis/semidiscrete/cut_rows.hpp>
 #include <apsis/semidiscrete/formulas/cut_cell.hpp>
 

@@ -1,4 +1,4 @@
-// Transport beside bodies does not grow: eigenvalues of its derivative.
+// Transport beside bodies does not grow: the eigenvalues of its derivative have negative real parts.
 #include <apsis/semidiscrete/cut_transport.hpp>
 
 #include <algorithm>
@@ -15,14 +15,14 @@ namespace {
 
 using namespace gas_past_bodies_test;
 
-/// The gas lies where n·x > 0.1, n = (cos, sin) of an angle in degrees.
+/// Returns a body beside gas in n·x > 0.1, where n = (cos, sin) of an angle in degrees.
 outside_function half_plane(double degrees) {
   const double c = std::cos(degrees * std::acos(-1.0) / 180.0),
                s = std::sin(degrees * std::acos(-1.0) / 180.0);
   return [=](const position& at) { return c * at[0] + s * at[1] - 0.1; };
 }
 
-/// Returns the largest real part of an eigenvalue of ∂T/∂f at f = 1, of one component alone.
+/// Returns the largest real part of an eigenvalue of ∂T/∂f at f = 1, for a single component.
 double largest_growth(const gas_past_bodies& gas, int component) {
   const grid& mesh = gas.mesh();
   std::vector<int> unknowns;
@@ -32,7 +32,7 @@ double largest_growth(const gas_past_bodies& gas, int component) {
   for (int cell = 0; cell < mesh.size(); ++cell)
     if (mesh.solid(cell) < 0) std::fill_n(f.row(cell), f.components(), 1.0);
   const field before = gas.step(f, 0.0, 1.0);
-  constexpr double change = 1e-4;  // T is linear, but for a factor of 1 − O(change⁸)
+  constexpr double change = 1e-4;  // T is linear up to a factor 1 − O(change⁸)
   const auto n = static_cast<Eigen::Index>(unknowns.size());
   Eigen::MatrixXd derivative(n, n);
   for (Eigen::Index j = 0; j < n; ++j) {
@@ -52,8 +52,8 @@ double largest_growth(const gas_past_bodies& gas, int component) {
 
 }  // namespace
 
-/// With a parabola through cells downstream as ghosts of components that enter, a mode along the normal grows
-/// at 45° at the rate 0.13 |v|/Δx.
+/// If ghosts of entering components were values of a parabola through downstream cells, a mode would grow. At
+/// 45° it grows along the normal at the rate 0.13 |v|/Δx.
 TEST(cut_stability, of_a_wall_at_any_angle) {
   for (const double angle : {45.0, 225.0, 35.0, 60.0}) {
     const gas_past_bodies gas = make({.cells = 16,
@@ -65,7 +65,7 @@ TEST(cut_stability, of_a_wall_at_any_angle) {
     int seen = 0;
     const int velocities = static_cast<int>(gas.equation->velocities().weights().size());
     for (int k = 0; k < velocities; ++k) {
-      // Fast ones, as all are multiples of few directions.
+      // Only fast velocities count, because all are multiples of few directions.
       const double speed = std::hypot(x[apsis::at(k)], y[apsis::at(k)]);
       if (speed < 3.5 || speed > 4.2) continue;
       ++seen;

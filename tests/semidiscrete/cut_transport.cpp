@@ -1,4 +1,4 @@
-// Transport past bodies: a gas at rest, conservation, positivity, images, threads, and what no body can have.
+// Transport past bodies: a gas at rest, conservation, positivity, images, threads, and refusals.
 #include <apsis/semidiscrete/cut_transport.hpp>
 
 #include <apsis/core/errors.hpp>
@@ -23,10 +23,10 @@ TEST(cut_transport, leaves_a_gas_at_rest_alone) {
     const gas_past_bodies gas = make(one);
     ASSERT_GT(gas.mesh().cut()->groups().size(), 10U);
     const field u = gas.uniform();
-    // In units of the fluxes through the faces of a cell.
+    // The unit is the flux through the faces of a cell.
     EXPECT_LT(largest(gas.step(u, 0.0, 1.0)) * gas.mesh().spacing(0) / 4.0, 1e-14)
         << one.scheme << one.boundary;
-    // The force on each wall is its area times the pressure.
+    // The rate at each wall must be finite.
     const auto rates = gas.problem->budget_rates();
     for (const double rate : rates) EXPECT_TRUE(std::isfinite(rate));
   }
@@ -49,7 +49,7 @@ TEST(cut_transport, gives_bodies_in_a_gas_at_rest_no_force) {
       }
       end += ends;
     }
-    // Pressure 1 on both sides of a length of about 1, up to the rounding of sums.
+    // On both sides of a length of about 1 the pressure is 1, up to the rounding of sums.
     for (std::size_t k = 1; k + 1 < count; ++k) {
       EXPECT_GT(sizes[k], 1.0) << wall << k;
       EXPECT_LE(std::abs(force[k]), 1e-13 * sizes[k]) << wall << k;
@@ -71,10 +71,10 @@ TEST(cut_transport, conserves_what_walls_do_not_give) {
       given[k % count] += rates[k];
       sizes[k % count] += std::abs(rates[k]);
     }
-    // Relative to what passes the border: sums of some thousand terms.
+    // The tolerance is relative to the amounts that cross the border, sums of some thousand terms.
     for (std::size_t k = 0; k < count; ++k)
       EXPECT_NEAR(change[k], given[k], 1e-12 * (1.0 + sizes[k])) << one.scheme << " " << one.boundary << k;
-    // No mass passes a wall, up to rounding of fluxes of size 10.
+    // No mass passes a wall, up to the rounding of fluxes of size 10.
     const auto& space = gas.builder->space();
     std::size_t end = 0;
     for (const auto& surface : space.budget_surfaces()) {
@@ -88,8 +88,9 @@ TEST(cut_transport, conserves_what_walls_do_not_give) {
       end += ends;
     }
   }
-  // No energy passes a wall that reflects, where several values of these states are of a size: of ten decades
-  // and zeros one value may have nearly all of the mass (14 of 3080 walls for ten seeds).
+  // No energy passes a reflecting wall if several values of a state have similar size. The states have
+  // values over ten decades and zeros. A single value may thus have nearly all of the mass (14 of 3080 walls
+  // for ten seeds).
   EXPECT_GE(without_heat, 0.98 * reflecting);
   EXPECT_GT(reflecting, 100);
 }
@@ -114,7 +115,8 @@ TEST(cut_transport, passes_no_mass_through_planes_of_symmetry_beside_bodies) {
         for (const auto& surface : space.budget_surfaces()) {
           const std::size_t ends = space.ends_at(surface);
           for (std::size_t k = end; k < end + ends && surface.solid < 0; ++k) {
-            // Sums of 100 products of speeds up to 4 and values up to 10, in which the images cancel.
+            // The rates are sums of 100 products of speeds up to 4 and values up to 10, in which
+            // the images cancel.
             EXPECT_NEAR(rates[k * count], 0.0, 1e-12) << radius << scheme << limited;
             EXPECT_NEAR(rates[k * count + count - 1], 0.0, 1e-11) << radius << scheme << limited;
             ++ends_seen;
@@ -176,7 +178,7 @@ TEST(cut_transport, gives_the_cells_of_a_group_the_same_values) {
 }
 
 TEST(cut_transport, commutes_with_rotations_by_right_angles) {
-  // x → y, y → −x of the body, of the state and of the velocities.
+  // The body, the state and the velocities are mapped by x → y, y → −x.
   for (const std::string wall : {"diffuse", "symmetry"}) {
     const auto with = [&](position centre) {
       return make({.cells = 18, .bodies = {ball(centre, 0.47)}, .boundary = "outflow", .wall = wall});
@@ -200,7 +202,7 @@ TEST(cut_transport, commutes_with_rotations_by_right_angles) {
     for (int cell = 0; cell < u.cells(); ++cell)
       for (int k = 0; k < u.components(); ++k)
         difference = std::max(difference, std::abs(a.row(cell)[k] - b.row(image_of(cell))[velocity_of(k)]));
-    // Sums in another order: 3e-15.
+    // Sums in another order differ by 3e-15.
     EXPECT_LT(difference, 1e-13 * largest(a)) << wall;
   }
 }
@@ -236,7 +238,7 @@ TEST(cut_transport, of_a_box_on_edges_is_that_of_a_solid_box) {
     const field a = body.step(u, 0.0, 1.0);
     field b(u.cells(), u.components());
     const apsis::target<field, double> to{&b, 0.0, 1.0, true};
-    // The same limiter: it depends on the step, and that of a mesh with bodies is half as long.
+    // The limiter must be the same. It depends on the step, which is half as long on a mesh with bodies.
     solid->limit_for_steps(0.5);
     solid->add_transport(0.0, u, {&to, 1});
     for (int cell = 0; cell < u.cells(); ++cell)

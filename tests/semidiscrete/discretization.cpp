@@ -24,7 +24,7 @@ using apsis::grid;
 
 constexpr double pi = std::numbers::pi;
 
-/// Unknowns of a function of x, one component, on [0, 2].
+/// Returns the unknowns of a function of x with one component on [0, 2].
 std::vector<double> unknowns_of(const cell_unknown& unknown, int cells, double (*f)(double x)) {
   const grid mesh = grid::line(cells, 0.0, 2.0);
   std::vector<double> all(static_cast<std::size_t>(cells)), scratch(1);
@@ -51,7 +51,7 @@ TEST(discretization, quadrature_sample_and_second_moment_belong_to_one_functiona
   for (const discretization_entry* entry : apsis::discretization_entries()) {
     SCOPED_TRACE(entry->name);
     const cell_unknown& unknown = entry->instance().unknown();
-    // A cell of width 0.1 around 0.35: the functional of x^p by sampling, and by its points.
+    // In a cell of width 0.1 around 0.35, sampling and the points of the functional give the same for x^p.
     for (int power = 0; power <= 4; ++power) {
       std::vector<double> scratch(1);
       double sampled = 0.0, sum = 0.0;
@@ -59,7 +59,7 @@ TEST(discretization, quadrature_sample_and_second_moment_belong_to_one_functiona
                      {}, {0.35, 0.0, 0.0}, 0.1, scratch, &sampled);
       for (const auto& [offset, weight] : unknown.points())
         sum += weight * std::pow(0.35 + 0.1 * offset, power);
-      EXPECT_NEAR(sampled, sum, 1e-16 + 4e-16 * sum) << power;  // a few roundings of numbers ≤ 1
+      EXPECT_NEAR(sampled, sum, 1e-16 + 4e-16 * sum) << power;  // rounding of numbers ≤ 1
       if (power == 2) {
         EXPECT_NEAR(sampled, 0.35 * 0.35 + 0.01 * unknown.second_moment(), 1e-16);
       }
@@ -73,7 +73,7 @@ TEST(discretization, unknowns_of_a_finer_mesh_restrict_to_those_of_a_coarser_one
     const cell_unknown& unknown = entry->instance().unknown();
     ASSERT_EQ(unknown.why_not_restricted(64, 32), "");
     EXPECT_EQ(unknown.why_not_restricted(16, 32), "it is coarser");
-    // Interpolation of eighth order on 64 cells of sin(πx): (π/32)⁸/2⁸ ~ 3e-11.
+    // Interpolation of sin(πx) with eighth order on 64 cells has an error of (π/32)⁸/2⁸ ~ 3e-11.
     EXPECT_LT(distance(unknown.restricted(unknowns_of(unknown, 64, wave), 1, 32, true),
                        unknowns_of(unknown, 32, wave)),
               1e-10);
@@ -123,10 +123,10 @@ TEST(discretization, transport_and_collision_converge_on_its_own_unknowns) {
         return largest;
       };
       of_transport.push_back(error(t, exact_t));
-      // Point values collide exactly, but for rounding.
+      // Collisions of point values are exact up to rounding.
       of_collision.push_back(std::max(error(q, exact_q), 1e-13));
     }
-    // Second order is what a discretization needs at least; tests of the operators demand those of their own.
+    // Every discretization needs second order at least. Tests of the operators demand their own orders.
     EXPECT_GT(std::log2(of_transport[0] / of_transport[1]), 1.8);
     if (of_collision[0] > 1e-12) {
       EXPECT_GT(std::log2(of_collision[0] / of_collision[1]), 1.8);
@@ -156,7 +156,7 @@ TEST(discretization, names_are_unique_and_the_default_is_first) {
 
 namespace {
 
-/// First-order upwind on a periodic line, in plain loops, which counts its evaluations.
+/// First-order upwind on a periodic line in plain loops. It counts its evaluations.
 class plain_upwind final : public apsis::transport {
  public:
   plain_upwind(const apsis::model& m, const grid& mesh, int& evaluations)
@@ -235,7 +235,7 @@ TEST(transport_interface, a_problem_needs_one_call_for_one_evaluation_of_any_tra
   EXPECT_EQ(evaluations, 1);
   for (int cell = 0; cell < 40; ++cell)
     for (int k = 0; k < m->components(); ++k)
-      // The same sums in another order: a few roundings of values up to 30.
+      // The same sums in another order differ by a few roundings of values up to 30.
       EXPECT_NEAR(next.row(cell)[k], expected.row(cell)[k], 1e-13) << cell << ' ' << k;
   EXPECT_THROW(plain.set_force({}), apsis::input_error);
 }

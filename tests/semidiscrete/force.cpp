@@ -1,4 +1,4 @@
-// The force −a·∇_v f: positivity, what it gives, and its order.
+// The force −a·∇_v f: positivity, momentum and energy, and order.
 #include <apsis/semidiscrete/force.hpp>
 
 #include <apsis/boundary/boundary_registry.hpp>
@@ -43,7 +43,7 @@ acceleration constant(std::array<double, 3> a) {
   return {[a](double, const position&) { return a; }, {std::abs(a[0]), std::abs(a[1]), std::abs(a[2])}};
 }
 
-/// A periodic problem with a force, limited unless the scheme is of first order.
+/// Returns a periodic problem with a force. It is limited unless the scheme is of first order.
 std::unique_ptr<apsis::semidiscrete_problem> problem_of(const apsis::model& gas, const acceleration& of,
                                                         bool limited, const std::string& scheme = "weno5-z") {
   apsis::problem_builder builder(gas);
@@ -55,7 +55,7 @@ std::unique_ptr<apsis::semidiscrete_problem> problem_of(const apsis::model& gas,
   return builder.build();
 }
 
-/// α u + β T(u).
+/// Returns α u + β T(u).
 field combined(apsis::semidiscrete_problem& problem, const field& u, double alpha, double beta) {
   field sum(u.cells(), u.components());
   const target<field, double> to{&sum, alpha, beta, true};
@@ -70,7 +70,7 @@ double least(const field& u) {
   return found;
 }
 
-/// Rows of every size, with zeros and subnormal numbers.
+/// Returns rows of every size, with zeros and subnormal numbers.
 field random_rows(const apsis::model& gas) {
   field u(cells, gas.components());
   for (int cell = 0; cell < cells; ++cell)
@@ -105,19 +105,21 @@ RC_GTEST_PROP(force, keeps_positivity_up_to_its_forward_euler_step, ()) {
 }
 
 TEST(force, loses_positivity_above_its_forward_euler_step) {
-  // All mass at one velocity, next to a zero; without motion through space only the force limits the step.
+  // All mass is at one velocity, next to a zero. Without motion in space the force alone limits the step.
   const auto gas = gas_of(1, 0, 10);
   const auto problem = problem_of(*gas, constant({500.0, 0.0, 0.0}), false, "upwind1");
   field u(cells, gas->components());
   for (int cell = 0; cell < cells; ++cell) u.row(cell)[5] = 1.0;
   const double tau = problem->forward_euler_step(0.0, u);
   EXPECT_GE(least(combined(*problem, u, 1.0, tau)), 0.0);
-  // The velocity .7 of the middle leaves a sixth of the bound on |v|/Δx unused, 7 · 8 of it beside 500/1.4.
+  // The velocity .7 in the middle does not use the whole bound for |v|/Δx. Of 7 · 8 beside 500/1.4, a sixth
+  // of the bound is free.
   EXPECT_LT(least(combined(*problem, u, 1.0, 1.2 * tau)), 0.0);
 }
 
 RC_GTEST_PROP(force, gives_momentum_and_energy_to_rounding, ()) {
-  // A Maxwellian far from the ends of the lattice, the same in all cells; T is then the force alone.
+  // The data are a Maxwellian far from the ends of the lattice, equal in all cells. T then consists of the
+  // force alone.
   const int d = *rc::gen::inRange(1, 4);
   const auto gas = gas_of(d, *rc::gen::element(0, 3, 5) < d ? 0 : 5, d == 3 ? 16 : 24);
   const auto a = random_acceleration();
@@ -134,7 +136,8 @@ RC_GTEST_PROP(force, gives_momentum_and_energy_to_rounding, ()) {
   const field change = combined(*problem, state, 0.0, 1.0);
   std::vector<double> rates(gas->invariants().size());
   gas->invariant_densities(change.row(3), rates.data());
-  // The flux out of the last velocity, which is dropped: a thirtieth of f two points before, times |a| |v|².
+  // The tolerance covers the flux out of the last velocity, which is dropped. It is a thirtieth of f two
+  // points before, times |a| |v|².
   const double tolerance = d == 3 ? 2e-6 : 2e-8;
   RC_ASSERT(std::abs(rates[0]) <= 1e-12);
   double power = 0.0;
@@ -143,15 +146,15 @@ RC_GTEST_PROP(force, gives_momentum_and_energy_to_rounding, ()) {
     power += 1.3 * u[k] * a[k];
   }
   RC_ASSERT(std::abs(rates[1 + u.size()] - power) <= 10.0 * tolerance);
-  // The budget has the same rates, over a domain of length 1, after no face.
+  // The budget has the same rates, over a domain of length 1 and after those of no face.
   for (std::size_t k = 0; k < rates.size(); ++k)
     RC_ASSERT(std::abs(problem->budget_rates()[k] - rates[k]) <= 1e-12);
 }
 
 TEST(force, loses_what_the_edges_beyond_the_ends_would_give) {
-  // A Maxwellian with u = ±5 in [−7, 7]. Sums over all edges of f̂ give ρ and ρu; those beyond the last and
-  // before the first velocity have no flux. With f = 0 outside they depend on the outermost three or two
-  // values, with the coefficients 2, −13, 47, 27, −3 of the reconstruction.
+  // A Maxwellian with u = ±5 in [−7, 7]. Sums of f̂ over all edges give ρ and ρu. Edges beyond the last and
+  // before the first velocity have no flux. With f = 0 outside, the missing fluxes depend on the outermost
+  // three or two values. The reconstruction has the coefficients 2, −13, 47, 27, −3.
   const int n = 24;
   const double spacing = 14.0 / n;
   for (const double u : {5.0, -5.0, 0.0})
@@ -163,7 +166,7 @@ TEST(force, loses_what_the_edges_beyond_the_ends_would_give) {
       field state(cells, gas->components());
       for (int cell = 0; cell < cells; ++cell) std::copy(row.begin(), row.end(), state.row(cell));
       combined(*problem, state, 0.0, 1.0);
-      // Counted in the direction of the force, with velocities along it.
+      // Indices and velocities are in the direction of the force.
       const auto f = [&](int j) { return row[static_cast<std::size_t>(a > 0.0 ? j : n - 1 - j)]; };
       const auto edge = [&](int j) { return -7.0 + spacing * (j + 1); };  // behind point j
       const std::vector<std::pair<int, double>> missing = {
@@ -177,7 +180,7 @@ TEST(force, loses_what_the_edges_beyond_the_ends_would_give) {
         momentum += a * spacing * flux / 60.0;
         energy += std::abs(a) * spacing * edge(j) * flux / 60.0;
       }
-      // Behind the rates of mass, momentum and energy: the mass into the last velocity, what is lost, ρ|a|.
+      // The rates of mass, momentum and energy precede the mass into the last velocity, the losses, and ρ|a|.
       const auto rates = problem->budget_rates();
       ASSERT_EQ(rates.size(), 7U);
       EXPECT_NEAR(rates[4], momentum, 1e-13) << u << a;
@@ -195,7 +198,7 @@ TEST(force, loses_what_the_edges_beyond_the_ends_would_give) {
 }
 
 TEST(force, of_first_order_loses_the_energy_of_its_diffusion) {
-  // f̂ is f at the point before the edge: v there is half a spacing less than at the edge.
+  // f̂ is f at the point before the edge, where v is half a spacing less than at the edge.
   const auto gas = gas_of(2, 3, 24);
   const std::array<double, 3> a = {0.7, -0.4, 0.0};
   const auto problem = problem_of(*gas, constant(a), false, "upwind1");
@@ -206,7 +209,7 @@ TEST(force, of_first_order_loses_the_energy_of_its_diffusion) {
   combined(*problem, state, 0.0, 1.0);
   const auto rates = problem->budget_rates();
   ASSERT_EQ(rates.size(), 9U);
-  // The last values are 1e-9 of f at rest.
+  // At the last velocities f is 1e-9 of its value at rest.
   EXPECT_NEAR(rates[5], 0.0, 1e-8);
   EXPECT_NEAR(rates[6], 0.0, 1e-8);
   EXPECT_NEAR(rates[7], -0.5 * 14.0 / 24.0 * 1.3 * (0.7 + 0.4), 1e-7);
@@ -214,7 +217,7 @@ TEST(force, of_first_order_loses_the_energy_of_its_diffusion) {
 }
 
 TEST(force, has_fifth_order_along_velocities) {
-  // The derivative of a Gaussian of variance 1, in the largest norm.
+  // The error is that of the derivative of a Gaussian of variance 1 in the maximum norm.
   const auto error_with = [](int points) {
     const auto gas = gas_of(1, 0, points);
     const auto problem = problem_of(*gas, constant({1.0, 0.0, 0.0}), false);
@@ -242,7 +245,7 @@ TEST(force, does_not_depend_on_how_cells_are_grouped) {
   field u(cells, gas->components());
   for (int cell = 0; cell < cells; ++cell)
     for (int k = 0; k < u.components(); ++k) u.row(cell)[k] = std::abs(std::sin(1.0 + cell + 3.1 * k));
-  // A constant acceleration with the value of one cell gives the same row there.
+  // With this constant acceleration the cell has the same row.
   const field all = combined(*problem, u, 0.0, 1.0);
   for (const int cell : {0, 3, 7}) {
     const double a = (cell + 0.5) / cells - 0.5;

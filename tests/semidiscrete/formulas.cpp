@@ -1,4 +1,4 @@
-// Kernels against their formulas on single numbers, point by point: the same bits in every instruction set.
+// Kernels and their formulas on single numbers have the same bits in every instruction set, at every point.
 #include <apsis/scheme/formulas/quartic.hpp>
 #include <apsis/semidiscrete/centre_rows.hpp>
 #include <apsis/semidiscrete/collision_rows.hpp>
@@ -25,7 +25,7 @@ namespace {
 
 namespace scalar = apsis::scalar;
 
-/// A pencil of cells with two more beyond either end, their edges and two targets.
+/// A pencil of cells with two more beyond either end, with edges and two targets.
 struct pencil {
   int cells;
   rows u, left, right, source;
@@ -42,7 +42,7 @@ struct pencil {
         inverse_cfl(
             drawn(width, random, [](random_source& r) { return r.one_in(4) ? 1.0 : r.uniform(1.0, 30.0); })),
         with_source(random.one_in(2)) {
-    // Some edges differ little from their cells: those are not limited.
+    // Some edges differ little from their cells and are not limited.
     for (std::size_t i = 0; i < u.all.size(); ++i)
       if (random.one_in(2)) left.all[i] = right.all[i] = u.all[i] * random.uniform(0.9, 1.1);
     const bool mixed = random.one_in(2);
@@ -66,12 +66,12 @@ struct pencil {
   std::size_t place(int j, std::size_t k) const {
     return static_cast<std::size_t>(2 + (forward[k] > 0.5 ? j : cells - 1 - j));
   }
-  /// Cell j seen in the direction of motion.
+  /// Returns cell j, counted in the direction of motion.
   double value(int j, std::size_t k) const { return u.at[place(j, k)][k]; }
   double edge(int j, std::size_t k) const { return (forward[k] > 0.5 ? right : left).at[place(j, k)][k]; }
 };
 
-/// The flux out of cell j.
+/// Returns the flux out of cell j.
 template <class N>
 N flux(const pencil& p, bool limited, int j, std::size_t k) {
   if (!limited) return N(p.edge(j, k));

@@ -1,4 +1,4 @@
-// A gas past bodies in the plane and in space, in many settings.
+// Gases past bodies in the plane and in space, with many settings.
 #pragma once
 
 #include <apsis/boundary/boundary_registry.hpp>
@@ -44,7 +44,7 @@ struct gas_past_bodies {
   std::unique_ptr<apsis::semidiscrete_problem> problem;
 
   const grid& mesh() const { return builder->mesh(); }
-  /// The Maxwellian of density 1, temperature 1 and this velocity in each cell.
+  /// Returns the Maxwellian with density 1, temperature 1 and this velocity in each cell.
   field uniform(double ux = 0.0) const {
     const auto count = static_cast<std::size_t>(equation->moment_count());
     std::vector<double> omega(count, 0.0);
@@ -56,7 +56,7 @@ struct gas_past_bodies {
       if (mesh().solid(cell) < 0) equation->equilibrium(omega.data(), f.row(cell));
     return f;
   }
-  /// acc = α u + β T(u).
+  /// Returns α u + β T(u).
   field step(const field& u, double alpha, double beta) const {
     field acc(u.cells(), u.components());
     const apsis::target<field, double> to{&acc, alpha, beta, true};
@@ -75,10 +75,10 @@ struct choices {
   std::string wall = "diffuse";
   apsis::face_quantity accommodation = 1.0;
   double epsilon = 1.0;
-  apsis::face_quantities boundary_values = {};  ///< of `boundary`, where it has variables
+  apsis::face_quantities boundary_values = {};  ///< values of `boundary`, if it has variables
 };
 
-/// `processes` share the mesh, or a single one has it.
+/// Makes a gas on a mesh that `processes` share, or that a single process has.
 inline gas_past_bodies make(const choices& of,
                             const std::shared_ptr<apsis::communicator>& processes = nullptr,
                             const std::optional<std::array<int, 3>>& blocks = std::nullopt) {
@@ -129,7 +129,7 @@ inline double least_value(const field& u) {
   return least;
 }
 
-/// Values over ten decades, with exact zeros. Cells of a group have the same.
+/// Returns values over ten decades, with exact zeros. Cells of a group have equal values.
 inline field random_state(const grid& mesh, int components, std::mt19937& generator) {
   std::uniform_real_distribution<double> exponent(-10.0, 0.0), choice(0.0, 1.0);
   field f(mesh.size(), components);
@@ -145,7 +145,7 @@ inline field random_state(const grid& mesh, int components, std::mt19937& genera
   return f;
 }
 
-/// Sums of the densities of the invariants times the volume of gas.
+/// Returns the sums of the densities of the invariants times the volume of gas.
 inline std::vector<double> integrals(const gas_past_bodies& gas, const field& u) {
   const std::size_t count = gas.equation->invariants().size();
   std::vector<double> sum(count), here(count);
@@ -157,7 +157,7 @@ inline std::vector<double> integrals(const gas_past_bodies& gas, const field& u)
   return sum;
 }
 
-/// Moments of a gas with waves; cells of a group have the same.
+/// Returns moments of a gas with waves. Cells of a group have equal moments.
 inline std::vector<double> some_moments(const gas_past_bodies& gas, double phase) {
   std::vector<double> omega;
   const int directions = gas.equation->velocities().dimensions();

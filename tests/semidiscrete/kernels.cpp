@@ -1,5 +1,5 @@
-// Kernels of transport and collision, in every instruction set, compared with the same formulas in scalar
-// extended precision; fused passes give the same bits.
+// Kernels of transport and collision agree with the same formulas in scalar extended precision, in every
+// instruction set. Fused passes give the same bits.
 #include "bgk_case.hpp"
 
 #include <apsis/core/random_source.hpp>
@@ -25,7 +25,7 @@ using apsis::grid;
 using limits = apsis::limited_reconstruction::limits;
 namespace limiter = apsis::limiter;
 
-/// A perturbed velocity distribution with tails below 1e-150, exact zeros and isolated spikes.
+/// Returns a perturbed velocity distribution with tails below 1e-150, exact zeros and isolated spikes.
 field adversarial(int cells, int components, std::uint64_t seed) {
   apsis::random_source random(seed);
   field u(cells, components);
@@ -42,8 +42,8 @@ field adversarial(int cells, int components, std::uint64_t seed) {
   return u;
 }
 
-/// Positive values whose ratios to their neighbours are spread over five decades: the corrections of some
-/// cells are just harmless, of others just not.
+/// Returns positive values with ratios of neighbours over five decades. The corrections of some cells are
+/// barely harmless, those of others are not.
 field steep(int cells, int components, std::uint64_t seed) {
   apsis::random_source random(seed);
   field u(cells, components);
@@ -52,7 +52,7 @@ field steep(int cells, int components, std::uint64_t seed) {
   return u;
 }
 
-/// Scalar transport of component k, with edges from the scheme on a pencil of width one.
+/// Scalar transport of component k. Its edges come from the scheme on a pencil of width one.
 class plain_transport {
  public:
   plain_transport(const field& u, int k, std::span<const double> speeds, double spacing,
@@ -64,7 +64,7 @@ class plain_transport {
     double fastest = 0.0;
     for (const double v : speeds) fastest = std::max(fastest, std::abs(v));
     inverse_cfl_ = std::min(1000.0, fastest / std::abs(speed));
-    // Reversed for negative velocities, so that the flow is to the right below.
+    // Rows are reversed for negative velocities, so the flow is to the right below.
     for (int i = -6; i < n_ + 6; ++i) {
       const int cell = ((speed > 0.0 ? i : n_ - 1 - i) % n_ + n_) % n_;
       u_.push_back(u.row(cell)[k]);
@@ -78,7 +78,7 @@ class plain_transport {
     for (std::size_t i = 2; i + 2 < u_.size(); ++i) edge_.push_back(edge(u_[i], left[i], right[i]));
   }
 
-  /// −v ∂_x u in cell i, by limited upwind fluxes.
+  /// Returns −v ∂_x u in cell i by limited upwind fluxes.
   double change(int i) const {
     const int j = reversed_ ? n_ - 1 - i : i;
     return static_cast<double>(rate_ * (flux(j - 1) - flux(j)));
@@ -102,7 +102,7 @@ class plain_transport {
                                         inverse_cfl_);
   }
 
-  /// The face between cells i and i + 1.
+  /// Returns the flux through the face between cells i and i + 1.
   long double flux(int i) const {
     if (!discretization_.limits_fluxes()) return edge_of(i);
     const long double low_order = limiter::low_order_edge(value(i)), correction = edge_of(i) - low_order;
@@ -133,8 +133,8 @@ void expect_plain_transport(const apsis::relaxation_model& m, const std::string&
     for (int i = 0; i < cells; ++i) {
       double size = 0.0;
       for (int j = -5; j <= 5; ++j) size = std::max(size, u.row(((i + j) % cells + cells) % cells)[k]);
-      // Rounding errors of edges, which are accurate to a few 1e-16 of the largest value nearby; multiplied
-      // by κ in a step.
+      // Edges are accurate to a few 1e-16 of the largest value nearby. A step multiplies these rounding
+      // errors by κ.
       const double tolerance = 4e-15 * size;
       ASSERT_NEAR(first.row(i)[k], 0.7 * u.row(i)[k] + 0.6 * dt * plain.change(i), tolerance)
           << name << " " << i << " " << k;
@@ -147,8 +147,8 @@ void expect_plain_transport(const apsis::relaxation_model& m, const std::string&
 
 TEST(kernels, transport_agrees_with_scalar_code_in_every_instruction_set) {
   for_each_instruction_set([] {
-    // Rows of whole vectors, with a vector of mixed velocity signs in the middle, and short rows that are
-    // joined.
+    // There are rows of whole vectors, with a vector of mixed velocity signs in the middle, and short rows
+    // that are joined.
     for (const int points : {4, 8, 20, 150})
       for (const auto kind : {limits::nothing, limits::edges, limits::fluxes}) {
         const auto m = small_bgk(points);
@@ -184,7 +184,8 @@ TEST(kernels, gauss_values_agree_with_the_quartic_in_every_instruction_set) {
           double mean = 0.0;
           for (std::size_t p = 0; p < 3; ++p) {
             const double value = points[p * static_cast<std::size_t>(width) + static_cast<std::size_t>(k)];
-            // About a dozen rounding errors of sums of up to ten times the largest value.
+            // The sums are up to ten times as large as the largest value and have about a
+            // dozen rounding errors.
             ASSERT_NEAR(value, c + theta * q.deviation(apsis::gauss3::xi[p]), 2e-14 * size) << k << " " << p;
             if (limited) {
               ASSERT_GE(value, 0.0);
@@ -223,7 +224,8 @@ TEST(kernels, convex_combinations_agree_with_scalar_code_in_every_instruction_se
 
 namespace {
 
-/// Collisions fused with the transport that completes their points, and in a pass of their own.
+/// Compares collisions fused with the transport that completes their points, and collisions in
+/// a separate pass.
 void expect_same_in_one_pass(int cells, int threads) {
   const auto m = small_bgk();
   const grid mesh = grid::line(cells, 0.0, 1.0);
@@ -265,7 +267,7 @@ TEST(kernels, operations_of_a_run_include_the_limiter_of_cells_beyond_its_ends) 
   const double per_cell = operations(true, 2) * 2 - operations(true, 1);
   // Fractions of 1/3 are rounded in the quotient and in the product.
   EXPECT_NEAR(operations(true, 3) * 3, operations(true, 1) + 2.0 * per_cell, 1e-13);
-  // A run of one cell checks four, on which its two fluxes depend, but has one accumulation.
+  // The two fluxes of a run of one cell depend on four cells, which it checks. It has one accumulation.
   EXPECT_GT(operations(true, 1), 3.0 * per_cell);
   EXPECT_LT(operations(true, 1), 4.0 * per_cell);
 }

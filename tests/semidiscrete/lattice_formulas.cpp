@@ -1,4 +1,4 @@
-// Loops over lattices and rings of velocities have the bits of the formulas of single numbers.
+// Loops over lattices and rings of velocities have the bits of their formulas on single numbers.
 #include <apsis/semidiscrete/formulas/lattice.hpp>
 #include <apsis/semidiscrete/formulas/rotation.hpp>
 #include <apsis/semidiscrete/formulas/upwind.hpp>
@@ -20,7 +20,7 @@ namespace scalar = apsis::scalar;
 
 namespace {
 
-/// A row on a lattice, seen along one direction of motion; outside of the lattice there is vacuum.
+/// A row on a lattice along one direction of motion. Outside of the lattice there is a vacuum.
 template <class N>
 struct line_of_lattice {
   const apsis::lattice_rows::layout& at;
@@ -28,7 +28,7 @@ struct line_of_lattice {
   const double* row;
 
   int steps(int i) const { return rule.forward ? i : -i; }
-  /// The value i points downstream of one.
+  /// Returns the value i points downstream of a point.
   N value(int block, int point, int column, int i) const {
     const int to = point + steps(i);
     return to < 0 || to >= at.points ? N(0.0) : N(row[(block * at.points + to) * at.apart + column]);
@@ -39,7 +39,7 @@ struct line_of_lattice {
     return rule.fifth_order ? scalar::upwind5_edge(v(-2), v(-1), v(0), v(1), v(2))
                             : scalar::upwind1_edge(v(0));
   }
-  /// The flux out of a point by the formulas of add_limited(), none out of the last one.
+  /// Returns the flux out of a point by the formulas of add_limited(). The last point has no flux.
   N flux(int block, int point, int column) const {
     const int last = rule.forward ? at.points - 1 : 0;
     if (point < 0 || point >= at.points || point == last) return N(0.0);
@@ -61,12 +61,12 @@ struct line_of_lattice {
 TEST(formulas, changes_along_a_lattice_are_those_of_single_numbers) {
   check_property("lattice", [] {
     random_source random(*rc::gen::arbitrary<std::uint32_t>());
-    // Lines of contiguous points are passed several at a time.
+    // Lines of contiguous points are passed together.
     const apsis::lattice_rows::layout at{*rc::gen::inRange(1, 22), *rc::gen::inRange(1, 22),
                                          random.one_in(2) ? 1 : *rc::gen::inRange(1, 14)};
     const auto n = static_cast<std::size_t>(at.blocks * at.block());
     rows row(3, n, random, any_size);
-    // Some rows vary little, as in the bulk of a gas: most of their points are not limited.
+    // Some rows vary little, as in the bulk of a gas. Most of their points are not limited.
     if (random.one_in(2))
       for (std::size_t i = 0; i < n; ++i) row.all[i] = 1.0 + 0.1 * random.uniform(0.0, 1.0);
     const bool fresh = random.one_in(2);
@@ -115,7 +115,7 @@ struct ring_of_numbers {
     return static_cast<std::size_t>((angle + of.angles) % of.angles * of.apart + column);
   }
   N value(int angle) const { return N(ring[place(angle)]); }
-  /// The fluxes through an edge between the angles edge − 1 and edge, in the direction of a half.
+  /// Returns the fluxes through an edge between the angles edge − 1 and edge, in the direction of a half.
   scalar::rotation_fluxes<N> through(int edge, bool upwards) const {
     const int from = upwards ? edge - 1 : edge, step = upwards ? 1 : -1;
     const auto v = [&](int i) { return value(from + i * step); };
@@ -131,7 +131,7 @@ struct ring_of_numbers {
                                         through(edge_behind(angle), lower(angle)), value(angle),
                                         N(rule.scale) * N(rule.inverse[place(angle)]));
   }
-  /// The flux through an edge in the direction of a half.
+  /// Returns the flux through an edge in the direction of a half.
   N flux(int edge, bool upwards) const {
     const auto found = through(edge, upwards);
     if (!rule.limited) return found.high_order;
@@ -154,7 +154,7 @@ TEST(formulas, changes_along_a_ring_are_those_of_single_numbers) {
     const rows_of_ring::ring of{4 * *rc::gen::inRange(1, 6), *rc::gen::inRange(1, 14)};
     const auto n = static_cast<std::size_t>(of.size());
     rows ring(1, n, random, any_size);
-    // Some rings vary little: most of their angles are not limited.
+    // Some rings vary little. Most of their angles are not limited.
     if (random.one_in(2))
       for (double& one : ring.all) one = 1.0 + 0.1 * random.uniform(0.0, 1.0);
     const auto edges = static_cast<std::size_t>(of.edges());

@@ -13,7 +13,7 @@ namespace semidiscrete_formulas_test {
 
 using apsis::random_source;
 
-/// Rows one behind the other.
+/// Rows of random numbers, contiguous in memory.
 struct rows {
   std::size_t width;
   std::vector<double> all;

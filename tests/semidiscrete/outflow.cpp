@@ -1,4 +1,4 @@
-// Outflow ends of a domain: waves leave without reflection, and nothing becomes negative there.
+// Outflow ends of a domain: waves leave without reflection, and values stay nonnegative.
 #include "bgk_case.hpp"
 
 #include <apsis/semidiscrete/collision.hpp>
@@ -62,14 +62,14 @@ TEST(outflow, uniform_data_do_not_change) {
   for (const auto& c : choices) {
     const auto t = upwind(*m, space_of(mesh, "outflow"), scheme(c.scheme, c.positivity));
     const field change = transport_of(t, sample(mesh, 3, false, [](double, int k) { return 0.1 + k; }));
-    // Differences of equal fluxes: a rounding error of the edge values over Δx = 1/9.
+    // Differences of equal fluxes have the rounding error of edge values over Δx = 1/9.
     for (int i = 0; i < 9; ++i)
       for (int k = 0; k < 3; ++k) EXPECT_NEAR(change.row(i)[k], 0.0, 1e-13) << c.scheme;
   }
 }
 
 TEST(outflow, a_pulse_leaves_without_reflection) {
-  // Free flight of pulses at the left or the right end, long enough to cross the whole domain.
+  // Pulses fly freely from the left or the right end across the whole domain.
   const auto m = broadwell();
   const grid mesh = grid::line(60, 0.0, 1.0);
   const auto pulse = [](double x) { return std::exp(-400.0 * x * x); };
@@ -88,7 +88,7 @@ TEST(outflow, a_pulse_leaves_without_reflection) {
       EXPECT_LE(mass, inside * (1.0 + 1e-13)) << "mass comes in";
       inside = mass;
     }
-    // Only the particles at rest remain, unchanged.
+    // Only the particles at rest remain. They do not change.
     double moving = 0.0;
     for (int i = 0; i < 60; ++i) moving += u.row(i)[0] + u.row(i)[2];
     EXPECT_LT(moving, 1e-10 * start) << c.scheme;

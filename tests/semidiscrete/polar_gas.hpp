@@ -1,4 +1,4 @@
-// A gas with velocities on rings around an axis, in axisymmetric flow.
+// A gas in axisymmetric flow with velocities on rings around an axis.
 #pragma once
 
 #include <apsis/boundary/boundary_registry.hpp>
@@ -32,7 +32,7 @@ using apsis::grid;
 using apsis::position;
 
 /// Velocities on rings × angles × a line along the axis, with weights v_⊥ of a ring. Mesh directions are r,
-/// or x and r; the velocities of D = 1 are (v_r, v_θ, v_x), those of D = 2 (v_x, v_r, v_θ).
+/// or x and r. For D = 1 the velocities are (v_r, v_θ, v_x), for D = 2 (v_x, v_r, v_θ).
 class polar_gas final : public apsis::relaxation_model {
  public:
   polar_gas(int dimensions, std::vector<double> speeds, int angles, std::vector<double> along,
@@ -96,7 +96,7 @@ class polar_gas final : public apsis::relaxation_model {
     static const std::vector<apsis::initial_data> none;
     return none;
   }
-  /// The Maxwellian by its formula.
+  /// Returns the Maxwellian by its formula.
   std::vector<apsis::data_form> data_forms() const override {
     const auto row = [this](std::span<const double> values, std::span<double> u) -> std::string {
       for (int k = 0; k < components(); ++k) {
@@ -110,7 +110,7 @@ class polar_gas final : public apsis::relaxation_model {
   }
 
  private:
-  /// cos ω_a by those of the first quadrant, so that images are exact.
+  /// Returns cos ω_a from angles of the first quadrant, so that images are exact.
   double cosine(int a) const {
     const int m = layout_.angles, turned = (a % m + m) % m, folded = turned < m / 2 ? turned : m - 1 - turned,
               quarter = folded < m / 4 ? folded : m / 2 - 1 - folded;
@@ -124,7 +124,7 @@ class polar_gas final : public apsis::relaxation_model {
   apsis::velocity_set velocities_;
 };
 
-/// Settings of a flow in 0 ≤ x ≤ 1 and r from `inner` on.
+/// Settings of a flow in 0 ≤ x ≤ 1 and r ≥ `inner`.
 struct choices {
   int dimensions = 1, cells = 12, angles = 16;
   std::vector<double> speeds = {0.6, 1.3}, along = {-1.1, -0.4, 0.4, 1.1};
@@ -135,7 +135,7 @@ struct choices {
   apsis::outside_function body = {};
   std::optional<apsis::cell_box> box = {};
   bool by_density = false;
-  double speed = 0.0;  ///< of walls and gases beyond the ends, along the axis
+  double speed = 0.0;  ///< speed of walls and gases beyond the ends, along the axis
 };
 
 struct polar_flow {
@@ -145,25 +145,25 @@ struct polar_flow {
 
   const grid& mesh() const { return builder->mesh(); }
   double r(int cell) const { return mesh().centre(cell)[at(equation->radial())]; }
-  /// α u + β T(u).
+  /// Returns α u + β T(u).
   field step(const field& u, double alpha, double beta) const {
     field acc(u.cells(), u.components());
     const apsis::target<field, double> to{&acc, alpha, beta, true};
     problem->add_transport(0.0, u, {&to, 1});
     return acc;
   }
-  /// The Maxwellian of temperature 1 with this velocity along the axis, times r.
+  /// Returns r times the Maxwellian of temperature 1 with this velocity along the axis.
   field stream(double speed) const {
     const auto form = equation->data_forms().front();
     std::array values{1.0, 0.0, 0.0, 0.0, 1.0};
     values[equation->radial() == 0 ? 3 : 1] = speed;
     return builder->sample([&](const position&, std::span<double> f) { form.row(values, f); });
   }
-  /// The same at rest, which walls emit.
+  /// Returns the same at rest, as walls emit it.
   field at_rest() const { return stream(0.0); }
 };
 
-/// Walls and gases beyond the ends have this velocity along the axis.
+/// Returns a boundary whose wall or gas beyond the end has this velocity along the axis.
 inline std::shared_ptr<const apsis::boundary> side(const std::string& kind, const polar_gas& gas,
                                                    double speed = 0.0) {
   std::vector<apsis::face_quantity> u(3, 0.0);
@@ -215,7 +215,7 @@ inline double least(const field& u) {
   return found;
 }
 
-/// Nonnegative rows over many decades with exact zeros; cells of a group have the same.
+/// Returns nonnegative rows over many decades with exact zeros. Cells of a group have equal rows.
 inline field random_state(const grid& mesh, int components, apsis::random_source& random) {
   field u(mesh.size(), components);
   for (int cell = 0; cell < u.cells(); ++cell) {
@@ -231,7 +231,7 @@ inline field random_state(const grid& mesh, int components, apsis::random_source
   return u;
 }
 
-/// Integrals of the invariants over the gas.
+/// Returns the integrals of the invariants over the gas.
 inline std::vector<double> integrals(const polar_flow& flow, const field& u) {
   std::vector<double> sum(5), here(5);
   for (int cell = 0; cell < u.cells(); ++cell) {

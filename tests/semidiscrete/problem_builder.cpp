@@ -1,4 +1,4 @@
-// Problems built from C++ objects without a case: their operators, and inputs that are refused.
+// Problems built from C++ objects without a case: their operators, and refused inputs.
 #include <apsis/semidiscrete/problem_builder.hpp>
 
 #include "bgk_case.hpp"
@@ -33,7 +33,7 @@ std::unique_ptr<apsis::model> made(const std::string& name) {
   return entry->make(apsis::default_config(*entry));
 }
 
-/// Two directions, one component with velocity (1, 0.5): the smallest model on a mesh in the plane.
+/// The smallest model on a mesh in the plane has two directions and one component of velocity (1, 0.5).
 class plane_wave final : public apsis::relaxation_model {
  public:
   int components() const override { return 1; }
@@ -68,7 +68,7 @@ TEST(problem_builder, cell_averages_are_exact_between_jumps_and_point_values_are
     u[0] = u[1] = x[0] < 0.5 ? x[0] * x[0] : 2.0;
   };
   const auto averages = builder.sample(data, {0.5});
-  // ∫ x² over [0, 0.2] is 0.2³/3; the jump is in the middle of the third cell, [0.4, 0.6].
+  // ∫ x² over [0, 0.2] is 0.2³/3. The jump is in the middle of the third cell, [0.4, 0.6].
   EXPECT_NEAR(averages.row(0)[0], 0.04 / 3.0, 1e-16);
   EXPECT_NEAR(averages.row(2)[1], (0.125 - 0.064) / 3.0 / 0.2 + 1.0, 1e-15);
   const auto points = builder.with_discretization("finite-difference").sample(data, {0.5});
@@ -91,13 +91,13 @@ TEST(problem_builder, data_and_epsilon_are_functions_of_position_in_the_plane) {
     EXPECT_EQ(u.row(cell)[0], mesh.centre(cell, 0) - mesh.centre(cell, 1));
     EXPECT_EQ(epsilon[static_cast<std::size_t>(cell)], mesh.centre(cell, 0) + 100.0 * mesh.centre(cell, 1));
   }
-  // T(x − y) = −(1 − 0.5) away from the faces: the reconstruction is exact for linear data.
+  // T(x − y) = −(1 − 0.5) away from the faces, because the reconstruction is exact for linear data.
   const auto problem = builder.build();
   apsis::field t(mesh.size(), 1);
   const apsis::target<apsis::field, double> to{&t, 0.0, 1.0, true};
   problem->add_transport(0.0, u, {&to, 1});
   EXPECT_NEAR(t.row(4 * 11 + 5)[0], -0.5, 1e-12);
-  // κ = 1: 1/Δt_FE = 1/0.1 + 0.5/0.1.
+  // For κ = 1, 1/Δt_FE = 1/0.1 + 0.5/0.1.
   EXPECT_NEAR(problem->forward_euler_step(0.0, u), 1.0 / 15.0, 1e-12);
 }
 
@@ -165,7 +165,7 @@ TEST(problem_builder, collisions_of_exponential_methods_are_exact_where_the_mode
       builder.with_epsilon([](const position&) { return 0.5; }).with_exact_collision().build();
   auto u = builder.sample([](const position&, std::span<double> value) { value[0] = 2.0, value[1] = 0.0; });
   problem->solve_collision(0.0, 0.1, 0.0, u);
-  // u₂' = 5 (sin 2 − u₂)/ε after a time of 0.1.
+  // The exact solution is that of u₂' = 5 (sin 2 − u₂)/ε after a time of 0.1.
   EXPECT_DOUBLE_EQ(u.row(0)[1], std::sin(2.0) * (1.0 - std::exp(-1.0)));
   bad_input::expect_refused({
       {[&] { problem_builder(*decay).with_exact_collision(); },
@@ -199,7 +199,7 @@ TEST(problem_builder, a_general_model_on_a_mesh_agrees_with_its_closed_form) {
     const auto u = solve(*closed), v = solve(general);
     for (int cell = 0; cell < u.cells(); ++cell)
       for (int k = 0; k < 3; ++k)
-        // Newton's method leaves a residual of rounding size, which Q/epsilon multiplies by up to 1e3.
+        // Newton's method leaves a residual of rounding size. Q/epsilon multiplies it by up to 1e3.
         ASSERT_NEAR(v.row(cell)[k], u.row(cell)[k], 1e-11) << cell << " " << k;
   }
 }

@@ -1,4 +1,4 @@
-// Nonnegativity where rounding errors are absolute: values that are small multiples of 4.9e-324.
+// Nonnegativity where rounding errors are absolute, for values that are small multiples of 4.9e-324.
 #include "bgk_case.hpp"
 
 #include <apsis/core/random_source.hpp>
@@ -19,7 +19,7 @@ using limits = apsis::limited_reconstruction::limits;
 
 constexpr double unit = std::numeric_limits<double>::denorm_min();
 
-/// Zero, a few units, a power of two between 1 unit and 1e-285, or a number of ordinary magnitude.
+/// Returns zero, a few units, a power of two between 1 unit and 1e-285, or a number of ordinary magnitude.
 double tiny_value(apsis::random_source& random) {
   const double kind = random.uniform(0.0, 1.0);
   if (kind < 0.2) return 0.0;
@@ -36,8 +36,8 @@ field tiny_rows(int cells, int components, apsis::random_source& random) {
   return u;
 }
 
-/// α u + β T(u) with the largest β for which the limiter keeps nonnegativity; α is 1 or as small as weights
-/// of methods can be.
+/// Returns α u + β T(u) with the largest β for which the limiter ensures nonnegativity. α is 1, or as small
+/// as weights of methods can be.
 field longest_step(apsis::transport& t, const field& u, double alpha, double share, bool fresh) {
   t.limit_for_steps(share);
   field result(u.cells(), u.components());
@@ -53,8 +53,8 @@ double smallest_unknown(const field& u) {
   return lowest;
 }
 
-/// Cells with |v|/Δx from 1e-8 to 1e8, not far from each other along different directions: products of
-/// subnormal numbers round if it is small and are exact if it is large.
+/// Returns cells with |v|/Δx from 1e-8 to 1e8, similar along different directions. If it is small, products
+/// of subnormal numbers are rounded. If it is large, they are exact.
 grid random_mesh(int dimensions, int cells, apsis::random_source& random) {
   const double size = std::pow(10.0, random.uniform(-8.0, 8.0));
   std::array<int, 3> count = {1, 1, 1};
@@ -101,8 +101,8 @@ TEST(subnormal, the_largest_step_keeps_every_value_nonnegative_in_several_dimens
 }
 
 TEST(subnormal, a_step_beyond_the_bound_gives_a_negative_value) {
-  // Two cells of ordinary magnitude in a vacuum. The edge between them is above the value of the first one,
-  // and at the bound its fluxes empty it.
+  // Two cells of ordinary magnitude lie in a vacuum. The edge between them is above the value of the first
+  // one. At the bound its fluxes empty it.
   const grid mesh = grid::line(20, 0.0, 1.0);
   const auto m = small_bgk(10);
   field u(20, m->components());
@@ -136,7 +136,7 @@ TEST(subnormal, limited_values_at_gauss_points_are_nonnegative_and_keep_their_me
           ASSERT_GE(value, 0.0) << round << " " << k;
           mean += apsis::gauss3::weight[static_cast<std::size_t>(p)] * value;
         }
-        // Values of up to 20 c, each with a relative rounding error; three products and the values round to
+        // Values of up to 20 c have relative rounding errors. Three products and the values are rounded to
         // multiples of the unit.
         ASSERT_NEAR(mean, c, 1e-14 * c + 4.0 * unit);
       }
@@ -152,7 +152,7 @@ TEST(subnormal, an_explicit_relaxation_step_leaves_nonnegative_values) {
       const field u = tiny_rows(2, width, random);
       const double alpha = random.uniform(0.01, 1.0), of_transport = random.uniform(0.0, 1.0);
       field acc(1, width);
-      // A step of transport at its limit, then relaxation with the remaining part of the bound.
+      // A step of transport at its limit is followed by relaxation with the remaining part of the bound.
       for (int k = 0; k < width; ++k) acc.row(0)[k] = alpha * (1.0 - of_transport) * u.row(0)[k];
       const double strength = std::pow(10.0, random.uniform(-3.0, 9.0));
       const double beta = apsis::rounding_allowance * alpha * (1.0 - of_transport) / strength;

@@ -15,10 +15,11 @@ using apsis::field;
 using apsis::grid;
 using limits = apsis::limited_reconstruction::limits;
 
-/// Share of the longest step at which limited fluxes leave fifth order where the solution touches zero.
+/// Share of the longest step for which limited fluxes keep fifth order where the solution touches zero.
 constexpr double short_step = 1.0 / 12.0;
 
-/// L1 error of T(u) for u = 1 + sin(2πx), which touches zero, with a limiter for steps of a share of Δt_FE.
+/// Returns the L1 error of T(u) for u = 1 + sin(2πx), which touches zero. The limiter is that for steps of a
+/// share of Δt_FE.
 double transport_error(const apsis::relaxation_model& m, const std::string& name, limits kind, bool averages,
                        int n, double share = short_step) {
   const grid mesh = grid::line(n, 0.0, 1.0);
@@ -55,7 +56,7 @@ TEST(transport, fifth_order_in_both_formulations_with_and_without_limiter) {
 }
 
 TEST(transport, limiting_edges_of_point_values_costs_three_orders_and_limiting_fluxes_none) {
-  // The flux function of 1 + sin(2πx) is negative near the minimum; see limiter.hpp.
+  // Near the minimum the flux function of 1 + sin(2πx) is negative; see limiter.hpp.
   const auto m = small_bgk(8);
   const auto slope = [&m](limits kind) {
     const auto error = [&](int n) { return transport_error(*m, "weno5-z", kind, false, n); };
@@ -66,8 +67,8 @@ TEST(transport, limiting_edges_of_point_values_costs_three_orders_and_limiting_f
 }
 
 TEST(transport, limited_fluxes_change_less_for_shorter_steps_and_slower_velocities) {
-  // Where the solution touches zero the longest step costs accuracy, because an exact forward Euler step is
-  // negative there; 1/1000 of it, for which κ is least, costs none.
+  // Where the solution touches zero the longest step loses accuracy, because an exact forward Euler step is
+  // negative there. A step 1000 times shorter, for which κ is smallest, loses none.
   const auto m = small_bgk(8);
   const auto error = [&](limits kind, double share) {
     return transport_error(*m, "weno5-z", kind, false, 80, share);
@@ -82,7 +83,7 @@ TEST(transport, limited_fluxes_change_less_for_shorter_steps_and_slower_velociti
     longer = shorter;
   }
   EXPECT_DOUBLE_EQ(error(limits::fluxes, 1e-3), without);
-  // The slowest velocity leaves a cell in seven times the time of the fastest.
+  // The slowest velocity needs seven times as long as the fastest to leave a cell.
   const grid mesh = grid::line(80, 0.0, 1.0);
   const field u =
       sample(mesh, 8, false, [](double x, int) { return 1.0 + std::sin(2.0 * std::numbers::pi * x); });
@@ -124,7 +125,7 @@ TEST(transport, a_step_of_dt_fe_keeps_any_data_nonnegative_in_floating_point) {
       const double share = *rc::gen::element(1.0, 0.999, 0.3, 1e-2, 1e-5);
       t.limit_for_steps(share);
       const double dt = share * t.forward_euler_step();
-      // As in a stage: a weight w ≤ 1 and the step w Δt.
+      // A stage has a weight w ≤ 1 and the step w Δt.
       const double w = *rc::gen::inRange(1, 1001) * 1e-3;
       field result(mesh.size(), 8);
       const apsis::target<field, double> to{&result, w, w * dt, true};
@@ -135,8 +136,8 @@ TEST(transport, a_step_of_dt_fe_keeps_any_data_nonnegative_in_floating_point) {
 }
 
 TEST(transport, above_dt_fe_positivity_breaks) {
-  // Two nonzero cells show it: nothing flows into the first one, and at Δt_FE the fastest molecules have just
-  // left. Its edge is above its value, so that the limiter lets out all that it allows.
+  // Nothing flows into the first of two nonzero cells. At Δt_FE the fastest molecules have just left it. Its
+  // edge is above its value, so the limiter lets out as much as it allows.
   const auto m = small_bgk(8);
   const grid mesh = grid::line(12, 0.0, 1.0);
   field u(12, 8);
@@ -188,7 +189,7 @@ TEST(transport, does_not_depend_on_the_number_of_threads_or_on_blocks) {
 }
 
 TEST(transport, of_many_targets_is_that_of_each_of_them) {
-  // Factors of 16 targets are kept, those of further ones computed in every cell.
+  // The factors of 16 targets are stored. Those of further targets are computed in every cell.
   const auto m = small_bgk(20);
   const grid mesh = grid::line(13, 0.0, 2.0);
   const field u = sample(mesh, 20, false, [](double x, int k) { return 2.0 + std::sin(3.0 * x + k); });

@@ -23,7 +23,7 @@ using testing::ElementsAre;
 
 constexpr int cells = 12;
 
-/// The three verbs of a problem without the others, which then have their defaults.
+/// The three verbs of a problem. The others have their defaults.
 struct with_defaults {
   using state = field;
   using real = double;
@@ -54,7 +54,7 @@ std::unique_ptr<apsis::semidiscrete_problem> problem_of(const apsis::model& m, c
   return builder.build();
 }
 
-/// Smooth data far from equilibrium.
+/// Returns smooth data far from equilibrium.
 field data_of(const apsis::relaxation_model& m) {
   return sample(apsis::grid::line(cells, 0.0, 2.0), m.components(), false, [&m](double x, int k) {
     const double v = m.velocities().speeds(0)[static_cast<std::size_t>(k)];
@@ -81,7 +81,7 @@ TEST(semidiscrete_verbs, combine_like_transport_without_an_evaluation) {
     apsis::combine(*problem, {{0.3, &u}, {-1.7, &v}, {1e-9, &u}}, native);
     apsis::combine(plain, {{0.3, &u}, {-1.7, &v}, {1e-9, &u}}, other);
     expect_equal(native, other);
-    // In place, also with another factor than 1.
+    // The sums are in place, also with another factor than 1.
     apsis::combine(*problem, {{1.0, &native}, {2.0, &v}}, native);
     apsis::combine(*problem, {{-0.5, &native}, {1.0, &u}}, native);
     for (int cell = 0; cell < cells; ++cell)
@@ -107,7 +107,7 @@ TEST(semidiscrete_verbs, project_to_the_equilibrium_with_the_same_moments) {
       for (int cell = 0; cell < cells; ++cell) {
         m->moments(u.row(cell), before.data());
         m->moments(equilibrium.row(cell), after.data());
-        // Sums of 40 numbers of size 1 times v² up to 64.
+        // The moments are sums of 40 numbers of size 1 times v² up to 64.
         for (std::size_t k = 0; k < count; ++k) EXPECT_NEAR(after[k], before[k], 1e-12) << epsilon;
         for (int k = 0; k < u.components(); ++k)
           off = std::max(off, std::abs(equilibrium.row(cell)[k] - u.row(cell)[k]));

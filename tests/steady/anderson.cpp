@@ -61,8 +61,8 @@ linear_map random_map() {
 }  // namespace
 
 TEST(anderson, solves_linear_equations_in_as_many_steps_as_krylov_methods) {
-  // With all images it is equivalent to GMRES (Walker & Ni, 2011), which ends after n steps; one more gives
-  // the image. The tolerance allows for nearly parallel differences.
+  // With all images the mixture is equivalent to GMRES (Walker & Ni, 2011), which ends after n steps. One
+  // more step gives the image. The tolerance allows for nearly parallel differences.
   check_property("n + 1 steps", [] {
     const linear_map map = random_map();
     RC_ASSERT(iterate(map, n, n + 2) < 1e-7);
@@ -108,7 +108,7 @@ TEST(anderson, knows_linear_functions_of_the_mixture_and_scales_it) {
       for (int i = 0; i < n; ++i) sum += of.row(0)[i];
       return sum;
     };
-    double size = 0.0;  // of all images
+    double size = 0.0;  // sum over all images
     for (int k = 0; k < 6; ++k) {
       const field g = map.image(x);
       field delta(1, n);
@@ -122,7 +122,7 @@ TEST(anderson, knows_linear_functions_of_the_mixture_and_scales_it) {
       for (const double theta : weights.theta) amplified += std::abs(theta);
       const double factor = k < 5 ? 1.0 : 0.5;
       mixture.move(weights, delta, factor, x);
-      // Rounding of the sums, amplified by the weights.
+      // The weights amplify the rounding of the sums.
       RC_ASSERT(std::abs(total(x) - factor * weights.of_mixture[0]) <= 1e-14 * amplified * (1.0 + size));
     }
   });

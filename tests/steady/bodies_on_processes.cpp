@@ -1,4 +1,4 @@
-// Steady states past bodies that several processes find are those of one, below the tolerance.
+// Steady states past bodies on several processes agree with those of one process, below the tolerance.
 #include "flows_past_bodies.hpp"
 
 #include <apsis/core/errors.hpp>
@@ -25,22 +25,22 @@ using apsis::at;
 using apsis::communicator;
 
 constexpr double tolerance = 1e-9;
-/// Iterates differ from the state by the tolerance times the number of iterations that an error survives.
-/// They were at most 3.3 tolerances apart, relative to the largest value.
+/// Iterates differ from the state by the tolerance times the number of iterations that an error survives. The
+/// measured maximum is 3.3 tolerances, relative to the largest value.
 constexpr double close = 20.0 * tolerance;
-/// Iterations relative to those of one process; they were at most 1.6. Free flight crosses one block in an
-/// iteration.
+/// Largest number of iterations relative to one process. The measured maximum is 1.6. Free flight crosses one
+/// block in an iteration.
 constexpr double most_iterations = 2.0;
 
 /// A steady state of the whole mesh.
 struct steady_state {
   field f;
-  std::vector<double> loads;  ///< what each body receives of each invariant
+  std::vector<double> loads;  ///< the amount of each invariant that each body receives
   int iterations = 0;
   apsis::removed_values removed = {};
 };
 
-/// Adds what bodies receive at the ends of a process.
+/// Adds the amounts that bodies receive at the ends of a process.
 void add_loads(const gas_past_bodies& gas, std::vector<double>& to) {
   const auto rates = gas.problem->budget_rates();
   const std::size_t count = gas.equation->invariants().size();
@@ -71,7 +71,7 @@ steady_state solve(const choices& flow, double ux) {
   return found;
 }
 
-/// The same on the processes of these blocks.
+/// Finds the state on the processes of these blocks.
 steady_state solve(const choices& flow, double ux, const blocks_of_mesh& blocks, double to = tolerance) {
   const gas_past_bodies whole = make(flow);
   steady_state found{whole.uniform(), {}, 0};
@@ -93,7 +93,7 @@ steady_state solve(const choices& flow, double ux, const blocks_of_mesh& blocks,
   return found;
 }
 
-/// Cells of a group have the same row, whoever holds them.
+/// Expects that cells of a group have equal rows, whichever processes own them.
 void expect_equal_rows(const choices& flow, const field& f) {
   const gas_past_bodies gas = make(flow);
   for (const apsis::cut_group& group : gas.mesh().cut()->groups())
@@ -119,7 +119,7 @@ named_flow random_flow(apsis::random_source& random, int number) {
     bodies.push_back(ball({x, y, 0}, random.uniform(0.25, 0.5)));
   }
   choices one = in_stream(std::move(bodies), cells, random.magnitude(-1.5, 1.5), 0.3);
-  one.scheme = "upwind1";  // bodies may leave gaps of a cell or two, where others hardly settle
+  one.scheme = "upwind1";  // bodies may leave gaps of a cell or two, where other schemes hardly settle
   one.accommodation = random.uniform() < 0.3 ? 0.4 : 1.0;
   if (random.uniform() < 0.3) one.wall = "symmetry";
   const int along = random.integer(1, 4), across = random.integer(2, 4);
@@ -150,7 +150,7 @@ TEST(steady_bodies_on_processes, agree_with_one_process_past_random_bodies) {
     try {
       make(flow.of);
     } catch (const apsis::input_error&) {
-      continue;  // a body that is refused
+      continue;  // the body is refused
     }
     ++tested;
     expect_those_of_one_process(flow);
@@ -160,7 +160,7 @@ TEST(steady_bodies_on_processes, agree_with_one_process_past_random_bodies) {
 
 TEST(steady_bodies_on_processes, end_together_where_one_process_has_no_equilibrium) {
   const choices flow = warm({disc}, 12, 1.0);
-  const int bad = 12 + 5;  // a whole cell of the second process, in the whole mesh
+  const int bad = 12 + 5;  // a whole cell of the second process, numbered in the whole mesh
   std::atomic<int> ended = 0;
   threads_as_processes::run(3, [&](const std::shared_ptr<communicator>& processes) {
     const gas_past_bodies gas = make(flow, processes, blocks_of_mesh{1, 3, 1});
@@ -192,7 +192,7 @@ TEST(steady_bodies_on_processes, have_equal_rows_where_values_below_0_are_remove
 
 TEST(steady_bodies_on_processes, are_those_of_one_process) {
   for (named_flow flow : flows()) {
-    if (flow.blocks.size() == 1) continue;  // others are slow
+    if (flow.blocks.size() == 1) continue;  // other blocks are slow
     flow.blocks.erase(flow.blocks.begin(), flow.blocks.end() - 1);
     expect_those_of_one_process(flow);
   }

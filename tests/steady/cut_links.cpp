@@ -26,7 +26,7 @@ using namespace flows_past_bodies_test;
 using apsis::at;
 using apsis::communicator;
 
-/// Sets the numbers of cells without an unknown of their own to NaN.
+/// Sets the numbers of cells that copy another unknown to NaN.
 std::vector<double> without_copies(const apsis::cell_links& links, const std::vector<double>& of_cells,
                                    int per_cell) {
   std::vector<double> found(of_cells.size(), std::numeric_limits<double>::quiet_NaN());
@@ -35,7 +35,7 @@ std::vector<double> without_copies(const apsis::cell_links& links, const std::ve
   return found;
 }
 
-/// Returns δω of all cells with J δω = r for moments with waves, on the root.
+/// Returns δω of all cells with J δω = r for moments with waves. Only the root has the result.
 std::vector<double> solve_moments(const gas_past_bodies& gas) {
   const int count = gas.equation->moment_count();
   const apsis::cell_links links(gas.builder->space());
@@ -61,7 +61,7 @@ TEST(cut_links, give_each_group_to_one_process) {
           const gas_past_bodies part = make(flow, processes, blocks);
           const apsis::cell_links links(part.builder->space());
           apsis::cut_links cut(part.builder->space());
-          // The rows of owners go to all; other rows are wrong.
+          // Owners send their rows to all processes. Other rows are wrong before.
           const auto there = [&](int cell) { return whole.mesh().cell_of(part.mesh(), cell); };
           field rows(part.mesh().size(), 1);
           for (int cell = 0; cell < rows.cells(); ++cell) rows.row(cell)[0] = -1.0;
@@ -94,7 +94,7 @@ TEST(cut_links, give_the_moment_equations_of_one_process) {
   const std::array<std::string, 3> boundaries = {"diffuse", "outflow", "periodic"};
   std::size_t next = 0;
   for_all_blocks([&](choices flow, const blocks_of_mesh& blocks) {
-    if (blocks[1] == flow.cells) return;  // columns of single cells are enough
+    if (blocks[1] == flow.cells) return;  // columns of single cells suffice
     if (flow.boundary != "periodic") flow.boundary = boundaries[next++ % boundaries.size()];
     flow.boundary_values.clear();
     const std::vector<double> expected = solve_moments(make(flow));

@@ -1,4 +1,4 @@
-// The pseudo-time term of J: when it comes, when it grows, and when there is no stronger one.
+// The pseudo-time term of J: when it appears, when it grows, and when no stronger one exists.
 #include <apsis/steady/damping.hpp>
 
 #include <apsis/core/errors.hpp>
@@ -42,7 +42,7 @@ TEST(damping, grows_where_corrections_stay_too_large) {
     term.note_change(2.0);
     ASSERT_LT(iterations, 50);
   }
-  EXPECT_GT(iterations, 8);  // strong flows have as many on their way
+  EXPECT_GT(iterations, 8);  // strong flows may need as many iterations
 }
 
 TEST(damping, does_not_vanish_where_a_small_residual_stays) {

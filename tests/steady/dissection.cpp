@@ -1,4 +1,4 @@
-// Orders of elimination: the last slab separates what comes before it.
+// Orders of elimination. The last slab separates the cells before it.
 #include <apsis/steady/dissection.hpp>
 
 #include <algorithm>
@@ -14,7 +14,7 @@ namespace {
 
 constexpr int n = 20;
 
-/// Whether the equations of two cells of a square have each other's moments.
+/// Returns true if the equations of two cells of a square contain each other's moments.
 bool are_connected(int a, int b, bool periodic, int reach) {
   int across = std::abs(a / n - b / n), along = std::abs(a % n - b % n);
   if (periodic) across = std::min(across, n - across);
@@ -50,7 +50,7 @@ TEST(dissection, slabs_as_wide_as_fluxes_reach_separate_halves) {
       EXPECT_EQ(std::accumulate(found.parts.begin(), found.parts.end(), 0), n * n);
       std::sort(all.begin(), all.end());
       for (int cell = 0; cell < n * n; ++cell) EXPECT_EQ(all[static_cast<std::size_t>(cell)], cell);
-      // A ring needs two slabs; the second one ends at the first.
+      // A ring needs two slabs. The second one ends at the first.
       int separating = 0;
       for (int slab = 0; slab < (periodic ? 2 : 1); ++slab)
         separating += found.parts[found.parts.size() - 1 - static_cast<std::size_t>(slab)];

@@ -1,4 +1,4 @@
-// Steady flows past bodies, with the blocks of processes that find them.
+// Steady flows past bodies, with the blocks of processes for their solution.
 #pragma once
 
 #include <algorithm>
@@ -19,11 +19,11 @@ using blocks_of_mesh = std::array<int, 3>;
 struct named_flow {
   std::string name;
   choices of;
-  double ux;  ///< of the start, and of the stream
+  double ux;  ///< velocity of the start and of the stream
   std::vector<blocks_of_mesh> blocks;
 };
 
-/// A warm body between walls.
+/// Returns a case of a warm body between walls.
 inline choices warm(std::vector<outside_function> bodies, int cells, double epsilon) {
   return {.cells = cells,
           .bodies = std::move(bodies),
@@ -34,7 +34,7 @@ inline choices warm(std::vector<outside_function> bodies, int cells, double epsi
           .epsilon = epsilon};
 }
 
-/// A body in a stream.
+/// Returns a case of a body in a stream.
 inline choices in_stream(std::vector<outside_function> bodies, int cells, double epsilon, double ux) {
   choices one = warm(std::move(bodies), cells, epsilon);
   one.boundary = "inflow";
@@ -54,7 +54,7 @@ inline std::vector<named_flow> flows() {
   const std::vector<outside_function> discs = {ball({0.51, 0.43, 0}, 0.3), ball({-0.32, -0.2, 0}, 0.42)};
   choices specular = in_stream({disc}, 16, 0.5, 0.4);
   specular.wall = "symmetry";
-  // A disc that turns drives the gas.
+  // A rotating disc drives the gas.
   choices periodic = warm({either(ball({0.07, -1.0, 0}, 0.5), ball({0.07, 1.0, 0}, 0.5))}, 14, 0.5);
   periodic.boundary = "periodic";
   periodic.wall_temperature = 1.0;
@@ -85,7 +85,7 @@ inline std::vector<named_flow> flows() {
   };
 }
 
-/// Runs body(flow, blocks) on the blocks of all flows, and on columns and rows of single cells.
+/// Runs body(flow, blocks) on the blocks of all flows, including columns and rows of single cells.
 template <class Body>
 void for_all_blocks(const Body& body) {
   for (const named_flow& flow : flows()) {

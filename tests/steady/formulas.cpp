@@ -1,4 +1,4 @@
-// Kernels against their formulas on single numbers, point by point: the same bits in every instruction set.
+// Kernels and their formulas on single numbers have the same bits in every instruction set, at every point.
 #include <apsis/core/random_source.hpp>
 #include <apsis/steady/formulas/mixture.hpp>
 #include <apsis/steady/formulas/sweep.hpp>
@@ -43,7 +43,7 @@ TEST(formulas, implicit_upwind_equations_are_those_of_single_numbers) {
                   one[d].data(), two[d].data()};
       speeds[d] = lambda[d].data();
     }
-    // Two strips with a component between them that keeps its value.
+    // There are two strips. A component between them keeps its value.
     const int first = width / 2;
     const std::array<apsis::sweep_rows::strip, 2> strips = {
         {{0, first}, {std::min(first + 1, width), width}}};
@@ -80,7 +80,7 @@ TEST(formulas, mixtures_of_images_are_those_of_single_numbers) {
     }
     for_each_number([&](auto number, int) {
       using N = decltype(number);
-      // The newest difference takes the memory of the oldest one, which is read for the last time.
+      // The newest difference overwrites the oldest one, which is read for the last time.
       auto newest = before, mixed = x;
       last.rows = now.rows = {};
       for (std::size_t j = 0; j < images; ++j) {

@@ -37,7 +37,8 @@ block block_of(MatrixXd& all) {
   return {all.data(), static_cast<int>(all.rows()), static_cast<int>(all.cols()), all.outerStride()};
 }
 
-/// Unknowns on a line that are connected with the next `reach` ones, and the last one with all.
+/// Returns a matrix of unknowns on a line. Each is connected with the next `reach` ones, and the last one
+/// with all.
 row_matrix banded(int rows, int reach, unsigned seed) {
   std::mt19937 generator(seed);
   std::normal_distribution<double> number;
@@ -45,7 +46,7 @@ row_matrix banded(int rows, int reach, unsigned seed) {
   for (int i = 0; i < rows; ++i)
     for (int j = 0; j < rows; ++j)
       if (std::abs(i - j) <= reach || i == rows - 1 || j == rows - 1) {
-        // The block of a part is regular, but its diagonal does not dominate.
+        // The block of a part is regular, but not diagonally dominant.
         const double diagonal = i == j ? 2.0 * std::sqrt(2.0 * reach + 1.0) : 0.0;
         terms.emplace_back(i, j, diagonal + number(generator));
       }
@@ -54,7 +55,7 @@ row_matrix banded(int rows, int reach, unsigned seed) {
   return matrix;
 }
 
-/// Ends of parts with 1 to `most` unknowns.
+/// Returns the ends of parts with 1 to `most` unknowns.
 std::vector<int> random_ends(int rows, int most, unsigned seed) {
   std::mt19937 generator(seed);
   std::vector<int> ends;
@@ -83,7 +84,7 @@ TEST(dense_product, subtracts_blocks_of_any_size_and_touches_nothing_else) {
     expected.block(2, 1, rows, columns) -= a.topRows(rows) * b.topRows(depth);
     apsis::dense_product::subtract(block_of(a).at(0, 0, rows, depth), block_of(b).at(0, 0, depth, columns),
                                    block_of(c).at(2, 1, rows, columns));
-    // Sums of `depth` products of size 1, in another order.
+    // The entries are sums of `depth` products of size 1 in another order.
     EXPECT_LE((c - expected).cwiseAbs().maxCoeff(), 1e-15 * (depth + 10)) << rows << " " << columns;
     expected.block(2, 1, rows, columns) = c.block(2, 1, rows, columns);
     EXPECT_EQ(c, expected);
@@ -101,9 +102,9 @@ TEST(dense_factors, multiply_to_the_matrix_with_its_rows_exchanged) {
     MatrixXd lower = MatrixXd::Identity(rows, columns);
     lower.triangularView<Eigen::StrictlyLower>() = factors;
     const MatrixXd upper = factors.topRows(columns).triangularView<Eigen::Upper>();
-    // Growth of Gaussian elimination with pivots is small for random matrices.
+    // For random matrices the growth in Gaussian elimination with pivots is small.
     EXPECT_LE((lower * upper - exchanged_rows).cwiseAbs().maxCoeff(), 1e-14 * rows);
-    // The largest entry that remains in a column becomes the pivot.
+    // The largest remaining entry of a column becomes the pivot.
     EXPECT_LE(lower.cwiseAbs().maxCoeff(), 1.0);
   }
 }
@@ -119,7 +120,7 @@ TEST(dense_factors, solve_triangular_equations) {
   MatrixXd x = right, y = left;
   apsis::dense_factors::solve_lower(block_of(factors), block_of(x));
   apsis::dense_factors::solve_upper_from_right(block_of(factors), block_of(y));
-  // Well-conditioned triangles.
+  // The triangles are well conditioned.
   EXPECT_LE((lower * x - right).cwiseAbs().maxCoeff(), 1e-12);
   EXPECT_LE((y * upper - left).cwiseAbs().maxCoeff(), 1e-12);
 }

@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-/// A gas in a box with the problem that describes it.
+/// A gas in a box, and the problem that describes it.
 struct gas_problem {
   std::shared_ptr<const apsis::relaxation_model> equation;
   std::shared_ptr<apsis::problem_builder> space;
@@ -43,7 +43,7 @@ inline std::shared_ptr<const apsis::relaxation_model> make_gas(const std::string
   return {made, made->as_relaxation()};
 }
 
-/// A gas of rarefaction parameter δ between walls on all sides of the unit box.
+/// Returns a gas of rarefaction parameter δ between walls on all sides of the unit box.
 inline gas_problem gas_between_walls(std::shared_ptr<const apsis::relaxation_model> equation, int dimensions,
                                      int cells, double delta, const std::string& scheme = "upwind5") {
   gas_problem made;
@@ -57,7 +57,8 @@ inline gas_problem gas_between_walls(std::shared_ptr<const apsis::relaxation_mod
   return made;
 }
 
-/// A diffuse wall of a temperature that moves with u along y; `u` is 0 where the gas has no such velocity.
+/// Returns a diffuse wall of a temperature that moves with u along y. `u` must be 0 if the gas has
+/// no such velocity.
 inline std::shared_ptr<const apsis::boundary> diffuse_wall(const apsis::model& equation, double T,
                                                            double u = 0.0) {
   apsis::face_quantities values{{"T", {T}}};

@@ -1,4 +1,4 @@
-// The linearised moment equations: which sums they keep, and what they cannot solve.
+// The linearised moment equations: conserved sums, and refused systems.
 #include <apsis/steady/macroscopic_system.hpp>
 
 #include "gas_problem.hpp"
@@ -71,8 +71,8 @@ TEST(macroscopic_system, sees_that_a_force_gives_momentum_and_energy) {
 TEST(macroscopic_system, adds_the_mass_that_is_missing) {
   line gas(between("diffuse", "diffuse"));
   const moments change = gas.system.solve(moments(gas.omega.size(), 0.0), {0.6, 0.0, 0.0, 0.0});
-  // At rest between equal walls the density alone changes, by the same everywhere; differences of rows have
-  // half the digits.
+  // At rest between equal walls only the density changes, by the same amount everywhere. Differences of rows
+  // have half of the digits.
   for (std::size_t cell = 0; cell < 12; ++cell) {
     EXPECT_NEAR(change[4 * cell], 0.05, 1e-7) << cell;
     EXPECT_NEAR(change[4 * cell + 3], 0.075, 1e-7) << cell;
@@ -80,8 +80,8 @@ TEST(macroscopic_system, adds_the_mass_that_is_missing) {
 }
 
 TEST(macroscopic_system, has_the_profile_of_viscous_shear) {
-  // A steady source s of y-momentum between walls at rest: μ u″ = −s with μ = T/10, and slip of order Kn at
-  // the walls, which a parabola of the same curvature has too.
+  // A steady source s of y-momentum between walls at rest gives μ u″ = −s with μ = T/10. The slip at the
+  // walls is of order Kn. A parabola of this curvature has slip too.
   const double h = 1.0 / 12.0;
   const auto second_differences = [&](bool first_order) {
     const line gas(between("diffuse", "diffuse"), first_order);
@@ -93,9 +93,10 @@ TEST(macroscopic_system, has_the_profile_of_viscous_shear) {
                       (h * h));
     return found;
   };
-  // Of the size of the third-order dissipation |v|h³/12.
+  // The tolerance has the size of the third-order dissipation |v|h³/12.
   for (const double second : second_differences(false)) EXPECT_NEAR(second, -1e-2, 2e-3);
-  // Upwind fluxes of first order add the viscosity ⟨|v|⟩h/2 = √(2/π)h/2, here a third of that of the gas.
+  // First-order upwind fluxes add the viscosity ⟨|v|⟩h/2 = √(2/π)h/2, here a third of the viscosity
+  // of the gas.
   const double upwind = std::sqrt(2.0 / std::numbers::pi) * h / 2.0;
   for (const double second : second_differences(true)) EXPECT_NEAR(second, -1e-3 / (0.1 + upwind), 5e-4);
 }

@@ -1,4 +1,4 @@
-// Continuation in what enters at the ends: what it lets in, and where the last state leads.
+// Continuation in the amounts that enter at the ends: the incoming amounts, and starts from the last state.
 #include <apsis/steady/milder_ends.hpp>
 
 #include "gas_problem.hpp"
@@ -36,7 +36,7 @@ row maxwellian(const apsis::relaxation_model& equation, double T) {
 /// Returns the row that enters at the left end of a gas with the row `inside`.
 row entering(const apsis::relaxation_model& equation, const apsis::boundary& of, const row& inside) {
   const apsis::velocity_set velocities = equation.velocities();
-  const auto prepared = of.prepared({0, false}, velocities);  // nullptr where it needs no tables
+  const auto prepared = of.prepared({0, false}, velocities);  // nullptr if it needs no tables
   const apsis::boundary& side = prepared ? *prepared : of;
   row outgoing(inside), found(inside.size(), 0.0);
   const auto speeds = apsis::inward_speeds({0, false}, velocities);
@@ -50,7 +50,7 @@ row entering(const apsis::relaxation_model& equation, const apsis::boundary& of,
   return found;
 }
 
-/// The flux of mass or of the energy of the motion along x and of other degrees of freedom.
+/// The fluxes of mass and of the energy of the motion along x and of other degrees of freedom.
 struct fluxes {
   double mass = 0.0, energy = 0.0;
 };
@@ -65,7 +65,7 @@ fluxes fluxes_of(const apsis::relaxation_model& equation, const row& f) {
   return found;
 }
 
-/// A gas between walls of temperatures T and 1.
+/// Returns a gas between walls of temperatures T and 1.
 gas_problem heated(double delta, double T) {
   const auto equation = make_gas("bgk", 1, {4.0 * std::sqrt(T) + 4.0, 66}, 1);
   gas_problem gas = gas_between_walls(equation, 1, 40, delta);
@@ -148,11 +148,11 @@ TEST(milder_ends, end_near_the_steady_state_with_the_mass_of_the_start) {
   for (; !milder.finished(); ++taken) milder.iterate(f);
   EXPECT_LT(taken, 150);
   EXPECT_NEAR(mass(gas, f), mass(gas, gas.at_rest()), 1e-12 * 40);
-  // The last of these states is a start from which the limited fluxes settle.
+  // Limited fluxes settle from the last of these states.
   const auto problem = gas.space->build();
   apsis::steady_solver solver(*gas.equation, *gas.space, *problem, gas.at_rest());
   apsis::field rest = gas.at_rest();
-  static_cast<void>(solver.iterate(rest));  // the unit of residuals
+  static_cast<void>(solver.iterate(rest));  // sets the unit of residuals
   solver.restart(milder.damping());
   bool found = false;
   for (int k = 0; k < 150 && !found; ++k) found = solver.iterate(f).converged;
@@ -160,7 +160,7 @@ TEST(milder_ends, end_near_the_steady_state_with_the_mass_of_the_start) {
 }
 
 TEST(milder_ends, that_do_not_settle_say_so) {
-  // Nothing takes the heat of a source but walls that it never reaches in a hundred iterations.
+  // Only walls take the heat of the source, and it does not reach them in a hundred iterations.
   const auto equation = make_gas("bgk", 1, {12.0, 24}, 1);
   gas_problem gas = gas_between_walls(equation, 1, 20, 500.0);
   gas.space->with_boundary({0, false}, apsis::make_boundary("symmetry"))

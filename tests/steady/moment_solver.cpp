@@ -1,5 +1,4 @@
-// Solvers of moment equations: of small and of large systems, of conserved sums, and with factors of earlier
-// ones.
+// Solvers of moment equations: small and large systems, conserved sums, and factors of earlier equations.
 #include <apsis/steady/internal/moment_solver.hpp>
 
 #include "gas_problem.hpp"
@@ -21,7 +20,7 @@ namespace {
 using apsis::moment_equations;
 using apsis::moment_mesh;
 
-/// A mesh of cubes with sides of n cells, whose cells are numbered with the last direction first.
+/// Returns a mesh of cubes with n cells along each side, numbered with the last direction first.
 moment_mesh cube(int directions, int n, int moments) {
   moment_mesh mesh{.directions = directions, .moments = moments, .cells = 1, .spacing = 1.0 / n};
   for (int d = 0; d < directions; ++d) mesh.cells *= n;
@@ -39,8 +38,8 @@ moment_mesh cube(int directions, int n, int moments) {
   return mesh;
 }
 
-/// Fluxes |a| upwind and ν ∇ of every moment and −c ∇ of its neighbour; walls absorb all moments but the
-/// first `closed` ones.
+/// Returns equations with fluxes |a| upwind and ν ∇ of every moment and −c ∇ of its neighbour. Walls absorb
+/// all moments except the first `closed` ones.
 moment_equations flows(const moment_mesh& mesh, double nu, int closed, unsigned seed = 1) {
   std::mt19937 generator(seed);
   std::uniform_real_distribution<double> share(0.5, 1.5);
@@ -69,7 +68,7 @@ moment_equations flows(const moment_mesh& mesh, double nu, int closed, unsigned 
           if ((below < 0 || above < 0) && i < closed) continue;
           if (below >= 0) leave(below, above, i, (swept + across) / mesh.spacing);
           if (above >= 0) leave(above, below, i, (0.5 * swept + across) / mesh.spacing);
-          // A pressure of the neighbouring moment pushes this one, as in sound.
+          // The neighbouring moment acts as a pressure, as in sound.
           if (i == 0 || below < 0 || above < 0) continue;
           for (const int of : {below, above}) {
             terms.entry(below * m + i, of * m + i - 1) += 0.25 / mesh.spacing;
@@ -90,7 +89,7 @@ Eigen::VectorXd noise(Eigen::Index rows, unsigned seed) {
   return r;
 }
 
-/// Solves for the right-hand side of a known solution, and returns the relative error.
+/// Solves for the right-hand side of a known solution. Returns the relative error.
 double error_of(apsis::moment_solver& solver, const moment_mesh& mesh, const moment_equations& equations) {
   const Eigen::SparseMatrix<double> matrix = apsis::bordered_matrix(mesh, equations);
   const Eigen::VectorXd exact = noise(matrix.rows(), 7);
@@ -109,7 +108,8 @@ TEST_P(moment_solvers, solve_dense_and_rare_systems_with_and_without_conserved_s
       const moment_equations equations = flows(mesh, nu, closed);
       apsis::moment_solver solver(mesh);
       solver.take(equations, false);
-      // GMRES bounds the error after preconditioning by 1e-4; the condition of what is left is below 10.
+      // GMRES bounds the error after preconditioning by 1e-4. The preconditioned matrix has a
+      // condition below 10.
       EXPECT_LT(error_of(solver, mesh, equations), 1e-3) << nu << " " << closed;
     }
 }
@@ -133,7 +133,7 @@ TEST_P(later_equations, are_solved_with_earlier_factors_or_with_new_ones) {
   const moment_mesh mesh = cube(directions, n, 3);
   apsis::moment_solver solver(mesh);
   solver.take(flows(mesh, 0.1, 1), false);
-  // The same equations again, others, others of another size of ν, and one equation more.
+  // The later equations are the same, others, others with another size of ν, and ones with one more equation.
   for (const moment_equations& later :
        {flows(mesh, 0.1, 1), flows(mesh, 0.1, 1, 2), flows(mesh, 30.0, 1, 3), flows(mesh, 1e-3, 1, 4)}) {
     solver.take(later, false);
@@ -148,7 +148,7 @@ TEST_P(later_equations, are_solved_with_earlier_factors_or_with_new_ones) {
 INSTANTIATE_TEST_SUITE_P(sizes, later_equations, testing::Values(std::array{2, 12}, std::array{3, 21}));
 
 TEST(alternating_directions, reduce_errors_of_every_wave_length_on_any_mesh) {
-  // As an iteration of their own, without GMRES.
+  // The sweeps iterate without GMRES.
   for (const auto& [directions, n] :
        {std::array{2, 16}, std::array{2, 100}, std::array{3, 8}, std::array{3, 24}}) {
     const moment_mesh mesh = cube(directions, n, 2);

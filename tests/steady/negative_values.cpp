@@ -1,4 +1,4 @@
-// Rows with negative values made nonnegative, with the moments that they had.
+// Rows with negative values become nonnegative and keep their moments.
 #include <apsis/steady/negative_values.hpp>
 
 #include "gas_problem.hpp"
@@ -29,7 +29,7 @@ std::vector<double> moments_of(const apsis::relaxation_model& equation, const fi
   return omega;
 }
 
-/// A moving gas of one cell.
+/// Returns a moving gas of one cell.
 field moving_gas(const apsis::relaxation_model& equation) {
   const int d = equation.velocities().dimensions();
   std::vector<double> omega(static_cast<std::size_t>(equation.moment_count()), 0.0);
@@ -50,7 +50,8 @@ TEST(negative_values, of_a_gas_are_removed_with_its_moments_kept) {
       const field gas = moving_gas(*equation);
       check_property("moments", [&] {
         field f = gas;
-        // Up to a millionth of the largest value, also in the tails, where f is smaller than that.
+        // The negative values are up to a millionth of the largest value, also in the tails, where
+        // f is smaller.
         std::int64_t negative = 0;
         for (int k = 0; k < f.components(); ++k)
           if (*rc::gen::inRange(0, 5) == 0) {
@@ -58,7 +59,7 @@ TEST(negative_values, of_a_gas_are_removed_with_its_moments_kept) {
             ++negative;
           }
         const std::vector<double> before = moments_of(*equation, f);
-        // Bumps of another kind may leave no temperature.
+        // Bumps of another kind may leave no temperature and are discarded.
         RC_PRE(equation->as_gas()->molecules().state(before.data()).admissible());
         const apsis::removed_values removed = remove_negative_values(*equation, {0}, f);
         RC_ASSERT(removed.count == negative);
@@ -74,7 +75,7 @@ TEST(negative_values, change_a_gas_by_their_size_alone) {
   const auto equation = make_gas("bgk", 1, {6.0, 16}, 2);
   const field gas = moving_gas(*equation);
   field f = gas;
-  f.row(0)[0] = -1e-9;  // a corner, where the gas has less than 1e-13
+  f.row(0)[0] = -1e-9;  // a corner, where f is below 1e-13
   const apsis::removed_values removed = remove_negative_values(*equation, {0}, f);
   EXPECT_EQ(removed.count, 1);
   EXPECT_EQ(removed.lowest, -1e-9);

@@ -1,4 +1,4 @@
-// The upwind sweep against the operator that it inverts.
+// The upwind sweep inverts its operator.
 #include <apsis/steady/octant_sweep.hpp>
 
 #include "gas_problem.hpp"
@@ -19,14 +19,14 @@ using apsis::field;
 
 constexpr double slope = 0.4;
 
-/// The value at the downstream edge of a cell: δ + slope (δ − upstream), δ alone next to where the gas
-/// begins.
+/// Returns the value at the downstream edge of a cell, δ + slope (δ − upstream), or δ alone where
+/// the gas begins.
 double edge(const apsis::cell_links& links, const field& d, int direction, bool up, int cell, int k) {
   const int before = links.next(direction, !up, cell);
   return before < 0 ? d.row(cell)[k] : d.row(cell)[k] + slope * (d.row(cell)[k] - d.row(before)[k]);
 }
 
-/// (L + σ) δ with nothing entering.
+/// Returns (L + σ) δ for nothing that enters.
 field apply(const apsis::model& equation, const apsis::grid& mesh, const apsis::cell_links& links,
             const std::vector<double>& rates, const field& d) {
   field sum(d.cells(), d.components());
@@ -53,7 +53,7 @@ TEST_P(sweeps, solve_the_implicit_step_exactly) {
   const int dimensions = GetParam();
   const auto equation = make_gas("bgk", dimensions, {4.0, 6}, dimensions);
   gas_problem gas = gas_between_walls(equation, dimensions, 5, 1.0);
-  // With vacuum beyond its ends nothing enters.
+  // Beyond the ends there is a vacuum, so nothing enters.
   for (int d = 0; d < dimensions; ++d)
     for (const bool upper : {false, true})
       gas.space->with_boundary({d, upper}, apsis::make_boundary("vacuum", *equation, {}));
@@ -74,7 +74,7 @@ TEST_P(sweeps, solve_the_implicit_step_exactly) {
     for (int cell = 0; cell < r.cells(); ++cell)
       for (int k = 0; k < r.components(); ++k)
         RC_ASSERT(std::abs(back.row(cell)[k] - r.row(cell)[k]) < 1e-12);  // sums of some ten terms ≤ 1
-    // Threads share the components of an octant, also where there are fewer of them than threads.
+    // Threads share the components of an octant. There may be more threads than components.
     for (const int threads : {2, 3, 7, 64}) {
       apsis::set_threads(threads);
       field same = r;
@@ -100,7 +100,8 @@ TEST(octant_sweep, walls_return_in_later_octants_what_left_in_earlier_ones) {
   for (int k = 0; k < d.components(); ++k)
     d.row(3)[k] = equation->speeds(0)[static_cast<std::size_t>(k)] < 0.0;
   sweep.solve(gas.at_rest(), std::vector<double>(6, 1e-6), d);
-  // Without collisions, the molecules that fly to the left come back to the right: no mass crosses the wall.
+  // Without collisions the molecules that fly to the left come back to the right, because no mass
+  // crosses the wall.
   const auto weights = equation->velocities().weights();
   double leaving = 0.0, returning = 0.0;
   for (std::size_t k = 0; k < weights.size(); ++k) {

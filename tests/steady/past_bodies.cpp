@@ -25,7 +25,7 @@ std::vector<double> moments_of(const gas_past_bodies& gas, const field& u) {
   return omega;
 }
 
-/// ℛT of the equilibria.
+/// Returns ℛT of the equilibria.
 std::vector<double> rates_of(const gas_past_bodies& gas, const std::vector<double>& omega) {
   const auto count = static_cast<std::size_t>(gas.equation->moment_count());
   field f(gas.mesh().size(), gas.equation->components());
@@ -68,7 +68,7 @@ TEST(past_bodies, moment_equations_are_the_derivatives_of_transport_in_equilibri
     const apsis::cell_links links(gas.builder->space());
     apsis::macroscopic_system system(*gas.equation, *gas.builder, links);
     const auto omega = some_moments(gas, 0.0);
-    // Collisions so fast that the deviation from equilibrium has no part.
+    // Collisions are so fast that the deviation from equilibrium has no effect.
     system.build(omega, std::vector<double>(static_cast<std::size_t>(gas.mesh().size()), 1e9), 0.0);
     constexpr double step = 1e-5;
     auto direction = some_moments(gas, 0.7);
@@ -86,7 +86,7 @@ TEST(past_bodies, moment_equations_are_the_derivatives_of_transport_in_equilibri
       for (std::size_t i = 0; i < missing.size(); ++i)
         missing[i] += links.volume(cell) * direction[static_cast<std::size_t>(cell) * missing.size() + i];
     const auto found = system.solve(right, missing);
-    // Differences of rows have half the digits.
+    // Differences of rows have half of the digits.
     for (const int cell : links.cells())
       for (std::size_t i = 0; i < missing.size(); ++i) {
         const std::size_t k = static_cast<std::size_t>(cell) * missing.size() + i;
@@ -96,11 +96,11 @@ TEST(past_bodies, moment_equations_are_the_derivatives_of_transport_in_equilibri
 }
 
 TEST(past_bodies, gases_of_all_densities_and_models_settle) {
-  // They took 19 to 76 without a limiter.
+  // Without a limiter the gases took 19 to 76 iterations.
   constexpr int most_iterations = 110;
   struct flow {
     choices of;
-    int most;  ///< iterations
+    int most;  ///< largest number of iterations
   };
   std::vector<flow> flows;
   for (const double epsilon : {1e4, 10.0, 1.0, 0.1, 0.01})
@@ -134,7 +134,7 @@ TEST(past_bodies, gases_of_all_densities_and_models_settle) {
     const double mass = integrals(gas, gas.uniform())[0];
     const auto [f, last] = solve(gas);
     EXPECT_LE(last.number, most) << of.epsilon << " " << of.model;
-    // Fixed points do not depend on J and the sweeps: T + Q = 0.
+    // Fixed points satisfy T + Q = 0, independently of J and the sweeps.
     field r = gas.step(f, 0.0, 1.0);
     const apsis::target<field, double> to{&r, 0.0, 1.0, false};
     gas.problem->add_collision(0.0, f, {&to, 1});

@@ -1,4 +1,4 @@
-// Continuation in the rarefaction: which gases, and what the last one is good for.
+// Continuation in the rarefaction: the sequence of gases, and starts from the last one.
 #include <apsis/steady/rarer_gases.hpp>
 
 #include "gas_problem.hpp"
@@ -28,7 +28,7 @@ double mass(const gas_problem& gas, const apsis::field& f) {
   return sum;
 }
 
-/// A gas between walls of temperatures 1 and T.
+/// Returns a gas between walls of temperatures 1 and T.
 gas_problem heated(double delta, double T, const std::string& model = "bgk") {
   const auto equation = make_gas(model, 1, {4.0 * std::sqrt(T) + 4.0, 80}, 1);
   gas_problem gas = gas_between_walls(equation, 1, 40, delta);
@@ -40,7 +40,7 @@ gas_problem heated(double delta, double T, const std::string& model = "bgk") {
 int iterations(const gas_problem& gas, apsis::field f) {
   const auto problem = gas.space->build();
   apsis::steady_solver solver(*gas.equation, *gas.space, *problem, gas.at_rest());
-  // Residuals are relative to that of rest from either start.
+  // From either start residuals are relative to that of rest.
   solver.relative_residual(gas.at_rest());
   apsis::field rest = gas.at_rest();
   static_cast<void>(solver.iterate(rest));
@@ -94,7 +94,7 @@ TEST(rarer_gases, let_the_solver_settle_where_no_pseudo_time_term_does) {
 }
 
 TEST(rarer_gases, that_do_not_settle_say_so) {
-  // Nothing takes the heat of a source.
+  // Nothing takes the heat of the source.
   const auto equation = make_gas("bgk", 1, {12.0, 24}, 1);
   gas_problem gas = gas_between_walls(equation, 1, 20, 500.0);
   for (const bool upper : {false, true})

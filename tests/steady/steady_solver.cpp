@@ -1,4 +1,4 @@
-// Steady states against published values, theory, and the time integrator.
+// Steady states agree with published values, theory, and the time integrator.
 #include <apsis/steady/steady_solver.hpp>
 
 #include "gas_problem.hpp"
@@ -76,8 +76,8 @@ double largest_difference(const field& a, const field& b) {
 }  // namespace
 
 TEST(steady_solver, finds_the_stress_of_couette_flow_at_every_rarefaction) {
-  // Willis (Phys. Fluids 5, 1962) and Loyalka, linear BGK; the stress over its free-molecular value. Four
-  // digits are published; 40 cells and 32 velocities are accurate to 5e-4.
+  // Willis (Phys. Fluids 5, 1962) and Loyalka computed the stress of linear BGK over its free-molecular
+  // value, with four digits. 40 cells and 32 velocities are accurate to 5e-4.
   for (const auto& [delta, published] : {std::pair{0.01, 0.9914},
                                          {0.1, 0.9258},
                                          {1.0, 0.6007},
@@ -86,7 +86,7 @@ TEST(steady_solver, finds_the_stress_of_couette_flow_at_every_rarefaction) {
                                          {100.0, 0.01737}}) {
     const double u = 0.01;
     const solved found = solve(couette(delta, u));
-    // The rates of the upper end follow those of the lower one: mass, momentum across and along, energy.
+    // Rates of the lower end precede those of the upper one: mass, momentum across and along, energy.
     const double stress = -found.rates[4 + 2] / (2.0 * u / std::sqrt(2.0 * std::numbers::pi));
     EXPECT_NEAR(stress, -published, 6e-4 * published) << delta;
     EXPECT_LE(found.last.number, 60) << delta;
@@ -104,8 +104,8 @@ TEST(steady_solver, keeps_mass_and_balances_what_walls_give) {
 }
 
 TEST(steady_solver, finds_a_state_that_the_time_integrator_leaves_as_it_is) {
-  // Steps of a method whose steady state is that of the equation. The change of many steps shows how far the
-  // state is from theirs; the same steps change the state at rest by 1e-3.
+  // The steps belong to a method whose steady state is that of the equation. Their change shows the distance
+  // of the state from theirs. The same steps change the state at rest by 1e-3.
   for (const char* model : {"bgk", "shakhov", "es-bgk"}) {
     const gas_problem gas = couette(5.0, 0.1, 10, model);
     const auto problem = gas.space->build();
@@ -116,8 +116,8 @@ TEST(steady_solver, finds_a_state_that_the_time_integrator_leaves_as_it_is) {
       return f;
     };
     const solved found = solve(gas, {.tolerance = 1e-12});
-    // In stages of the models with relaxing moments these are predicted, with the accuracy of sums over the
-    // velocities, 1e-9 for twelve of them.
+    // Stages predict relaxing moments with the accuracy of sums over the velocities, 1e-9
+    // for twelve velocities.
     EXPECT_LT(largest_difference(march(found.f), found.f), model == std::string("bgk") ? 1e-13 : 5e-10)
         << model;
     EXPECT_GT(largest_difference(march(gas.at_rest()), gas.at_rest()), 1e-3) << model;
@@ -128,7 +128,7 @@ TEST(steady_solver, finds_the_same_state_from_any_start_of_the_same_mass) {
   const gas_problem gas = couette(3.0, 0.3, 12);
   const solved from_rest = solve(gas, {.tolerance = 1e-12});
   field f = gas.at_rest();
-  // A jet in the middle, and cold gas at the walls.
+  // The start has a jet in the middle and cold gas at the walls.
   std::vector<double> omega = {1.0, 0.2, -0.5, 0.0};
   for (int cell = 0; cell < f.cells(); ++cell) {
     omega[3] = 0.5 * (0.29 + 3.0 * (cell % 11 == 0 ? 0.6 : 1.2));
@@ -184,7 +184,7 @@ TEST_P(heated, gas_between_walls_of_two_temperatures_settles) {
   const solved found = solve(gas);
   EXPECT_LE(found.last.number, space == 1 ? 60 : 120);
   EXPECT_NEAR(total_mass(gas, found.f), 1.0, 1e-12);
-  // Heat enters at the hot wall and leaves at the others, at every rarefaction.
+  // At every rarefaction heat enters at the hot wall and leaves at the others.
   const std::size_t count = equation->invariants().size(),
                     ends = found.rates.size() / count;  // the last number is that of a force
   double sum = 0.0, received = 0.0;
@@ -200,8 +200,8 @@ TEST_P(heated, gas_between_walls_of_two_temperatures_settles) {
 INSTANTIATE_TEST_SUITE_P(gases, heated, testing::ValuesIn(all_enclosed()));
 
 TEST(steady_solver, settles_with_few_velocities_whose_equilibria_have_a_heat_flux) {
-  // Eight velocities miss 5 % of a Maxwellian. The heat flux of a moving one is then not 0, so that the
-  // target of Shakhov's model is not the equilibrium.
+  // Eight velocities miss 5 % of a Maxwellian. A moving one then has a heat flux. The target of Shakhov's
+  // model thus differs from the equilibrium.
   for (const char* model : {"bgk", "shakhov", "es-bgk"})
     for (const int space : {2, 3}) {
       apsis::velocity_config velocity{5.0, 8};
@@ -216,7 +216,8 @@ TEST(steady_solver, settles_with_few_velocities_whose_equilibria_have_a_heat_flu
 }
 
 TEST(steady_solver, settles_far_from_equilibrium_from_rest) {
-  // Walls with temperatures 1 and 9, and plates with twice the speed of sound between them.
+  // The walls have temperatures 1 and 9. The plates move with twice the speed of sound relative
+  // to each other.
   for (const double delta : {0.1, 10.0, 1000.0}) {
     const auto equation = make_gas("bgk", 1, {18.0, 48}, 1);
     gas_problem gas = gas_between_walls(equation, 1, 30, delta);
@@ -270,7 +271,7 @@ TEST(steady_solver, ends_at_once_in_the_steady_state) {
 }
 
 TEST(steady_solver, ends_where_a_flow_never_settles) {
-  // A force along walls that reflect specularly accelerates the gas for ever.
+  // A force along specularly reflecting walls accelerates the gas for ever.
   const auto equation = make_gas("bgk", 1, {6.0, 12}, 2);
   gas_problem gas = gas_between_walls(equation, 1, 10, 5.0);
   for (const bool upper : {false, true})

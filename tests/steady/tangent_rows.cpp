@@ -1,4 +1,4 @@
-// Derivatives of equilibria and what collisions leave of a gradient, against kinetic theory.
+// Derivatives of equilibria, and deviations due to a gradient under collisions, agree with kinetic theory.
 #include <apsis/steady/tangent_rows.hpp>
 
 #include "gas_problem.hpp"
@@ -12,11 +12,11 @@
 namespace tangent_rows_test {
 namespace {
 
-// Differences of rows have half the digits.
+// Differences of rows have half of the digits.
 constexpr double accuracy = 3e-6;
 constexpr double T = 1.1, rho = 0.8;
 
-/// A gas at rest with three velocity dimensions, and its tangents.
+/// A gas at rest with three velocity dimensions, and its tangent rows.
 struct gas_at_rest {
   std::shared_ptr<const apsis::relaxation_model> equation;
   std::vector<double> omega = {rho, 0.0, 0.0, 0.0, 1.5 * rho* T};
@@ -52,8 +52,8 @@ TEST(tangent_rows, carry_the_fluxes_of_the_euler_equations) {
   gas_at_rest gas("bgk");
   std::vector<double> matrix(25);
   gas.tangents.moments_of_weighted(gas.equation->speeds(0), matrix.data());
-  // At rest: the flux of mass is the momentum, that of momentum p = 2/3 of the energy, that of energy 5/2 T
-  // times the momentum.
+  // At rest the flux of mass is the momentum. That of momentum is p, 2/3 of the energy. That of energy is 5/2
+  // T times the momentum.
   EXPECT_NEAR(matrix[1], 1.0, accuracy);
   EXPECT_NEAR(matrix[5 + 4], 2.0 / 3.0, accuracy);
   EXPECT_NEAR(matrix[20 + 1], 2.5 * T, accuracy);
@@ -61,7 +61,7 @@ TEST(tangent_rows, carry_the_fluxes_of_the_euler_equations) {
 }
 
 TEST(tangent_rows, have_the_viscosity_of_the_model) {
-  // The stress of BGK and Shakhov relaxes with the rate C, that of the ellipsoidal model with C/Pr.
+  // The stress relaxes with the rate C in BGK and Shakhov, and with C/Pr in the ellipsoidal model.
   for (const auto& [model, of_stress] : {std::pair{"bgk", 1.0}, {"shakhov", 1.0}, {"es-bgk", 2.0 / 3.0}}) {
     gas_at_rest gas(model);
     EXPECT_NEAR(gas.deviation(0)[10 + 2], of_stress * T, accuracy) << model;
@@ -70,8 +70,8 @@ TEST(tangent_rows, have_the_viscosity_of_the_model) {
 }
 
 TEST(tangent_rows, have_the_conductivity_of_the_model) {
-  // At constant pressure dρ = −ρ dT/T and dE = 0, and the flux of energy is 5/2 ρT dT/Pr in units of the rate
-  // at which the stress relaxes.
+  // At constant pressure dρ = −ρ dT/T and dE = 0. The flux of energy is 5/2 ρT dT/Pr, in units of the rate of
+  // relaxation of the stress.
   for (const auto& [model, of_heat] : {std::pair{"bgk", 1.0}, {"shakhov", 1.5}, {"es-bgk", 1.0}}) {
     gas_at_rest gas(model);
     for (int direction = 0; direction < 3; ++direction)

@@ -1,5 +1,6 @@
-// Order in time on a PDE of every method of the paper's class with transport, from data out of equilibrium,
-// at ε = 1 and in the limit. All runs of a method use the same mesh, so there is no spatial error.
+// Every method of the paper's class with transport has its order in time on a PDE, from data out
+// of equilibrium, at ε = 1 and in the limit. All runs of a method use the same mesh, so there is
+// no spatial error.
 #include "support/catalogue.hpp"
 
 #include <apsis/study/convergence.hpp>
@@ -26,13 +27,13 @@ double slope(const std::string& method, const std::string& epsilon, const std::s
 
 class every_asymptotic_preserving_method : public ::testing::TestWithParam<std::string> {};
 
-// The next term of the error changes the slope by up to 0.1 at these steps, as in docs/convergence.md.
+// At these steps the next term of the error changes the slope by up to 0.1, as in docs/convergence.md.
 constexpr double tolerance = 0.15;
 
 TEST_P(every_asymptotic_preserving_method, has_its_order_on_the_broadwell_model) {
   const int order = find_method(GetParam()).claims.order;
   EXPECT_NEAR(slope(GetParam(), "1", "0.2,0.1"), order, tolerance);
-  // Steps long enough that errors are far above ten times ε, where all of them stall.
+  // The steps are so long that errors are far above ten times ε, where all of them stall.
   EXPECT_NEAR(slope(GetParam(), "1e-10", "0.8,0.4"), order, tolerance);
 }
 

@@ -1,4 +1,4 @@
-// States on different meshes: cell averages against cell averages, point values against point values.
+// States on different meshes: cell averages are compared with cell averages, point values with point values.
 #include <apsis/study/compare.hpp>
 
 #include <apsis/core/errors.hpp>
@@ -20,7 +20,8 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 
-/// A result that was never computed: `value` of every cell, two components, the second twice the first.
+/// Returns a result that was never computed. Every cell has `value` in the first of two components, twice as
+/// much in the second.
 outcome on_mesh(const std::string& how, int cells,
                 const std::function<double(double left, double right)>& value) {
   outcome o;
@@ -58,7 +59,7 @@ double largest(const std::vector<double>& a, const std::vector<double>& b) {
 
 TEST(meshes, averages_of_averages_are_averages) {
   for (const int ratio : {1, 2, 3, 8})
-    // Each average carries the rounding of two cosines, divided by the length of its fine cell.
+    // Each average has the rounding errors of two cosines, divided by the length of its fine cell.
     EXPECT_LE(largest(on_mesh_of(averages(10), averages(10 * ratio)), averages(10).state),
               1e-15 * 10 * ratio);
 }
@@ -95,7 +96,7 @@ class interpolated_points : public testing::TestWithParam<const char*> {};
 
 TEST_P(interpolated_points, are_of_eighth_order_also_at_the_ends) {
   const bool periodic = std::string(GetParam()) == "periodic";
-  // Beyond the ends of an open domain there are no values: a function without periodic continuation.
+  // There are no values beyond the ends of an open domain. The function has no periodic continuation.
   const std::function<double(double)> f =
       periodic ? std::function<double(double)>([](double x) { return std::sin(pi * x); })
                : [](double x) { return std::sin(pi * x + 0.3) + x * x; };
@@ -105,7 +106,7 @@ TEST_P(interpolated_points, are_of_eighth_order_also_at_the_ends) {
       auto coarse = points(cells, f);
       coarse.config.space.boundary = GetParam();
       const double error = largest(on_mesh_of(coarse, points(ratio * cells, f)), coarse.state);
-      // Seventh order would suffice for a scheme of fifth order; the stencil gives eighth.
+      // Seventh order would suffice for a scheme of fifth order. The stencil has eighth.
       if (before > 0.0) {
         EXPECT_GE(std::log2(before / error), 7.5) << ratio << " " << cells;
       }
@@ -129,7 +130,7 @@ TEST(meshes, interpolation_reproduces_polynomials_of_degree_seven) {
     RC_PRE(fine >= 8);
     auto coarse = points(cells, f);
     coarse.config.space.boundary = "outflow";
-    // Values up to 40 and weights of one-sided stencils of a few hundred.
+    // The values are up to 40. The weights of one-sided stencils are a few hundred.
     RC_ASSERT(largest(on_mesh_of(coarse, points(fine, f)), coarse.state) <= 1e-11);
   });
 }
@@ -140,7 +141,7 @@ TEST(norms, are_weighted_with_cell_and_velocity) {
   std::vector<double> b(8, 1.0);
   b[2] = 4.0;
   for (std::size_t k = 1; k < 8; k += 2) b[k] = 2.0;
-  // One difference of 3, with V = (2/4)·(1/2).
+  // The states have one difference of 3, with V = (2/4)·(1/2).
   EXPECT_DOUBLE_EQ(difference_norm(a, b, error_norm::l1), 3.0 * 0.25);
   EXPECT_DOUBLE_EQ(difference_norm(a, b, error_norm::l2), std::sqrt(9.0 * 0.25));
   EXPECT_DOUBLE_EQ(difference_norm(a, b, error_norm::linf), 3.0);

@@ -1,4 +1,4 @@
-// Conserved fields from macroscopic ones: found by name, whatever their order.
+// Conserved fields follow from macroscopic ones, which are found by name, whatever their order.
 #include <apsis/study/conserved_fields.hpp>
 
 #include <apsis/core/errors.hpp>

@@ -1,5 +1,4 @@
-// Convergence studies: known orders through the whole chain from case to rate, and guarantees of the
-// study itself.
+// Convergence studies: known orders from case to rate, and guarantees of the study itself.
 #include <apsis/study/convergence.hpp>
 
 #include <apsis/core/errors.hpp>
@@ -19,14 +18,14 @@ using kind = convergence_reference::kind;
 
 namespace {
 
-// u' = −u², u(0) = 1: smooth enough for orders to show on coarse steps.
+// u' = −u² from u(0) = 1 is smooth enough to show orders with coarse steps.
 convergence_study decay(const std::string& methods, const std::string& steps) {
   return {.case_name = "paper/decay",
           .overrides = {"model.rate=1", "model.u0=1"},
           .vary = {parse_vary("time.method=" + methods), parse_vary("time.dt=" + steps)}};
 }
 
-// BGK at a fraction of its cost: few velocities, which are still spectrally accurate for these data.
+// BGK at a fraction of its cost. Few velocities are still spectrally accurate for these data.
 convergence_study bgk(const std::string& method, const std::string& vary) {
   return {.case_name = "paper/bgk-accuracy",
           .overrides = {"time.method=" + method, "velocity.max=9", "velocity.points=40"},
@@ -53,7 +52,7 @@ TEST(convergence, against_the_exact_solution_shows_orders_2_3_and_4) {
   ASSERT_EQ(table.blocks.size(), 3U);
   EXPECT_EQ(table.runs, 12);  // no reference is computed
   EXPECT_THAT(table.measure, HasSubstr("exact"));
-  // The next term of the error at these steps.
+  // The tolerance covers the next term of the error at these steps.
   for (int order = 2; order <= 4; ++order)
     EXPECT_NEAR(last_rate(table.blocks[static_cast<std::size_t>(order - 2)]), order, 0.15);
 }
@@ -80,7 +79,7 @@ TEST(convergence, ode_model_has_orders_2_and_3_for_every_reference) {
           .reference = parse_reference(reference),
           .norm = error_norm::l1};
       const auto table = converge(study);
-      // A reference with 1/8 of the smallest step adds up to 0.02 at second order; the next order of the
+      // A reference with 1/8 of the smallest step adds up to 0.02 at second order. The next order of the
       // error adds the rest.
       EXPECT_NEAR(last_rate(table.blocks.at(0)), 2.0, 0.1) << reference << " " << epsilon;
       EXPECT_NEAR(last_rate(table.blocks.at(1)), 3.0, 0.1) << reference << " " << epsilon;
@@ -95,7 +94,7 @@ TEST(convergence, self_convergence_shows_the_fifth_order_of_space) {
     study.overrides.push_back("time.cfl=0.1");
     const auto table = converge(study);
     EXPECT_EQ(table.h_name, "Δx");
-    // With this step the temporal error is small on these meshes; interpolation of order below five would
+    // With this step the temporal error is small on these meshes. Interpolation of an order below five would
     // be visible.
     EXPECT_GE(last_rate(table.blocks.at(0)), 4.4) << formulation;
     EXPECT_LE(last_rate(table.blocks.at(0)), 5.6) << formulation;
@@ -103,7 +102,7 @@ TEST(convergence, self_convergence_shows_the_fifth_order_of_space) {
 }
 
 TEST(convergence, macroscopic_fields_of_averages_are_compared_at_full_order) {
-  // T is a nonlinear function of the averages: averaging T itself would be only second-order accurate.
+  // T is a nonlinear function of the averages. An average of T itself would be only second-order accurate.
   auto study = bgk("md-imex-6-3", "space.cells=10..40");
   study.overrides.push_back("time.cfl=0.1");
   study.quantity = "T";
@@ -115,8 +114,8 @@ TEST(convergence, a_refined_step_on_one_mesh_shows_the_orders_of_time) {
     for (const std::string epsilon : {"1", "1e-10"}) {
       auto study = bgk(method, "time.cfl=0.4,0.2,0.1");
       study.overrides.push_back("space.cells=10");
-      // Point values: on such a coarse mesh the collision of cell averages in the limit has a spatial error
-      // that depends on the step and hides the third order.
+      // The unknowns are point values. On such a coarse mesh the collision of cell averages in the limit has
+      // a spatial error that depends on the step. It would hide the third order.
       study.overrides.push_back("space.formulation=finite-difference");
       study.overrides.push_back("model.epsilon=" + epsilon);
       study.reference.type = kind::time;
@@ -129,7 +128,8 @@ TEST(convergence, a_refined_step_on_one_mesh_shows_the_orders_of_time) {
 }
 
 TEST(convergence, cells_and_steps_refined_together_show_the_order_of_time_where_space_is_finer) {
-  // Results of an independent program with another fifth-order reconstruction, for 80 and 160 cells.
+  // An independent program with another fifth-order reconstruction computed these errors for 80
+  // and 160 cells.
   const std::map<std::string, std::vector<double>> known = {{"1", {8.0e-5, 2.0e-5}},
                                                             {"1e-8", {2.8e-5, 6.9e-6}}};
   const convergence_study study{
@@ -138,7 +138,8 @@ TEST(convergence, cells_and_steps_refined_together_show_the_order_of_time_where_
       .vary = {parse_vary("model.epsilon=1,1e-8"), parse_vary("space.cells=80,160")}};
   for (const auto& block : converge(study).blocks)
     for (std::size_t k = 0; k < 2; ++k) {
-      // Two digits are known; the spatial error is a few percent of the temporal error at 80 cells.
+      // The known errors have two digits. At 80 cells the spatial error is a few percent of
+      // the temporal error.
       const double wanted = known.at(block.values[0])[k];
       EXPECT_NEAR(block.rows[k].error, wanted, 0.05 * wanted) << block.title;
     }
@@ -170,25 +171,25 @@ TEST(convergence, rows_go_from_coarse_to_fine_however_the_values_are_given) {
   EXPECT_EQ(numbers(sorted), numbers(mixed));
   EXPECT_EQ(sorted.blocks.at(0).title, "time.method = imdrk-2-3");
   EXPECT_EQ(sorted.blocks.at(1).values, std::vector<std::string>{"imdrk-1-2"});
-  // The refined key is found at any position.
+  // The refined key may have any position.
   auto first = decay("imdrk-2-3,imdrk-1-2", "1/8,1/16,1/32");
   std::swap(first.vary[0], first.vary[1]);
   EXPECT_EQ(numbers(converge(first)), numbers(sorted));
 }
 
 TEST(convergence, the_same_run_is_computed_once) {
-  // Consecutive runs are references of each other; one additional run is finer than the finest.
+  // Each run is the reference of the coarser one. One additional run is finer than the finest.
   auto study = decay("imdrk-2-3", "1/8,1/16,1/32");
   study.reference.type = kind::next;
   EXPECT_EQ(converge(study).runs, 4);
-  // A reference with method and step does not depend on the method that it replaces.
+  // A reference with its own method and step does not depend on the method that it replaces.
   study = decay("imdrk-1-2,imdrk-2-3", "1/8,1/16,1/32");
   study.reference = parse_reference("imdrk-5-4@1/256");
   EXPECT_EQ(converge(study).runs, 7);
 }
 
 TEST(convergence, a_failed_run_is_a_row_and_the_others_continue) {
-  // An explicit method far beyond its stability limit of Δt = O(ε), and a method without this limit.
+  // One explicit method is far beyond its stability limit of Δt = O(ε). The other method has no such limit.
   auto study = bgk("md-imex-3-2", "time.method=ssprk-2-2,md-imex-3-2");
   study.overrides = {"velocity.max=9", "velocity.points=40", "space.cells=10", "model.epsilon=1e-6"};
   study.reference = parse_reference("md-imex-6-3@1/1000");
@@ -243,7 +244,7 @@ TEST(convergence, reports_its_progress_by_work) {
   converge(study, control);
   ASSERT_EQ(parts.size(), 3U);
   EXPECT_EQ(parts.front(), 0.0);
-  // The longest run goes first and is nearly all of the work.
+  // The longest run is first and is nearly all of the work.
   EXPECT_GT(parts[1], 0.99);
   EXPECT_DOUBLE_EQ(parts.back(), 1.0);
 }

@@ -1,4 +1,4 @@
-// Input of studies: lists, ranges, references, and all kinds of errors in them.
+// Input of studies: lists, ranges, references, and their errors.
 #include <apsis/core/errors.hpp>
 #include <apsis/study/convergence.hpp>
 #include <apsis/study/settings.hpp>
@@ -97,7 +97,7 @@ TEST(settings, have_numbers) {
   EXPECT_TRUE(std::isnan(number_of(c, "time.method")));
   EXPECT_TRUE(std::isnan(number_of(load_case("paper/bgk-mixed"), "model.epsilon")));
   EXPECT_EQ(number_of(load_case("paper/decay"), "model.u0"), 10.0);
-  // Formulas know the constants of their case, and a rarefaction is a formula that is converted.
+  // Formulas may contain the constants of their case. A rarefaction is a formula that is converted.
   EXPECT_EQ(number_of(load_case("gas/sod"), "model.epsilon"), 1e-4);
   const auto couette = load_case("gas/couette");
   EXPECT_EQ(number_of(couette, "model.epsilon"), make_epsilon(couette, 1).evaluate(apsis::position{}));

@@ -1,4 +1,4 @@
-// The table of a study as text, CSV, JSON and picture: the same numbers in all of them.
+// The table of a study has the same numbers as text, CSV, JSON and picture.
 #include <apsis/study/convergence_report.hpp>
 
 #include <cmath>

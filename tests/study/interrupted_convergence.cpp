@@ -13,8 +13,8 @@ TEST(interrupted_convergence, stops_between_steps_and_retains_finished_runs) {
   convergence study({.case_name = "paper/ode",
                      .vary = {parse_vary("time.dt=1/16..1/64")},
                      .reference = parse_reference("time.dt=1/128")});
-  // The longest run comes first. It has 128 steps, the next one 64 (to t = 1). With one query before each run
-  // and each step, the study stops within the second run.
+  // The longest run is the first, with 128 steps to t = 1. The next one has 64. The study queries before each
+  // run and each step, so it stops within the second run.
   int asked = 0;
   study_control control;
   control.stop = [&asked] { return ++asked > 128 + 32; };
@@ -22,7 +22,7 @@ TEST(interrupted_convergence, stops_between_steps_and_retains_finished_runs) {
   EXPECT_THROW(study.run(control), study_interrupted);
   EXPECT_EQ(study.finished_runs(), 1);
   EXPECT_FALSE(study.table().complete);
-  // The next call computes the remaining runs; the result equals that of an uninterrupted study.
+  // The next call computes the remaining runs. The result equals that of an uninterrupted study.
   study.run();
   EXPECT_EQ(study.finished_runs(), runs);
   const convergence_table table = study.table();

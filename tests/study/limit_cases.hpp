@@ -7,7 +7,8 @@
 #include <string>
 #include <vector>
 
-/// The IMEX methods that are asymptotic preserving from any data; without GSA only in their moments.
+/// Returns the IMEX methods that are asymptotic preserving from any data. Methods without GSA are so only in
+/// their moments.
 inline std::vector<std::string> preserving_methods() {
   std::vector<std::string> names;
   for (const auto& name : apsis::method_names()) {
@@ -25,7 +26,7 @@ inline apsis::case_config small_case(const std::string& model, const std::string
   return apsis::small_case(model, overrides);
 }
 
-/// The values of a field without its padding.
+/// Returns the values of a field without its padding.
 inline std::vector<double> values(const apsis::field& u) {
   std::vector<double> all;
   for (int i = 0; i < u.cells(); ++i) all.insert(all.end(), u.row(i), u.row(i) + u.components());

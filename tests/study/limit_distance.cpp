@@ -1,4 +1,4 @@
-// The production code against the limit scheme, for every relaxation model and every IMEX method.
+// The production code agrees with the limit scheme, for every relaxation model and every IMEX method.
 #include <apsis/study/limit_distance.hpp>
 
 #include "limit_cases.hpp"
@@ -18,8 +18,8 @@ using namespace apsis;
 
 namespace {
 
-// Differences of two programs that sum in different order; stages of up to |d| = 2, four steps, values of
-// order one.
+// The programs sum in different order. Stages have |d| up to 2, there are four steps, and values are
+// of order one.
 constexpr double round_off = 1e-13;
 
 const std::vector<double> epsilons = [] {
@@ -45,7 +45,7 @@ TEST(limit_distance, falls_at_least_linearly_to_rounding_for_all_models_and_meth
         SCOPED_TRACE(model + " " + method + " " + formulation);
         const limit_table table = table_of(model, method, formulation);
         EXPECT_GT(table.off_equilibrium, 1e-2);  // otherwise not tested
-        // Without GSA only the moments promise it.
+        // Without GSA only the moments are guaranteed to converge.
         const bool state = find_certificate(method).gsa;
         for (const auto column : columns) {
           if (!state && (column == &limit_row::state_first || column == &limit_row::state_end)) continue;
@@ -59,7 +59,7 @@ TEST(limit_distance, falls_at_least_linearly_to_rounding_for_all_models_and_meth
 }
 
 TEST(limit_distance, is_rounding_for_one_step_at_epsilon_zero_from_rough_data) {
-  // Jumps from cell to cell and in every component, so that limiters are active.
+  // The data jump from cell to cell and in every component, so limiters are active.
   const auto models = relaxation_model_names();
   const auto methods = preserving_methods();
   check_property("production step at epsilon = 0 is a step of the limit scheme", [&] {
@@ -87,7 +87,7 @@ TEST(limit_distance, is_rounding_for_one_step_at_epsilon_zero_from_rough_data) {
     production.step(0.0, 0.005, u);
     scheme.step(0.005);
     const auto got = scheme.moments_of(values(u)), wanted = scheme.moments();
-    // Between rough data the weights of WENO amplify rounding slightly.
+    // Between rough data the weights of WENO slightly amplify rounding errors.
     for (std::size_t k = 0; k < got.size(); ++k) RC_ASSERT(std::abs(got[k] - wanted[k]) < 1e-12);
   });
 }

@@ -1,4 +1,4 @@
-// The limit scheme, compared with equations written out by hand.
+// The limit scheme agrees with equations written out by hand.
 #include <apsis/study/limit_scheme.hpp>
 
 #include "limit_cases.hpp"
@@ -26,7 +26,7 @@ case_config ode_case(const std::string& method) {
   return small_case("ode", method, "");
 }
 
-/// u1(1) of the limit scheme of the ODE model from u1(0) = 2.
+/// Returns u1(1) of the limit scheme of the ODE model from u1(0) = 2.
 double limit_of_ode(const std::string& method, int steps) {
   limit_scheme scheme(ode_case(method));
   scheme.start(std::array{2.0, 0.0});
@@ -34,7 +34,7 @@ double limit_of_ode(const std::string& method, int steps) {
   return scheme.moments().at(0);
 }
 
-/// A gas at rest with four states.
+/// Returns a gas at rest with four states.
 case_config jumps(const std::vector<std::string>& overrides) {
   return parse_case(
       "[model]\nname = \"bgk\"\ndegrees_of_freedom = 5\nepsilon = 0\n"
@@ -68,7 +68,7 @@ TEST(limit_scheme, of_the_second_order_method_is_heuns_method_on_the_limit_equat
     const double predicted = u + dt * std::sin(u);
     u = 0.5 * u + 0.5 * (predicted + dt * std::sin(predicted));
   }
-  // Rounding of ten steps.
+  // The tolerance covers the rounding of ten steps.
   EXPECT_NEAR(limit_of_ode("md-imex-3-2", 10), u, 1e-14);
 }
 
@@ -77,7 +77,7 @@ TEST(limit_scheme, has_the_order_of_the_method_on_the_limit_equation) {
   for (const auto& name : preserving_methods()) {
     const double coarse = std::abs(limit_of_ode(name, 20) - exact);
     const double fine = std::abs(limit_of_ode(name, 40) - exact);
-    // The next term of the error expansion is 1/40 of the leading one, times a constant of order one.
+    // The next term of the error expansion is 1/40 of the leading one times a constant of order one.
     EXPECT_NEAR(std::log2(coarse / fine), find_certificate(name).order, 0.15) << name;
   }
 }
@@ -109,16 +109,16 @@ TEST(limit_scheme, conserves_what_the_kinetic_scheme_conserves) {
           defect += after[i] - before[i];
           size += std::abs(before[i]);
         }
-        // The moments of 16 cells, each accurate to a few units of the last digit.
+        // The moments of 16 cells are accurate to a few units of the last digit.
         EXPECT_LE(std::abs(defect), 1e-14 * (1.0 + size)) << model << " " << formulation << " moment " << k;
       }
     }
   }
 }
 
-// The distribution of ω inside the cells depends on the explicit part of each stage: from equal averages of ω
-// a finite-volume scheme evolves differently if they belong to different kinetic states. Point values depend
-// on ω alone.
+// The distribution of ω inside cells depends on the explicit part of each stage. A finite-volume scheme
+// evolves equal averages of ω differently if they belong to different kinetic states. Point values depend on
+// ω alone.
 TEST(limit_scheme, remembers_the_kinetic_state_with_cell_averages_only) {
   for (const std::string formulation : {"finite-volume", "finite-difference"}) {
     const case_config config = small_case("broadwell", "md-imex-6-3", formulation);
@@ -131,7 +131,7 @@ TEST(limit_scheme, remembers_the_kinetic_state_with_cell_averages_only) {
     from_data.step(0.05);
     from_equilibrium.step(0.05);
     const double difference = largest(from_data.moments(), from_equilibrium.moments());
-    // The fifth-order error of the quartics on 16 cells, times Δt/Δx.
+    // The difference is the fifth-order error of the quartics on 16 cells, times Δt/Δx.
     if (formulation == "finite-volume") {
       EXPECT_GT(difference, 1e-6);
       EXPECT_LT(difference, 1e-2);
@@ -141,7 +141,7 @@ TEST(limit_scheme, remembers_the_kinetic_state_with_cell_averages_only) {
   }
 }
 
-// With jumps that the limiter acts on, and ends at which gas leaves.
+// The data have jumps at which the limiter acts, and gas leaves at the ends.
 TEST(limit_scheme, is_that_of_the_kinetic_scheme_in_the_plane_and_in_space) {
   for (const char* space : {"space.cells=[9,7]", "space.cells=[6,5,7]"}) {
     const auto table = limit_distance(jumps({space}), {0.0});

@@ -1,4 +1,5 @@
-// Claim C24 beyond paper/claims/C24.cpp (data V): data S, finite differences, and an independent program.
+// Claim C24 beyond paper/claims/C24.cpp, which has data V: data S, finite differences, and
+// an independent program.
 #include <apsis/exec/parallel.hpp>
 #include <apsis/study/conserved_fields.hpp>
 
@@ -12,7 +13,7 @@
 namespace apsis::mixed_regime_test {
 namespace {
 
-/// The explicit SSP-RK2 solution on 80 cells, Δt = Δx/(240 v_max), averaged onto 40 cells.
+/// Returns the explicit SSP-RK2 solution on 80 cells with Δt = Δx/(240 v_max), averaged onto 40 cells.
 const conserved_fields& reference(const std::string& data) {
   static std::map<std::string, conserved_fields> known;
   const auto found = known.find(data);
@@ -50,9 +51,9 @@ TEST(SLOW_claims, C24_data_S_second_and_third_order_against_the_explicit_referen
 }
 
 TEST(claims, C24_values_of_an_independent_code) {
-  // Second-order method, N = 160, t = 0.5, by a program of other authors: x, ρ, u, T (printed to four
-  // decimals). Here finite differences with twice the time step of the paper: their difference is the
-  // accuracy of either, 2e-3.
+  // A program of other authors computed these values with the second-order method, N = 160, t = 0.5: x, ρ, u,
+  // T, printed to four decimals. Here finite differences take steps twice as long as in the paper. The
+  // difference, 2e-3, is the accuracy of either program.
   const std::map<std::string, std::vector<std::array<double, 4>>> printed = {
       {"mixed-v",
        {{.10625, .7936, .5110, 1.7731},

@@ -1,5 +1,5 @@
 // Properties 2–5 of the paper for every model of the registry, including models added later. States are
-// random; the counterexample is shrunk.
+// random. RapidCheck shrinks a counterexample.
 #include <apsis/study/model_properties.hpp>
 
 #include <apsis/core/errors.hpp>
@@ -14,8 +14,8 @@ namespace model_properties_test {
 
 namespace {
 
-/// One of the model's initial data at a random position, disturbed by up to 90 % in every component;
-/// nonnegative if negative components are unphysical (some published data are negative nevertheless).
+/// Returns one of the model's initial data at a random position, disturbed by up to 90 % in every component.
+/// It is nonnegative if negative components are unphysical (some published data are negative nevertheless).
 std::vector<double> random_state(const apsis::model& m) {
   std::vector<double> u(static_cast<std::size_t>(m.components()));
   const auto& data = m.initial()[*rc::gen::inRange<std::size_t>(0, m.initial().size())];
@@ -26,7 +26,7 @@ std::vector<double> random_state(const apsis::model& m) {
   return u;
 }
 
-/// A property of every relaxation model.
+/// Checks a property of every relaxation model.
 template <class Property>
 void check_relaxations(const Property& property) {
   for (const auto& m : apsis::all_models())
@@ -37,8 +37,8 @@ void check_relaxations(const Property& property) {
 
 }  // namespace
 
-// The tolerances are those of the claim: sums of up to a hundred terms, each with its rounding; differences
-// divide it by their step of 1e-2.
+// The tolerances are those of the claim. They cover rounding errors of sums of up to a hundred terms.
+// Differences divide these errors by their step of 1e-2.
 TEST(models, property_3_collisions_conserve_the_moments) {
   check_relaxations([](const auto& defects) { RC_ASSERT(defects.conservation <= 1e-13); });
 }

@@ -1,4 +1,4 @@
-// The promise Δt ≤ r Δt_FE of every method of the catalogue on problems of all kinds.
+// Every method of the catalogue keeps the promise Δt ≤ r Δt_FE on problems of all kinds.
 #include <apsis/study/observed_limits.hpp>
 
 #include "support/catalogue.hpp"
@@ -21,7 +21,7 @@ TEST_P(every_method, preserves_the_promised_property) {
     EXPECT_TRUE(one.keeps_promise()) << one.problem << ", " << one.property << ": " << one.limit.lost << " "
                                      << one.worst;
 }
-/// Some tenths of a second per stage.
+/// Returns methods with many or with few stages. The test takes some tenths of a second per stage.
 std::vector<std::string> methods_with(bool many_stages) {
   return methods_where([&](const method& m) { return (m.stages() > 9) == many_stages; });
 }

@@ -7,7 +7,7 @@
 namespace apsis::order_map_test {
 namespace {
 
-/// Errors composed of Δt², a plateau 0.1 ε, and the uncertainty of the reference.
+/// Returns errors composed of Δt², a plateau 0.1 ε, and the uncertainty of the reference.
 order_map made() {
   order_map m{"none", "none", 2, {1e-12, 1e-4}, {}, {}};
   for (int k = 2; k <= 20; ++k) m.dt.push_back(std::ldexp(1.0, -k));

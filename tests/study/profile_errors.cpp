@@ -1,4 +1,4 @@
-// Predicted errors of the O(ε) terms against runs, on a small mixed-regime problem.
+// Predicted errors of the O(ε) terms agree with runs of a small mixed-regime problem.
 #include <apsis/study/profile_errors.hpp>
 
 #include <apsis/core/errors.hpp>
@@ -16,18 +16,18 @@
 namespace apsis::profile_errors_test {
 namespace {
 
-/// The mixed-regime problem of the paper with fewer velocities.
+/// Returns the mixed-regime problem of the paper with fewer velocities.
 case_config mixed(const std::string& method, double dt, const std::vector<std::string>& overrides = {}) {
-  // The limiter depends on the length of the steps, and the reference has others.
+  // The limiter would depend on the length of the steps, and the reference has other steps.
   std::vector<std::string> all = {"velocity.max=9", "velocity.points=24", "space.limiter=none",
                                   "time.method=" + method, "time.dt=" + std::to_string(dt)};
   all.insert(all.end(), overrides.begin(), overrides.end());
   return load_case("paper/bgk-mixed-fd", all);
 }
 
-/// l2 norms of the errors of ρ, ρu and 𝓔 of a run. The reference is bhr-553: the same weights for T and Q
-/// make its viscosity and its layer exact, and its error at half the step is below 1e-2 of those of the
-/// tests.
+/// Returns the l2 norms of the errors of ρ, ρu and 𝓔 of a run. The reference method is bhr-553. Its equal
+/// weights for T and Q make its viscosity and its layer exact. With half the step its error is below 1e-2 of
+/// those of the tests.
 std::vector<double> measured(const case_config& config) {
   case_config fine = config;
   fine.time.method = "bhr-553";
@@ -56,7 +56,7 @@ void expect_prediction(const case_config& config, double tolerance) {
         << predicted.rows[0].of_moments[k] << ", measured " << errors[k];
 }
 
-// Terms O(Δt²) and the error O(Δt³) of the transport are not predicted; at these steps they are 2 % at most.
+// Terms O(Δt²) and the error O(Δt³) of the transport are not predicted. At these steps they are at most 2 %.
 constexpr double next_order = 0.03;
 
 TEST(profile_errors, are_those_of_runs_with_a_graded_start) {
@@ -75,11 +75,12 @@ TEST(profile_errors, depend_on_the_collision_rate_of_the_solution) {
 
 TEST(SLOW_profile_errors, are_those_of_runs_with_a_narrow_band) {
   expect_prediction(mixed("md-imex-8-3-mixed", 1.0 / 8000, {"time.startup=graded"}), next_order);
-  expect_prediction(mixed("md-imex-8-3-mixed", 1.0 / 8000), 2 * next_order);  // errors are smaller by ten
+  expect_prediction(mixed("md-imex-8-3-mixed", 1.0 / 8000),
+                    2 * next_order);  // errors are 10 times smaller
 }
 
 TEST(profile_errors, of_a_method_without_viscosity_halve_with_the_step) {
-  // md-imex-3-2: flux(z) = 0 for z → ∞; the cells in which CΔt/ε is large become fewer.
+  // md-imex-3-2 has flux(z) = 0 for z → ∞. With shorter steps CΔt/ε is large in fewer cells.
   const auto table = predict_profile_errors(mixed("md-imex-3-2", 1.0 / 1000, {"time.end=0.1"}), 3);
   ASSERT_EQ(table.rows.size(), 4U);
   EXPECT_NEAR(table.smallest_epsilon, 1e-5, 2e-6);
@@ -95,7 +96,7 @@ TEST(profile_errors, of_a_method_without_viscosity_halve_with_the_step) {
 TEST(profile_errors, vanish_where_transport_and_collision_have_the_same_weights) {
   const auto table =
       predict_profile_errors(mixed("bhr-553", 1.0 / 1000, {"time.end=0.1", "time.startup=graded"}), 0);
-  // The difference of R(−z)^N and e^{−CT/ε} remains where ε is of the order of T; md-imex-6-3 has 4e-5.
+  // The difference of R(−z)^N and e^{−CT/ε} remains where ε is of the order of T. md-imex-6-3 has 4e-5.
   for (const double error : table.rows[0].of_moments) EXPECT_LT(error, 1e-8);
 }
 

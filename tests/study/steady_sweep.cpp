@@ -1,4 +1,4 @@
-// Steady states along a range of values, each from the one before.
+// Steady states along a range of values. Each one starts from the previous one.
 #include <apsis/study/steady_sweep.hpp>
 
 #include <apsis/core/errors.hpp>
@@ -43,7 +43,7 @@ TEST(steady_sweep, finds_the_states_of_single_runs_in_fewer_iterations) {
   const auto shear = static_cast<std::size_t>(
       std::find(table.fluxes.begin(), table.fluxes.end(), "right_momentum_y") - table.fluxes.begin());
   ASSERT_LT(shear, table.fluxes.size());
-  // Both are steady to 1e-8 of the residual of their starts.
+  // Both are steady to 1e-8 of the initial residual.
   EXPECT_NEAR(table.rows[2].flux[shear], alone.rows[0].flux[shear], 1e-8);
   EXPECT_FALSE(table.rows[0].continued);
   EXPECT_TRUE(table.rows[2].continued);
@@ -51,7 +51,8 @@ TEST(steady_sweep, finds_the_states_of_single_runs_in_fewer_iterations) {
 }
 
 TEST(steady_sweep, keeps_the_mass_of_each_case) {
-  // The pressure at the walls, which hold twice the gas in the second case; friction heats it by U² more.
+  // In the second case the walls enclose twice as much gas, so the pressure doubles. Friction heats the gas
+  // by another U².
   const auto table = run_sweep("gas/couette", small, parse_sweep("initial.rho=1,2", 2));
   const auto across = static_cast<std::size_t>(
       std::find(table.fluxes.begin(), table.fluxes.end(), "right_momentum_x") - table.fluxes.begin());

@@ -1,4 +1,4 @@
-// Orders in space and time together, at Δt = r Δt_FE, between moving plates of different temperatures.
+// Orders in space and time together at Δt = r Δt_FE, between moving plates of different temperatures.
 #include <apsis/study/convergence.hpp>
 
 #include <string>
@@ -12,7 +12,7 @@ using namespace apsis;
 
 namespace {
 
-/// The last slope of differences to the next finer run.
+/// Returns the last slope of differences to the next finer run.
 double slope(const std::string& name, const std::string& cells, error_norm norm,
              std::vector<std::string> overrides) {
   const convergence_study study{.case_name = name,
@@ -23,13 +23,13 @@ double slope(const std::string& name, const std::string& cells, error_norm norm,
   return converge(study).blocks.front().rows.back().rate;
 }
 
-// A cell at the wall is one of N: a norm l1 shows the order inside, as its error of order p − 1 counts with
-// Δx.
-constexpr double inside = 2.85, at_the_wall = 1.9;  // 3 and 2 without what the next term adds or takes
+// The cell at the wall is one of N, so its error of order p − 1 has the weight Δx. The l1 norm thus shows the
+// order inside.
+constexpr double inside = 2.85, at_the_wall = 1.9;  // 3 and 2, changed by the next term
 
 }  // namespace
 
-/// Up to the wall too: the error of its cell is smaller than others at these sizes.
+/// Expects third order up to the wall. The error of the wall cell is smaller than others at these sizes.
 void expect_third_order(const std::string& formulation) {
   for (const error_norm norm : {error_norm::l1, error_norm::linf})
     EXPECT_GT(slope("benchmarks/heated-wall", "40,80", norm, {"space.formulation=" + formulation}), inside);
@@ -59,7 +59,7 @@ TEST(walls, have_second_order_in_the_cells_next_to_them_at_small_epsilon) {
 }
 
 TEST(SLOW_walls, have_third_order_in_cell_averages_next_to_them_at_small_epsilon) {
-  // The flux v f at the wall is exact.
+  // In averages the flux v f at the wall is exact.
   EXPECT_GT(slope("benchmarks/carried-gas", "20,40", error_norm::linf, {"space.formulation=finite-volume"}),
             inside);
 }
@@ -76,7 +76,7 @@ TEST(walls, have_the_limit_scheme_as_epsilon_vanishes_in_steps_that_do_not_depen
       EXPECT_NEAR(rows[k].rate, 1.0, k == 1 ? 0.1 : 0.02) << model << rows[k].values.front();
       EXPECT_EQ(rows[k].steps, rows[0].steps) << model;
     }
-    // 1e-12 times the factor of the other rows is below the rounding of sixty steps.
+    // For 1e-12 the error is 1e-12 times the factor of the other rows, below the rounding of sixty steps.
     EXPECT_LT(rows.back().error, 2e-11) << model;
     EXPECT_EQ(rows.back().steps, rows[0].steps) << model;
   }

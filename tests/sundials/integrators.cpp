@@ -1,4 +1,4 @@
-// Integrations over N_Vectors: the numbers of the library, orders, limits, bounds, and what settings do.
+// Integrations over N_Vectors: the numbers of the library, orders, limits, bounds, and settings.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -28,7 +28,7 @@ vector start_of(const line& of) {
   return made;
 }
 
-/// An integrator of a line with products of the Jacobian and a preconditioner.
+/// Returns an integrator of a line with products of the Jacobian and a preconditioner.
 integrator make_line(const std::string& method, line& of) {
   auto s = make(method, line_test::transport, line_test::collision, 0.0, start_of(of).get(), &of);
   expect_ok(apsis_sundials_set_products(s.get(), nullptr, line_test::product));
@@ -37,7 +37,7 @@ integrator make_line(const std::string& method, line& of) {
   return s;
 }
 
-/// The state at t after `steps` equal steps.
+/// Returns the state at t after `steps` equal steps.
 std::vector<double> after_steps(const std::string& method, line of, double t, int steps) {
   auto s = make_line(method, of);
   expect_ok(apsis_sundials_set_step(s.get(), t / steps));
@@ -53,7 +53,7 @@ double distance(const std::vector<double>& x, const std::vector<double>& y) {
   return largest;
 }
 
-/// u' = −(u² − w)/ε, w' = −u': the line without space, by the callbacks of apsis.h.
+/// u' = −(u² − w)/ε, w' = −u'. This is the line without space, with the callbacks of apsis.h.
 struct exchange {
   double epsilon;
 };
@@ -98,7 +98,8 @@ TEST(sundials_integrators, have_the_numbers_of_the_library) {
       const auto y = serial({0, 0});
       expect_ok(apsis_sundials_evolve(s.get(), 1.0, y.get(), nullptr));
       for (std::size_t i = 0; i < 2; ++i)
-        // Both find roots to rounding. ark-436 also evaluates Q, whose roundings have the size 2^−53/ε.
+        // Both find roots up to rounding. ark-436 also evaluates Q, whose rounding errors have
+        // the size 2^−53/ε.
         EXPECT_NEAR(values(y.get())[i], apsis_state(reference)[i],
                     2e-14 + (name == "ark-436" ? 1e-17 / epsilon : 0))
             << name << " " << epsilon;
@@ -122,7 +123,7 @@ TEST(sundials_integrators, have_the_order_of_the_method) {
 }
 
 TEST(sundials_integrators, keep_their_order_for_collisions_of_any_speed) {
-  // The data are at equilibrium after a short time; then the limit is a diffusion of u + w with w = u².
+  // The data approach equilibrium after a short time. The limit is then a diffusion of u + w with w = u².
   for (const double epsilon : {1e-4, 1e-7, 1e-10}) {
     const line of = of_cells(12, epsilon, 0.01);
     const auto truth = after_steps("md-imex-3-2", of, 0.5, 640);
@@ -149,7 +150,7 @@ TEST(sundials_integrators, solve_stages_of_steps_much_longer_than_relaxation_or_
       expect_ok(apsis_sundials_set_step(s.get(), 1.0 / 128));
       const auto y = start_of(of);
       const int status = apsis_sundials_evolve(s.get(), 1.0 / 16, y.get(), nullptr);
-      // A step is 8e7 relaxation times long where all succeed.
+      // In all successful runs a step is up to 8e7 relaxation times long.
       if (epsilon >= 1e-10) {
         EXPECT_EQ(status, APSIS_OK) << name << " " << epsilon << " " << apsis_error_message();
       }
@@ -173,7 +174,7 @@ TEST(sundials_integrators, conserve_linear_invariants) {
     const auto before = values(y.get());
     expect_ok(apsis_sundials_evolve(s.get(), 1.0, y.get(), nullptr));
     const auto after = values(y.get());
-    // Corrections are linear combinations of vectors without a sum, up to rounding.
+    // Up to rounding, corrections are linear combinations of vectors with the sum 0.
     EXPECT_NEAR(std::accumulate(after.begin(), after.end(), 0.0),
                 std::accumulate(before.begin(), before.end(), 0.0), 1e-11);
   }
@@ -218,7 +219,7 @@ TEST(sundials_integrators, keep_positive_states_up_to_the_promised_step_and_not_
     }
     return smallest;
   };
-  // Roots are exact to rounding, those of size 0 too.
+  // Roots are exact up to rounding, also those of size 0.
   EXPECT_GE(smallest_after(1.0), -1e-15);
   EXPECT_LT(smallest_after(1.6), -1e-4);
 }

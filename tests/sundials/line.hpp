@@ -1,5 +1,5 @@
-// Advection, diffusion and stiff exchange of two species on a periodic line, for vectors that each process
-// has a part of.
+// Advection, diffusion and stiff exchange of two species on a periodic line. Each process has a part
+// of the vectors.
 #pragma once
 
 #include <apsis/apsis_sundials.h>
@@ -11,12 +11,12 @@
 
 namespace line_test {
 
-/// u_t + c u_x = D u_xx − (u² − w)/ε, w_t + c w_x = D w_xx + (u² − w)/ε on [0, 1), or with u in place of u².
-/// T is the advection, by first order upwind differences; the vector has u and w of cell 0, of cell 1, …
+/// u_t + c u_x = D u_xx − (u² − w)/ε, w_t + c w_x = D w_xx + (u² − w)/ε on [0, 1). If `linear`, u replaces
+/// u². T is the advection by first-order upwind differences. The vector has u and w of cell 0, of cell 1, …
 struct line {
   std::ptrdiff_t cells = 0, begin = 0, end = 0;  ///< all cells, and those of this process
   double speed = 1.0, diffusion = 0.0, epsilon = 1.0;
-  /// Sets the last two numbers of the process before this one, and the first two of the one after it.
+  /// Sets the last two numbers of the previous process and the first two of the next one.
   std::function<void(const double* own, std::size_t n, double before[2], double after[2])> exchange =
       [](const double* own, std::size_t n, double before[2], double after[2]) {
         for (int k = 0; k < 2; ++k) {
@@ -26,14 +26,14 @@ struct line {
       };
   bool linear = false;
   long preconditioned_gammas = 0;
-  std::vector<double> inverse{};  ///< of the blocks of the preconditioner, four numbers for each cell
+  std::vector<double> inverse{};  ///< inverse blocks of the preconditioner, four numbers per cell
 
   std::size_t own() const { return static_cast<std::size_t>(end - begin); }
   double exchanged(double u) const { return linear ? u : u * u; }
   double slope(double u) const { return linear ? 1.0 : 2.0 * u; }
   double dx() const { return 1.0 / static_cast<double>(cells); }
 
-  /// The values of cell k − 1, k and k + 1 of this process.
+  /// Returns the values of this process with those of one more cell at either end.
   std::vector<double> with_neighbours(const double* v) const {
     std::vector<double> all(2 * own() + 4);
     for (std::size_t i = 0; i < 2 * own(); ++i) all[i + 2] = v[i];
@@ -51,7 +51,7 @@ inline double* numbers(N_Vector v) {
   return N_VGetArrayPointer(v);
 }
 
-/// Smooth positive data, out of equilibrium.
+/// Sets smooth positive data out of equilibrium.
 inline void start(const line& of, N_Vector y) {
   for (std::size_t i = 0; i < of.own(); ++i) {
     const double x = (static_cast<double>(of.begin) + static_cast<double>(i) + 0.5) * of.dx();
@@ -95,7 +95,7 @@ inline int product(N_Vector x, N_Vector jx, double, N_Vector y, N_Vector, void* 
   return 0;
 }
 
-/// Inverts the 2 × 2 blocks of I − γJ on the diagonal.
+/// Inverts the 2 × 2 diagonal blocks of I − γJ.
 inline int precondition_setup(double, N_Vector y, N_Vector, int, int* current, double gamma, void* data) {
   auto& of = *static_cast<line*>(data);
   const double d = 2.0 * of.diffusion / (of.dx() * of.dx());

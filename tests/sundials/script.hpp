@@ -1,4 +1,4 @@
-// A model of two unknowns whose callbacks fail when a test wants.
+// A model of two unknowns with callbacks that fail on demand.
 #pragma once
 
 #include <cmath>
@@ -10,12 +10,12 @@
 
 namespace sundials_test {
 
-/// u' = cos t + Q, Q = −(u − v)/ε, v' = −Q: callbacks that fail from a time on.
+/// u' = cos t + Q, v' = −Q with Q = −(u − v)/ε. The callbacks fail from a given time on.
 struct script {
   double epsilon = 0.1;
-  double from = std::numeric_limits<double>::infinity();  ///< time of the first answer below
+  double from = std::numeric_limits<double>::infinity();  ///< time from which callbacks behave as below
   int answer = 0;
-  double value = 0.0;  ///< what T adds then
+  double value = 0.0;  ///< number that is then added to T
   apsis_sundials* called = nullptr;
   std::vector<int> statuses{};
   std::vector<double> seen{};
@@ -36,7 +36,7 @@ inline int collision(double, N_Vector y, N_Vector out, void* data) {
   return 0;
 }
 
-/// The exact solution of the stage: w = u − v has the rate −2w/ε.
+/// Solves the stage exactly: w = u − v has the rate −2w/ε.
 inline int stage(double, double a, double b, N_Vector y, void* data) {
   double* u = N_VGetArrayPointer(y);
   double of_u = 0, of_e = 0;

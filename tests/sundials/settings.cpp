@@ -21,11 +21,11 @@ TEST(sundials_settings, find_events_and_end_at_them) {
   const auto y = serial({0, 0});
   double reached = 0;
   EXPECT_EQ(apsis_sundials_evolve(s.get(), 1.0, y.get(), &reached), APSIS_EVENT);
-  // The solution has an error of the fourth order in 1/64.
+  // The solution has an error of fourth order in 1/64.
   EXPECT_NEAR(reached, std::asin(0.6), 1e-8);
   EXPECT_NEAR((values(y.get())[0] + values(y.get())[1]) / 2, 0.8, 1e-14);
   const auto events = static_cast<std::size_t>(apsis_sundials_count(s.get(), APSIS_SUNDIALS_EVENTS));
-  ASSERT_EQ(events, 5U);  // four multiples of π/20 before 0.6435
+  ASSERT_EQ(events, 5U);  // one end and four multiples of π/20 before 0.6435
   for (std::size_t i = 0; i < 4; ++i) {
     std::size_t k = 9;
     double t = 0;
@@ -106,7 +106,7 @@ TEST(sundials_settings, take_one_step_after_the_other) {
   expect_ok(apsis_sundials_set_step(whole.get(), 0.3));
   const auto y = serial({0, 0}), other = serial({0, 0});
   double reached = 0;
-  // The interval is divided into equal steps anew: 1/4 of 1, then 1/3 of 3/4.
+  // The remaining interval is divided into equal steps anew: 1/4 of 1, then 1/3 of 3/4.
   for (int k = 1; k <= 4; ++k) {
     expect_ok(apsis_sundials_one_step(s.get(), 1.0, y.get(), &reached));
     EXPECT_EQ(reached, 0.25 * k);
@@ -173,7 +173,8 @@ TEST(sundials_settings, solve_stages_by_the_program_with_the_same_result) {
     const auto first = serial({0, 0}), second = serial({0, 0});
     expect_ok(apsis_sundials_evolve(by_newton.get(), 1.0, first.get(), nullptr));
     expect_ok(apsis_sundials_evolve(by_program.get(), 1.0, second.get(), nullptr));
-    // Differences of the linear Q are exact to rounding, which the quotient multiplies by 1e5.
+    // Differences of the linear Q are exact up to rounding. The quotient multiplies the rounding
+    // errors by 1e5.
     for (std::size_t i = 0; i < 2; ++i)
       EXPECT_NEAR(values(first.get())[i], values(second.get())[i], 1e-9) << epsilon;
     EXPECT_EQ(apsis_sundials_count(by_program.get(), APSIS_SUNDIALS_NEWTON_ITERATIONS), 0);
@@ -191,8 +192,7 @@ TEST(sundials_settings, end_runs_that_are_too_stiff_without_a_preconditioner) {
 }
 
 TEST(sundials_settings, integrate_collisions_that_depend_on_time) {
-  // Without T, implicit methods integrate time as part of Q: u' = −(u − cos t)/ε + …, whose solution is cos
-  // t.
+  // Without T, implicit methods integrate time as part of Q. u' = −(u − cos t)/ε + … has the solution cos t.
   const auto error_of = [](const std::string& name, int steps) {
     double epsilon = 0.2;
     const auto rate = [](double t, N_Vector y, N_Vector out, void* of) {

@@ -1,4 +1,4 @@
-// Direct and iterative linear solvers of SUNDIALS on stiff systems with known solutions.
+// Direct and iterative linear solvers of SUNDIALS for stiff systems with known solutions.
 #include <cmath>
 #include <memory>
 #include <string>
@@ -49,7 +49,7 @@ int robertson_jacobian(double, N_Vector y, N_Vector, SUNMatrix j, void*, N_Vecto
   return 0;
 }
 
-/// The heat equation u_t = u_xx with u = 0 at the ends of [0, 1]; n inner points.
+/// The heat equation u_t = u_xx with u = 0 at the ends of [0, 1], on `points` inner points.
 constexpr sunindextype points = 99;
 
 int heat(double, N_Vector y, N_Vector out, void*) {
@@ -77,7 +77,8 @@ int heat_product(N_Vector x, N_Vector jx, double t, N_Vector, N_Vector, void* da
 }  // namespace
 
 TEST(sundials_solvers, solve_robertsons_problem_to_the_end) {
-  // F. Mazzia, C. Magherini, Test set for initial value problem solvers (2008): the solution at t = 1e11.
+  // The solution at t = 1e11 is published by F. Mazzia, C. Magherini, Test set for initial value problem
+  // solvers (2008).
   const double truth[] = {0.2083340149701255e-07, 0.8333360770334713e-13, 0.9999999791665050};
   for (const std::string name : {"extrapolated-euler-5", "imdrk-9-5-accurate", "ark-436"}) {
     const auto y = serial({1, 0, 0});
@@ -88,7 +89,7 @@ TEST(sundials_solvers, solve_robertsons_problem_to_the_end) {
     expect_ok(apsis_sundials_set_jacobian(s.get(), robertson_jacobian));
     expect_ok(apsis_sundials_set_tolerances(s.get(), 1e-6, serial({1e-14, 1e-20, 1e-8}).get()));
     expect_ok(apsis_sundials_evolve(s.get(), 1e11, y.get(), nullptr));
-    // The errors of 1e11 time units add up to some tens of tolerances.
+    // Over 1e11 time units the errors add up to some tens of tolerances.
     for (std::size_t i = 0; i < 3; ++i)
       EXPECT_NEAR(values(y.get())[i] / truth[i], 1.0, 1e-4) << name << " " << i;
     EXPECT_LT(apsis_sundials_count(s.get(), APSIS_SUNDIALS_STEPS), 3000) << name;
@@ -96,7 +97,7 @@ TEST(sundials_solvers, solve_robertsons_problem_to_the_end) {
 }
 
 TEST(sundials_solvers, solve_the_heat_equation_by_a_band_by_gmres_and_by_bicgstab) {
-  // A mode of the difference operator decays with its eigenvalue.
+  // A mode decays with its eigenvalue of the difference operator.
   const double rate = std::pow(2.0 * (points + 1) * std::sin(M_PI / (2.0 * (points + 1))), 2);
   std::vector<double> u0;
   for (int i = 0; i < points; ++i) u0.push_back(std::sin(M_PI * (i + 1) / (points + 1)));
@@ -125,8 +126,8 @@ TEST(sundials_solvers, solve_the_heat_equation_by_a_band_by_gmres_and_by_bicgsta
 }
 
 TEST(sundials_solvers, need_few_iterations_however_stiff_the_equation_is) {
-  // (I − γJ)⁻² brings the spectrum between 1/2 and 1: by Chebyshev's bound GMRES then gains a factor of 5.8
-  // with each iteration, and 1e-10 takes 13.
+  // (I − γJ)⁻² brings the spectrum between 1/2 and 1. By Chebyshev's bound each iteration of GMRES then
+  // reduces the error by a factor of 5.8, so 1e-10 takes 13 iterations.
   for (const double dt : {1e-3, 1e-1, 1e1, 1e4}) {
     std::vector<double> u0;
     for (int i = 0; i < points; ++i)

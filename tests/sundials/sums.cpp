@@ -1,4 +1,4 @@
-// Sums over vectors that do not depend on their order: against permutations, threads, and exact sums.
+// Sums over vectors do not depend on their order. They agree with permutations, threads, and exact sums.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -21,7 +21,7 @@ using exact = boost::multiprecision::cpp_bin_float_100;
 
 constexpr double rounding = std::numeric_limits<double>::epsilon() / 2;
 
-/// Numbers of sizes from 2^−range to 2^range, in pairs that nearly cancel.
+/// Returns numbers of sizes from 2^−range to 2^range in pairs that nearly cancel.
 std::vector<double> numbers_of_range(std::size_t n, int range, std::mt19937_64& random) {
   std::uniform_real_distribution<double> mantissa(-1.0, 1.0);
   std::uniform_int_distribution<int> exponent(-range, range);
@@ -71,8 +71,8 @@ TEST(sundials_sums, do_not_depend_on_order_or_threads_and_are_exact_to_rounding)
     RC_ASSERT(dot(other_x, other_y) == sum);
     for (const int threads : {1, 3}) RC_ASSERT(dot_of_threads(x, y, threads) == sum);
 
-    // Each product is rounded; the parts are left out below 2^−53 of the largest product, and the sum of at
-    // most five parts is rounded as often.
+    // Each product is rounded. Parts below 2^−53 of the largest product are dropped. The sum of at most five
+    // parts is rounded as often.
     exact truth = 0, size = 0, largest = 0;
     for (std::size_t i = 0; i < n; ++i) {
       const exact product = exact(x[i]) * exact(y[i]);
@@ -85,7 +85,7 @@ TEST(sundials_sums, do_not_depend_on_order_or_threads_and_are_exact_to_rounding)
 }
 
 TEST(sundials_sums, differ_from_those_of_the_vector_itself) {
-  // Otherwise the tests above would hold without them.
+  // If the sums agreed, the tests above would prove nothing.
   std::mt19937_64 random(1);
   int different = 0;
   for (int k = 0; k < 50; ++k) {

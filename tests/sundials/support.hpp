@@ -1,4 +1,4 @@
-// Owners of the handles of C that the tests use.
+// Owners of C handles for the tests.
 #pragma once
 
 #include <apsis/apsis_sundials.h>
@@ -17,7 +17,7 @@
 
 namespace sundials_test {
 
-/// A context of SUNDIALS without MPI.
+/// Returns a context of SUNDIALS without MPI.
 inline SUNContext context() {
   static SUNContext made = [] {
     SUNContext one = nullptr;
@@ -62,7 +62,7 @@ inline integrator make(const std::string& name, apsis_sundials_rate_function* tr
   return {made, apsis_sundials_free};
 }
 
-/// Expects success, and shows the message otherwise.
+/// Expects success, and otherwise shows the message.
 inline void expect_ok(int status) {
   EXPECT_EQ(status, APSIS_OK) << apsis_error_message();
 }

@@ -1,5 +1,5 @@
-// equal_bits KIND [THREADS]: integrates the line on vectors of a kind: serial, pthreads, openmp or parallel.
-// It prints the bits of the result and the counters, which must not depend on kind, threads or processes.
+// equal_bits KIND [THREADS] integrates the line on vectors of a kind: serial, pthreads, openmp or parallel.
+// It prints the bits of the result and the counters. They must not depend on kind, threads or processes.
 #include <apsis/apsis_sundials.h>
 
 #include <algorithm>
@@ -28,7 +28,7 @@ using line_test::line;
 
 constexpr std::ptrdiff_t cells = 97;  // not a multiple of threads or processes
 
-/// A vector, and the part of the line that this process has.
+/// A vector, and the part of the line on this process.
 struct part {
   line of;
   N_Vector y = nullptr;
@@ -54,7 +54,7 @@ part parallel_part(SUNContext context) {
   return made;
 }
 
-/// Returns the numbers of all processes on the first.
+/// Returns the numbers of all processes on the first one.
 std::vector<double> gather(const part& of) {
   int size = 1;
   MPI_Comm_size(MPI_COMM_WORLD, &size);
@@ -92,7 +92,7 @@ void print_bits(const std::vector<double>& values) {
   }
 }
 
-/// Prints the result of one method. Returns whether it succeeded.
+/// Prints the result of one method. Returns true if it succeeded.
 bool integrate(const char* name, bool preconditioned, part& of, SUNContext context, bool prints,
                [[maybe_unused]] bool parallel) {
   apsis_method* method = nullptr;
@@ -106,7 +106,7 @@ bool integrate(const char* name, bool preconditioned, part& of, SUNContext conte
     good = good && apsis_sundials_set_products(s, nullptr, line_test::product) == APSIS_OK &&
            apsis_sundials_set_preconditioner(s, line_test::precondition_setup, line_test::precondition) ==
                APSIS_OK;
-  // Few steps: on a busy machine every sum over processes waits for all of them.
+  // There are few steps, because on a busy machine every sum over processes waits for all of them.
   good = good && apsis_sundials_set_tolerance(s, 1e-2, 1e-3) == APSIS_OK &&
          apsis_sundials_evolve(s, 0.005, of.y, nullptr) == APSIS_OK;
   if (!good) std::fprintf(stderr, "%s: %s\n", name, apsis_error_message());
@@ -144,7 +144,7 @@ int main(int argc, char** argv) {
     prints = rank == 0;
   }
 #endif
-  // Version 7 takes a communicator, earlier ones a pointer to it.
+  // Version 7 takes a communicator. Earlier versions take a pointer to it.
 #if SUNDIALS_VERSION_MAJOR >= 7
 #ifdef APSIS_WITH_MPI
   SUNContext_Create(parallel ? world : SUN_COMM_NULL, &context);

@@ -28,23 +28,23 @@ struct answer {
 /// Returns the code and the message of the error that `input` throws, or the code 0.
 answer answer_of(const std::function<void()>& input);
 
-/// Returns the rows of a file or of all *.toml of a folder. A file is an array [[table]]: a valid case as
-/// `text`, or the name of a built-in one as `case`, and `rows`, inline tables, one a line. The case itself
-/// becomes a row that must be accepted. Keys of a row:
+/// Returns the rows of a file, or of all *.toml of a folder. A file is an array [[table]]. A table has a
+/// valid case as `text`, or the name of a built-in one as `case`, and `rows`, inline tables, one a line. The
+/// case itself becomes a row that must be accepted. Keys of a row:
 /// - the change: `from` is replaced by `to`, `append` is added at the end, `set` are overrides (a text or a
-///   list), `text` is the whole input, or `run` are the arguments of the program;
+/// list), `text` is the whole input, or `run` are the arguments of the program;
 /// - `at`, the place: "line:column", "line:" where the TOML parser chooses the column, an override, or ""
-///   where the message names none. Without it the message names the only override of the row;
+/// where the message names none. Without `at` the message names the only override of the row;
 /// - `says` (a text or a list), and `code` unless it is 2.
 /// `text_of_case` returns the text of a built-in case.
 std::vector<row> rows_in(const std::string& path,
                          const std::function<std::string(const std::string&)>& text_of_case = {});
 
-/// Checks code, place and key words of every row, and records its message for tests/docs/test_bad_input.py,
-/// which checks the grammar of all of them.
+/// Checks code, place and key words of every row, and records its message. tests/docs/test_bad_input.py
+/// checks the grammar of all messages.
 void expect_answers(const std::vector<row>& rows, const std::function<answer(const row&)>& ask);
 
-/// A row whose input only C++ can express: a call that must be refused.
+/// A call that must be refused. Only C++ can express its input.
 struct call {
   std::function<void()> input;
   std::vector<std::string> says;  ///< parts of the message

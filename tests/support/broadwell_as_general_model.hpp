@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <memory>
 
-/// Broadwell's equations with Q = (q, −q, q), q = f₀² − f₊f₋, as a model that does not know that they relax:
-/// its stages need Newton's method.
+/// Broadwell's equations with Q = (q, −q, q), q = f₀² − f₊f₋, as a model without a relaxation form. Its
+/// stages need Newton's method.
 class broadwell_as_general_model final : public apsis::general_model {
  public:
   int components() const override { return closed_->components(); }

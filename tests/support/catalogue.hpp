@@ -10,7 +10,7 @@
 
 #include <gtest/gtest.h>
 
-/// Returns the methods of one step of the catalogue whose files satisfy a condition. Does not certify them,
+/// Returns the one-step methods of the catalogue whose files satisfy a condition. Does not certify them,
 /// because every process that runs a single test builds these lists.
 template <class Condition>
 std::vector<std::string> methods_where(const Condition& condition) {
@@ -22,12 +22,13 @@ std::vector<std::string> methods_where(const Condition& condition) {
   return names;
 }
 
-/// Whether a method has an SSP coefficient r > 0 at every ε; steps of explicit ones end at ε/C.
+/// Returns true if a method has an SSP coefficient r > 0 at every ε. Explicit methods do not, because their
+/// steps end at ε/C.
 inline bool is_convex_at_every_epsilon(const apsis::method& m) {
   return m.kind == apsis::method_kind::imex && m.claims.ssp_coefficient.value_or("0") != "0";
 }
 
-/// Returns the methods with transport whose O(ε) terms follow from the coefficients.
+/// Returns the methods with transport whose O(ε) terms follow from their coefficients.
 inline std::vector<std::string> methods_with_an_intermediate_regime() {
   return methods_where([](const apsis::method& m) {
     return m.kind == apsis::method_kind::imex &&

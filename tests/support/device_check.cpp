@@ -1,5 +1,6 @@
-// The devices of tests, and the main function of their programs, which `make device-check` runs on a real
-// device (tests/device/check.sh). Exit code 77 and "no device" if APSIS_DEVICE is set and there is no device.
+// The devices of tests, and the main function of their programs. `make device-check` runs them on a real
+// device (tests/device/check.sh). If APSIS_DEVICE is set and there is no device, the program prints "no
+// device" and ends with exit code 77.
 #include "tested_device.hpp"
 
 #include <apsis/core/errors.hpp>
@@ -26,7 +27,7 @@ std::set<std::string>& names_of_kernels() {
 
 std::size_t copied_to_host = 0;
 
-/// The memory of a device, which counts what it copies to the host.
+/// The memory of a device. It counts the numbers that it copies to the host.
 class counting_memory final : public apsis::memory_space {
  public:
   explicit counting_memory(const apsis::memory_space& real) : real_(real) {}
@@ -94,7 +95,7 @@ std::vector<std::shared_ptr<device>> open_all() {
   return all;
 }
 
-/// Opens the device. Returns the exit code of a program that cannot use it, 0 if it can.
+/// Opens the device. Returns 0, or the exit code of a program that cannot use the device.
 int prepare() {
   constexpr int skipped = 77;
   const std::string name = wanted();
@@ -111,7 +112,7 @@ int prepare() {
   }
 }
 
-/// A program in which no test is left proves nothing.
+/// Runs the tests. A run without any test is an error, because it proves nothing.
 int run_tests() {
   const int result = RUN_ALL_TESTS();
   if (testing::UnitTest::GetInstance()->test_to_run_count() > 0) return result;

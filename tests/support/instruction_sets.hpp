@@ -5,8 +5,8 @@
 #include <gtest/gtest.h>
 #include <hwy/targets.h>
 
-/// Runs body() once with the kernels of every instruction set that is built and supported by this processor,
-/// including the baseline, and restores the best one afterwards.
+/// Runs body() with the kernels of every instruction set that is built and supported by this processor,
+/// including the baseline. Restores the best one afterwards.
 template <class Body>
 void for_each_instruction_set(const Body& body) {
   for (const auto target : hwy::SupportedAndGeneratedTargets()) {

@@ -16,8 +16,8 @@
 #include <utility>
 #include <vector>
 
-/// "Processes" that are threads of the test: the same collective calls without MPI. A process that ends with
-/// an exception while others wait for it makes them fail.
+/// "Processes" that are threads of the test. They have the same collective calls without MPI. If a process
+/// ends with an exception while others wait for it, the others fail.
 namespace threads_as_processes {
 
 class group {
@@ -25,7 +25,7 @@ class group {
   explicit group(int size) : size_(size), slots_(static_cast<std::size_t>(size)) {}
   int size() const { return size_; }
 
-  /// Every process passes a pointer; combine(pointers) runs once, between two barriers.
+  /// Every process passes a pointer. combine(pointers) runs once, between two barriers.
   template <class Combine>
   void meet(int rank, void* mine, const Combine& combine) {
     std::unique_lock lock(mutex_);
@@ -137,7 +137,7 @@ class member final : public apsis::communicator {
   std::vector<apsis::message> expected_;
 };
 
-/// Runs body(communicator) on `count` processes and rethrows the exception of the first that failed.
+/// Runs body(communicator) on `count` processes. Rethrows the exception of the first that failed.
 template <class Body>
 void run(int count, const Body& body) {
   const auto all = std::make_shared<group>(count);

@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 #include <rapidcheck.h>
 
-/// Checks a property on random inputs and fails the test with the counterexample that RapidCheck prints
+/// Checks a property on random inputs. Fails the test with the counterexample that RapidCheck prints
 /// (rc::check itself only returns false).
 template <class Property>
 void check_property(const std::string& name, Property&& property) {

@@ -14,7 +14,7 @@
 #include <gtest/gtest.h>
 #include <support/instruction_sets.hpp>
 
-/// A number of exec/number.hpp whose fma rounds twice, as on instruction sets without a fused one.
+/// A number of exec/number.hpp whose fma rounds twice, as on instruction sets without fused operations.
 struct unfused {
   double v;
   unfused(double from) : v(from) {}
@@ -49,8 +49,8 @@ inline double value_of(unfused x) {
   return x.v;
 }
 
-/// Calls body(N, lanes) for every instruction set: formulas on single numbers N have the bits of its packs of
-/// so many numbers.
+/// Calls body(N, lanes) for every instruction set. Formulas on single numbers N have the bits of its packs of
+/// `lanes` numbers.
 template <class Body>
 void for_each_number(const Body& body) {
   for_each_instruction_set([&body] {
@@ -61,12 +61,12 @@ void for_each_number(const Body& body) {
   });
 }
 
-/// Whether two numbers have the same bits, or are both NaN.
+/// Returns true if two numbers have the same bits or are both NaN.
 inline bool same_bits(double a, double b) {
   return std::memcmp(&a, &b, sizeof a) == 0 || (std::isnan(a) && std::isnan(b));
 }
 
-/// The sum of one number per lane, halves of halves.
+/// Returns the sum of one number per lane, added as halves of halves.
 template <class N>
 double sum_of_lanes(std::vector<N> of) {
   for (std::size_t half = of.size() / 2; half > 0; half /= 2)
@@ -74,7 +74,7 @@ double sum_of_lanes(std::vector<N> of) {
   return value_of(of[0]);
 }
 
-/// Numbers ≥ 0 of any size: zeros, subnormal, tiny, ordinary and large ones, smooth and steep.
+/// Returns a number ≥ 0 of any size: zero, subnormal, tiny, ordinary or large, smooth or steep.
 inline double any_size(apsis::random_source& random) {
   const double kind = random.uniform(0.0, 1.0), part = random.uniform(0.0, 2.0);
   if (kind < 0.08) return 0.0;
@@ -88,7 +88,7 @@ inline double any_size(apsis::random_source& random) {
   return 1.0 + 0.1 * part;
 }
 
-/// The same with any sign.
+/// Returns a number of any size and sign.
 inline double any_sign(apsis::random_source& random) {
   const double x = any_size(random);
   return random.uniform(0.0, 1.0) < 0.5 ? x : -x;

@@ -1,4 +1,5 @@
-// Lets several threads share the loops over the small fields of tests, which would run on one thread alone.
+// Lets several threads share the loops over the small fields of tests. They would otherwise run
+// on one thread.
 #include <apsis/exec/parallel.hpp>
 
 #include <gtest/gtest.h>

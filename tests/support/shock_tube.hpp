@@ -4,9 +4,9 @@
 
 namespace test_support {
 
-/// Exact solution of the Riemann problem of a perfect gas at rest on both sides, by bisection for the
-/// pressure between a rarefaction to the left and a shock to the right (Toro, Riemann Solvers, 2009, chapter
-/// 4).
+/// Exact solution of the Riemann problem of a perfect gas at rest on both sides. It has a rarefaction to the
+/// left and a shock to the right. Bisection gives the pressure between them (Toro, Riemann Solvers, 2009,
+/// chapter 4).
 class shock_tube {
  public:
   shock_tube(double gamma, double rho_left, double p_left, double rho_right, double p_right)
@@ -18,10 +18,10 @@ class shock_tube {
     }
   }
 
-  /// Pressure and velocity between rarefaction and shock.
+  /// Return pressure and velocity between rarefaction and shock.
   double pressure() const { return middle_; }
   double velocity() const { return velocity_left(middle_); }
-  /// Density on either side of the contact.
+  /// Return the density on either side of the contact.
   double density_left() const { return rho_[0] * std::pow(middle_ / p_[0], 1.0 / g_); }
   double density_right() const {
     const double ratio = middle_ / p_[1], b = (g_ - 1.0) / (g_ + 1.0);

@@ -1,5 +1,5 @@
-// Sets three threads before all tests: most tests set no number of threads, and one thread has no data races.
-// Compiled only into tests that run under the thread sanitizer.
+// Sets three threads before all tests. Most tests set no number of threads, and one thread has no data races.
+// Only tests under the thread sanitizer compile this file.
 #include <apsis/exec/parallel.hpp>
 
 #include <gtest/gtest.h>

@@ -8,12 +8,12 @@
 #include <string>
 #include <vector>
 
-/// Devices on which tests compare the bits with those of the host. Usually they are teams of lanes, in every
-/// order. APSIS_DEVICE names another one: "first" for the first real device, or any that open_device() opens.
-/// They are opened once for all tests.
+/// Returns the devices on which tests compare the bits with those of the host. Usually they are teams of
+/// lanes in every order. APSIS_DEVICE selects another one: "first" for the first real device, or any name
+/// that open_device() accepts. The devices are opened once for all tests.
 const std::vector<std::shared_ptr<apsis::device>>& tested_devices();
 
-/// Returns the last of them, for tests that take long: of teams the one in random order.
+/// Returns the last device, for slow tests. Of teams it is the one in random order.
 inline const std::shared_ptr<apsis::device>& tested_device() {
   return tested_devices().back();
 }

@@ -87,13 +87,13 @@ double standard_deviation(const std::vector<double>& values) {
   return std::sqrt(square);
 }
 
-/// An oblique shock of a gas with γ = 5/3 that a wedge deflects.
+/// An oblique shock of a gas with γ = 5/3 behind the edge of a wedge.
 struct oblique_shock {
   double angle = 0.0, pressure = 0.0;
   oblique_shock(double mach, double deflection) {
     const double gamma = 5.0 / 3.0;
-    // tan θ = 2 cot β (M² sin² β − 1)/(M² (γ + cos 2β) + 2); the weak shock is the first root above the Mach
-    // angle.
+    // The weak shock is the first root above the Mach angle of tan θ = 2 cot β (M² sin² β − 1)/(M² (γ + cos
+    // 2β) + 2).
     const auto excess = [&](double beta) {
       const double s = mach * std::sin(beta);
       return 2.0 / std::tan(beta) * (s * s - 1.0) / (mach * mach * (gamma + std::cos(2.0 * beta)) + 2.0) -
@@ -114,7 +114,7 @@ TEST(flows_past_bodies, of_a_cylinder_at_mach_5_need_the_velocities_that_the_cas
         apsis::load_case("gas/cylinder", {"parameters.M=5", "parameters.Kn=" + kn, "velocity.max=14",
                                           "velocity.points=36", "space.cells=[18,9]", "time.end=0.1"}));
     while (!run.finished()) run.advance();
-    // A warning is given above 1e-3.
+    // Above 1e-3 the run would warn.
     EXPECT_LT(run.summary().velocity_missed, 1e-3) << kn;
   }
   EXPECT_THROW(static_cast<void>(simulation(apsis::load_case("gas/cylinder", {"parameters.M=5"}))),
@@ -122,7 +122,8 @@ TEST(flows_past_bodies, of_a_cylinder_at_mach_5_need_the_velocities_that_the_cas
 }
 
 TEST(SLOW_flows_past_bodies, have_a_drag_of_second_order_with_weights_and_limiter) {
-  // Differences between meshes do not contain the error of the velocities, which all meshes have in common.
+  // Differences between meshes do not contain the error of the velocities, because all meshes have
+  // the same velocities.
   const auto drag_with = [](int cells) {
     return compute_quantity(find_quantity("cylinder"),
                             {"mach=2", fmt::format("space.cells=[{},{}]", 3 * cells, 3 * cells / 2),
@@ -133,8 +134,8 @@ TEST(SLOW_flows_past_bodies, have_a_drag_of_second_order_with_weights_and_limite
 }
 
 TEST(SLOW_flows_past_bodies, of_every_colliding_gas_have_a_heat_of_second_order_with_weights_and_limiter) {
-  // Kn = 1. Errors of the drag have both signs and nearly cancel: it changes by 1.5e-3 from 4 to 16 cells per
-  // radius. Heat has the orders 1.87, 1.78 and 1.76.
+  // Kn = 1. Errors of the drag have both signs and nearly cancel. From 4 to 16 cells per radius the drag
+  // changes by 1.5e-3. Heat has the orders 1.87, 1.78 and 1.76.
   for (const std::string model : {"bgk", "shakhov", "es-bgk"}) {
     const auto loads_with = [&](int cells) {
       std::vector<std::string> overrides = {"model.name=" + model,
@@ -160,15 +161,15 @@ TEST(SLOW_flows_past_bodies, have_a_drag_that_does_not_depend_on_the_place_of_th
   const double h = 1.0 / 16.0;
   std::vector<double> shifted, turned;
   for (int k = 0; k < 8; ++k) shifted.push_back(drag(0.125 * k * h, (k * 3 % 8) * 0.125 * h, 0.0));
-  // Directions of an eighth of the circle contain all others of a square mesh.
+  // On a square mesh an eighth of the circle represents all directions.
   for (int k = 0; k < 7; ++k) turned.push_back(drag(0.0, 0.0, k * std::numbers::pi / 24.0));
   EXPECT_LE(standard_deviation(shifted), 1e-4 * shifted.front());
   EXPECT_LE(standard_deviation(turned), 1e-4 * turned.front());
 }
 
 TEST(SLOW_flows_past_bodies, between_coaxial_cylinders_have_the_viscosity_and_conductivity_of_every_model) {
-  // The same viscosity: ES-BGK has ε Pr in place of ε. Then torques agree but for layers of a mean free path,
-  // and heat is larger for Pr = 2/3 than for 1, by a factor between 1 and 3/2.
+  // Viscosities are equal, so ES-BGK has ε Pr instead of ε. Torques then agree up to layers of a mean free
+  // path. Heat for Pr = 2/3 is larger than for Pr = 1 by a factor between 1 and 3/2.
   const auto value = [](const std::string& model, const std::string& quantity) {
     std::vector<std::string> settings = {"delta=10", "quantity=" + quantity, "cells=16", "velocity.points=12",
                                          "model.name=" + model};
@@ -185,8 +186,8 @@ TEST(SLOW_flows_past_bodies, between_coaxial_cylinders_have_the_viscosity_and_co
 }
 
 TEST(SLOW_flows_past_bodies, between_coaxial_cylinders_in_a_rarefied_gas_have_torque_and_heat) {
-  // Of the linear solver (linear_annulus.hpp). Weights of WENO let residuals stall at 1e-5 for heat, when
-  // moments change by 2e-11 per iteration.
+  // The values are those of the linear solver (linear_annulus.hpp). For heat, weights of WENO let residuals
+  // stall at 1e-5. Moments then change by 2e-11 per iteration.
   for (const auto& [delta, torque, heat] :
        {std::tuple{"0.1", 0.98830, 0.97173}, std::tuple{"1", 0.88123, 0.77179}})
     for (const bool turns : {true, false}) {
@@ -209,8 +210,8 @@ TEST(SLOW_flows_past_bodies, torque_between_coaxial_cylinders_has_second_order_i
 }
 
 TEST(SLOW_flows_past_bodies, of_a_colliding_gas_have_equal_drag_in_space_and_about_an_axis) {
-  // Kn = 1, Mach 2. Four cells per radius have the drag of free molecules up to 1.3 % in space and 0.3 %
-  // about an axis (docs/bodies.md, docs/axisymmetric.md).
+  // Kn = 1, Mach 2. With four cells per radius the drag of free molecules has an error of up to 1.3 % in
+  // space and 0.3 % about an axis (docs/bodies.md, docs/axisymmetric.md).
   const double in_space = drag_in("gas/sphere", {}),
                about_axis = drag_in("gas/sphere-axis", {"space.cells=[18,8]"});
   EXPECT_NEAR(about_axis, in_space, 0.016 * in_space);
@@ -261,8 +262,8 @@ surfaces = ["wedge"]
     // Reflection returns the tangential momentum and the energy.
     EXPECT_NEAR(wall.at("shear_stress")[k], 0.0, 1e-12);
     EXPECT_NEAR(wall.at("heat_flux")[k], 0.0, 1e-12);
-    if (wall.at("x")[k] < 0.65) continue;  // the shock is still thinner than some cells
-    // Cells of 1/16, and a shock of three of them: 1 % at single pieces, less in the mean.
+    if (wall.at("x")[k] < 0.65) continue;  // the shock is thinner than some cells
+    // With cells of 1/16 and a shock of three cells the error is 1 % at single pieces, and less in the mean.
     EXPECT_NEAR(wall.at("pressure")[k], exact.pressure, 0.02 * exact.pressure) << wall.at("x")[k];
     force += wall.at("area")[k] * wall.at("pressure")[k];
     area += wall.at("area")[k];

@@ -1,5 +1,5 @@
-// Free molecules past a circle and a sphere: the reference values against integrals over the molecules that
-// arrive, runs with specular walls, and pressure, shear and heat at every piece of a wall.
+// Free molecules past a circle and a sphere. The reference values agree with integrals over the molecules
+// that arrive. Runs have specular walls, and pressure, shear and heat at every piece of a wall.
 #include <apsis/body/read_stl.hpp>
 #include <apsis/config/case.hpp>
 #include <apsis/core/errors.hpp>
@@ -29,13 +29,13 @@ using apsis::validation::find_quantity;
 using apsis::validation::load_in_stream;
 using apsis::validation::wall_values;
 
-/// Fluxes at a wall with the density and temperature 1 of the stream, and R = 1.
+/// Fluxes at a wall. The stream has density 1 and temperature 1, and R = 1.
 struct wall_fluxes {
   double pressure, shear, heat, reemitted_pressure;
 };
 
-/// Returns the fluxes of the molecules with v_n < 0 of a stream with the velocities u_n and u_t, by Simpson's
-/// rule over v_n; v_t and the third direction have the moments of a Maxwellian. The wall has the
+/// Returns the fluxes of the molecules with v_n < 0 of a stream with the velocities u_n and u_t. Simpson's
+/// rule integrates over v_n. v_t and the third direction have the moments of a Maxwellian. The wall has the
 /// temperature 1.
 wall_fluxes arriving(double u_n, double u_t) {
   const int n = 400;
@@ -47,7 +47,7 @@ wall_fluxes arriving(double u_n, double u_t) {
     for (std::size_t power = 1; power < 4; ++power)
       sums[power] += std::pow(-v, static_cast<double>(power)) * f;
   }
-  // A half Maxwellian of temperature 1 carries the energy 2 for each molecule, and √(2π)/2 of momentum.
+  // In a half Maxwellian of temperature 1 each molecule has the energy 2 and the momentum √(2π)/2.
   return {sums[2], u_t * sums[1], 0.5 * sums[3] + (0.5 * u_t * u_t + 1.0) * sums[1] - 2.0 * sums[1],
           0.5 * std::sqrt(2.0 * std::numbers::pi) * sums[1]};
 }
@@ -57,8 +57,8 @@ std::array<double, 2> coefficients(double mach, double alpha, bool sphere) {
   const double U = mach * std::sqrt(5.0 / 3.0), pi = std::numbers::pi;
   const int n = 400;
   double drag = 0.0, heat = 0.0;
-  // The midpoint rule is spectrally accurate for periodic and even functions of the angle; sin makes it
-  // second order.
+  // The midpoint rule is spectrally accurate for periodic and even functions of the angle. The factor sin
+  // reduces it to second order.
   for (int k = 0; k < n; ++k) {
     const double angle = (k + 0.5) * pi / n, c = std::cos(angle), s = std::sin(angle);
     const double area = (sphere ? 2.0 * s : 1.0) * pi / n;
@@ -70,10 +70,10 @@ std::array<double, 2> coefficients(double mach, double alpha, bool sphere) {
   return {drag / (0.5 * U * U), heat / (0.5 * U * U * U)};
 }
 
-/// Returns drag, lift and heat of a surface whose triangles are free plates, turned by an angle in degrees
-/// about y in a stream along x. Those of a convex body are exact.
+/// Returns drag, lift and heat of a surface whose triangles are free plates. The surface is turned by an
+/// angle in degrees about y, in a stream along x. The loads are exact for convex bodies.
 std::array<double, 3> loads_of_plates(const std::string& file, double U, double incidence) {
-  // In the coordinates of the file the stream turns backwards.
+  // In the coordinates of the file the stream rotates backwards.
   const double turn = incidence * std::numbers::pi / 180.0, c = std::cos(turn), s = std::sin(turn);
   const position stream = {U * c, 0.0, U * s}, along = {c, 0.0, s}, up = {-s, 0.0, c};
   const auto dot = [](const position& a, const position& b) {
@@ -115,13 +115,14 @@ TEST(free_molecular_bodies, have_the_coefficients_that_the_fluxes_of_molecules_g
       const auto exact = coefficients(std::stod(given("mach", "2")), std::stod(given("accommodation", "1")),
                                       body == "sphere");
       const double value = exact[given("quantity", "drag") == "drag" ? 0 : 1];
-      // Printed with six decimals. The midpoint rule of 400 points has (π/400)²/24 = 3e-6 on a sphere.
+      // The values are printed with six decimals. On a sphere the midpoint rule of 400 points has an error of
+      // (π/400)²/24 = 3e-6.
       EXPECT_NEAR(reference.value, value, 1e-5 * value) << body;
     }
 }
 
 TEST(free_molecular_bodies, receive_no_heat_where_they_reflect) {
-  // Rounding errors alone: the factors of the reflected values return the energy that arrives.
+  // Only rounding errors remain, because the factors of the reflected values conserve energy.
   EXPECT_NEAR(
       compute_quantity(find_quantity("cylinder"), {"accommodation=0", "quantity=heat", "space.cells=[16,8]",
                                                    "velocity.points=20", "time.end=0.3"}),
@@ -129,7 +130,7 @@ TEST(free_molecular_bodies, receive_no_heat_where_they_reflect) {
 }
 
 TEST(free_molecular_bodies, have_the_drag_of_a_sphere_on_few_cells) {
-  // Ten velocities in place of twelve, and an eighth of the time: 1.5 % as with those.
+  // With ten velocities instead of twelve, and an eighth of the time, the error is still 1.5 %.
   EXPECT_NEAR(compute_quantity(find_quantity("sphere"), {"mach=1", "velocity.points=10", "time.end=0.1"}),
               5.110056, 0.02 * 5.110056);
 }
@@ -140,13 +141,13 @@ TEST(free_molecular_bodies, have_less_than_the_loads_of_plates_that_shade_nothin
   const apsis::body_load half = apsis::body_loads(run.setup(), run.last()).front();
   const auto [drag, lift, heat] =
       loads_of_plates("gas/satellite.stl", run.config().output.reference.value().speed(), 20.0);
-  // Test particles of the shape, with shade and with what walls emit towards each other, have 4.4 % less drag
-  // and 4.8 % less heat than the plates. Cells of 0.2 cut off edges: 3 % to 5 % more are missing.
+  // Test particles with shade and re-emission between walls have 4.4 % less drag and 4.8 % less heat than the
+  // plates. Cells of 0.2 cut off edges, which removes another 3 % to 5 %.
   EXPECT_LT(2.0 * half.force[0], 0.95 * drag);
   EXPECT_GT(2.0 * half.force[0], 0.88 * drag);
   EXPECT_LT(2.0 * half.heat, 0.95 * heat);
   EXPECT_GT(2.0 * half.heat, 0.88 * heat);
-  // Front and top have nearly opposite lift; their difference has the error of the drag.
+  // Front and top have nearly opposite lift. Their difference has the error of the drag.
   EXPECT_NEAR(2.0 * half.force[2], lift, 0.02 * drag);
 }
 
@@ -158,7 +159,7 @@ TEST(free_molecular_bodies, refuse_parameters_that_are_no_accommodation) {
 TEST(SLOW_free_molecular_bodies, have_drag_and_heat_of_a_cylinder_on_8_and_16_cells_per_radius) {
   for (const double mach : {1.0, 2.0, 5.0})
     for (const int cells : {8, 16}) {
-      // Four cells between the wall and the stream, and 32 velocities along each direction.
+      // There are four cells between the wall and the stream, and 32 velocities along each direction.
       const double end = 1.0 + 4.0 / cells;
       simulation run(apsis::load_case(
           "gas/cylinder", {fmt::format("parameters.M={}", mach), "parameters.Kn=1e9",
@@ -176,8 +177,8 @@ TEST(SLOW_free_molecular_bodies, have_drag_and_heat_of_a_cylinder_on_8_and_16_ce
 
 TEST(SLOW_free_molecular_bodies, have_the_fluxes_of_free_molecules_at_every_piece_of_a_cylinder) {
   // Where a wall is normal to an axis, the sum of v_n M over half of the velocities is too large by the share
-  // Δv²/24 at T = 1, and the pressure of what it emits too small: with 56 velocities by 6e-3, 2.3e-3 of
-  // ρU²/2. 32 would leave 7e-3.
+  // Δv²/24 at T = 1. The pressure of the emitted molecules is then too small. With 56 velocities its error is
+  // 6e-3, 2.3e-3 of ρU²/2. With 32 it would be 7e-3.
   const std::vector<std::string> overrides = {
       "parameters.M=5",
       "parameters.Kn=1e9",
@@ -195,7 +196,7 @@ TEST(SLOW_free_molecular_bodies, have_the_fluxes_of_free_molecules_at_every_piec
   const double U = 5.0 * std::sqrt(5.0 / 3.0);
   ASSERT_GT(wall.at("x").size(), 30U);
   for (std::size_t k = 0; k < wall.at("x").size(); ++k) {
-    // Counter-clockwise along the wall, the stream has the component −U y.
+    // Along the wall, counter-clockwise, the stream has the component −U y.
     const double x = wall.at("x")[k], y = wall.at("y")[k];
     const wall_fluxes exact = arriving(U * x, -U * y);
     EXPECT_NEAR(wall.at("pressure")[k], exact.pressure + exact.reemitted_pressure, 3e-3 * 0.5 * U * U) << x;

@@ -20,7 +20,7 @@ constexpr double pi = std::numbers::pi;
 /// T_n(x) = ∫ w^n exp(−w² − x/w) dw over w > 0, for n = 0 to 5.
 using transmissions = std::array<double, 6>;
 
-/// Interpolates the transmissions on a grid with x = s⁴, on which x log x is smooth enough.
+/// Interpolates the transmissions on a grid with x = s⁴. In s, x log x is smooth enough.
 class transmission_table {
  public:
   explicit transmission_table(double largest) : scale_(std::pow(largest, 0.25) / cells) {
@@ -44,7 +44,7 @@ class transmission_table {
     constexpr int points = 200;
     transmissions out{};
     for (int k = 0; k < points; ++k) {
-      // w = 6 s³: the integrand and its derivatives vanish at w = 0, and at 6 it is below rounding.
+      // For w = 6 s³ the integrand and its derivatives vanish at w = 0. At w = 6 it is below rounding.
       const double s = (k + 0.5) / points, w = 6.0 * s * s * s;
       double value = 18.0 * s * s / points * std::exp(-w * w - x / w);
       for (double& each : out) {
@@ -59,7 +59,7 @@ class transmission_table {
   std::vector<transmissions> values_;
 };
 
-/// Nodes and weights of the rule of Gauss with four points on [0, 1].
+/// Nodes and weights of Gauss's rule with four points on [0, 1].
 constexpr std::array<std::array<double, 2>, 4> four_points = {{{0.069431844202973712, 0.173927422568726929},
                                                                {0.330009478207571868, 0.326072577431273071},
                                                                {0.669990521792428132, 0.326072577431273071},
@@ -77,15 +77,15 @@ void integrate(double low, double high, int panels, const Use& use) {
       use(std::lerp(edge(k), edge(k + 1), x), weight * (edge(k + 1) - edge(k)));
 }
 
-/// A ray that arrives at the radius r: where it began, and its distance from the axis.
+/// A ray that arrives at the radius r, with its beginning and its distance from the axis.
 struct ray {
-  double angle;   ///< from the radius, 0 to π: between 0 and π/2 it arrives from inside
-  double weight;  ///< of the angle, for both signs of it
+  double angle;   ///< angle from the radius, 0 to π; below π/2 it arrives from inside
+  double weight;  ///< weight of the angle, for both signs of it
   double length;
   bool from_inner;
 };
 
-/// Rays of all angles that arrive at r; at the walls, those from the gas.
+/// Returns rays of all angles that arrive at r. At the walls they are those from the gas.
 std::vector<ray> rays_at(double r, int panels) {
   std::vector<ray> all;
   // Rays below this angle begin at the inner cylinder.
@@ -133,7 +133,7 @@ class radial_nodes {
 
 constexpr int angle_panels = 12, way_panels = 24;
 
-/// Moments of molecules that arrive at a point: the share of each source and wall.
+/// Moments of molecules that arrive at a point, as shares of each source and wall.
 class arrivals {
  public:
   arrivals(double delta, int cells) : delta_(delta), nodes_(cells), table_(delta * 2.0 * outer_radius) {}
@@ -166,8 +166,8 @@ class arrivals {
 linear_annulus::linear_annulus(double delta, int radii) : delta_(delta), radii_(radii) {}
 
 double linear_annulus::torque() const {
-  // By symmetry φ is odd in the angle, ρ = τ = 0, and u = r ω along the circles. On a ray c·u = w b ω with
-  // its distance b from the axis. The inner wall emits 2 w b, the outer one 0.
+  // By symmetry φ is odd in the angle, ρ = τ = 0, and u = r ω along the circles. On a ray at the distance b
+  // from the axis, c·u = w b ω. The inner wall emits 2 w b, the outer one 0.
   const arrivals paths(delta_, radii_);
   const int n = paths.nodes().size();
   MatrixXd system = MatrixXd::Identity(n, n);
@@ -184,7 +184,7 @@ double linear_annulus::torque() const {
         [&](const ray& one, Eigen::Index node, double weight, const transmissions& T) {
           system(i, node) -= factor(one) * weight * T[2];
         });
-    // A wall emits one half of the directions, with its own velocity.
+    // A wall emits one half of the directions with its own velocity.
     if (i == 0) right[i] += 0.5;
   }
   const VectorXd omega = system.partialPivLu().solve(right);
@@ -195,18 +195,19 @@ double linear_annulus::torque() const {
         const double s = std::sin(one.angle), c = std::abs(std::cos(one.angle));
         arriving += one.weight * 2.0 / pi * s * s * c * weight * T[3] * omega[node];
       });
-  // Free molecules: 1/(2√π) leaves, and none arrives.
+  // For free molecules 1/(2√π) leaves and none arrives.
   return 1.0 - 2.0 * std::sqrt(pi) * arriving;
 }
 
 double linear_annulus::heat() const {
-  // The unknowns are ρ and τ at the radii, and σ of the inner wall, which emits σ + c² − 2. The outer one
-  // emits 0; a constant in ρ is free. Means over c_z: of 1 and q = c² − 3/2, and of their products.
+  // The unknowns are ρ and τ at the radii, and σ of the inner wall. This wall emits σ + c² − 2, and the
+  // outer one 0, as a constant in ρ is free. The equations are means over c_z of 1, of q = c² − 3/2, and
+  // of their products.
   const arrivals paths(delta_, radii_);
   const int n = paths.nodes().size();
   MatrixXd system = MatrixXd::Identity(2 * n + 1, 2 * n + 1);
   VectorXd right = VectorXd::Zero(2 * n + 1);
-  // Sums Σ over powers of w: ⟨1⟩ = 1, ⟨q⟩ = w² − 1, ⟨q²⟩ = (w² − 1)² + 1/2, with a factor w^k.
+  // The sums Σ over powers of w are ⟨1⟩ = 1, ⟨q⟩ = w² − 1, ⟨q²⟩ = (w² − 1)² + 1/2, with a factor w^k.
   const auto one_of = [](const transmissions& T, std::size_t k) { return T[k]; };
   const auto q_of = [](const transmissions& T, std::size_t k) { return T[k + 2] - T[k]; };
   const auto qq_of = [](const transmissions& T, std::size_t k) {
@@ -232,11 +233,11 @@ double linear_annulus::heat() const {
           system(n + i, n + node) -= factor * qq_of(T, 0) * 2.0 / 3.0;
         });
   }
-  // Half of the directions at the inner wall leave it: ⟨1⟩ = 1/2, ⟨q⟩ = 0, ⟨q²⟩ = 3/4.
+  // Half of the directions leave the inner wall: ⟨1⟩ = 1/2, ⟨q⟩ = 0, ⟨q²⟩ = 3/4.
   system(0, 2 * n) -= 0.5;
   right[0] += -0.25;
   right[n] += 0.5;
-  // No mass crosses the inner wall: σ/(2√π) leaves.
+  // No mass crosses the inner wall. σ/(2√π) leaves it.
   const auto arriving = [&](const auto& use) {
     paths.visit(
         1.0, [](const ray&, const transmissions&) {},
@@ -256,7 +257,7 @@ double linear_annulus::heat() const {
     energy += factor * (solution[node] * (q_of(T, 1) + 1.5 * one_of(T, 1)) +
                         solution[n + node] * (qq_of(T, 1) + 1.5 * q_of(T, 1)));
   });
-  // (2σ + 2)/(2√π) leaves; free molecules of the outer wall bring back 2σ/(2√π).
+  // (2σ + 2)/(2√π) leaves. Free molecules of the outer wall bring back 2σ/(2√π).
   return (2.0 * solution[2 * n] + 2.0 - 2.0 * std::sqrt(pi) * energy) / 2.0;
 }
 

@@ -52,7 +52,7 @@ double linear_plates::half_range(int k) const {
 }
 
 VectorXd linear_plates::velocity() const {
-  // u = up − (up mirrored) with up = M u + V.
+  // By symmetry u = up − (up mirrored) with up = M u + V.
   const auto n = x_.size();
   return (MatrixXd::Identity(n, n) - of_source_[0] + of_source_[0].colwise().reverse())
       .partialPivLu()
@@ -60,9 +60,9 @@ VectorXd linear_plates::velocity() const {
 }
 
 double linear_plates::flow_rate() const {
-  // φ = 2 c_y ψ with c ψ_x = δ (u − ψ) + 1/2. Far from plates, for s = x − 1/2,
+  // With φ = 2 c_y ψ, c ψ_x = δ (u − ψ) + 1/2. Far from the plates, for s = x − 1/2,
   //     ψ = −δ s²/2 + c s − (c² − 1/2)/δ + δ/8,   u = −δ s²/2 + δ/8.
-  // The plates emit ψ = 0, and so −ψ of this solution in the rest, which is a layer.
+  // The plates emit ψ = 0. The remainder, a layer, thus has the emission −ψ of this solution.
   const auto n = x_.size();
   const MatrixXd both = of_source_[0] + of_source_[0].colwise().reverse();
   const VectorXd emitted = 0.5 * of_plate_[1] + (of_plate_[2] - 0.5 * of_plate_[0]) / delta_;
@@ -81,9 +81,9 @@ double linear_plates::heat_flux() const {
   const auto n = x_.size();
   const auto& M = of_source_;
   const auto& V = of_plate_;
-  // Over the tangential components, g is the mean of φ and h that of (c_t² − 1) φ; their sources are
-  // ρ + (c² − 1/2) τ and τ, the plate at 0 emits a + (c² − 1/2)/2 and 1/2. Then ρ = ⟨g⟩ and
-  // (3/2) τ = ⟨(c² − 1/2) g + h⟩.
+  // g is the mean of φ over the tangential components, h that of (c_t² − 1) φ. Their sources are ρ + (c²
+  // − 1/2) τ and τ. The plate at 0 emits a + (c² − 1/2)/2 and 1/2. Then ρ = ⟨g⟩ and (3/2) τ = ⟨(c² − 1/2)
+  // g + h⟩.
   const MatrixXd with_energy = M[2] - 0.5 * M[0], energy_energy = M[4] - M[2] + 1.25 * M[0];
   const VectorXd plate = V[2] - 0.5 * V[0], plate_energy = V[4] - V[2] + 1.25 * V[0];
   const auto odd = [](const MatrixXd& up) -> MatrixXd { return up - up.colwise().reverse(); };
@@ -97,7 +97,7 @@ double linear_plates::heat_flux() const {
   system.block(n, 2 * n, n, 1) = -odd(plate);
   right.head(n) = 0.5 * odd(plate);
   right.segment(n, n) = 0.5 * odd(plate_energy);
-  // No mass crosses the plate at 0, where the molecules that arrive are mirror images of those at 1.
+  // No mass crosses the plate at 0. The molecules that arrive there are mirror images of those at 1.
   const auto ends = [n](const auto& up) { return (up.row(0) + up.row(n - 1)).eval(); };
   system.block(2 * n, 0, 1, n) = ends(M[1]);
   system.block(2 * n, n, 1, n) = ends(M[3]) - 0.5 * ends(M[1]);
@@ -109,7 +109,7 @@ double linear_plates::heat_flux() const {
   const double heat =
       ((ends(M[3]) - 0.5 * ends(M[1])) * rho + (ends(M[5]) - ends(M[3]) + 1.25 * ends(M[1])) * tau)[0] +
       emitted * (ends(V[3]) - 0.5 * ends(V[1]))[0] + 0.5 * (ends(V[5]) - ends(V[3]) + 1.25 * ends(V[1]))[0];
-  // Without collisions ⟨c (c² − 1/2) g + c h⟩ = 1/√π: half Maxwellians of ±1/2 and equal mass fluxes.
+  // Without collisions ⟨c (c² − 1/2) g + c h⟩ = 1/√π, from half Maxwellians of ±1/2 with equal mass fluxes.
   return heat * std::sqrt(std::numbers::pi);
 }
 

@@ -1,5 +1,5 @@
-// The linear solver of these tests, against published values and limits; it supplies references of
-// quantities.
+// The linear solver of these tests agrees with published values and limits. It supplies
+// references of quantities.
 #include "linear_plates.hpp"
 
 #include <algorithm>
@@ -26,13 +26,13 @@ double heat_flux(double delta) {
   return extrapolated(100, [=](int cells) { return linear_plates(delta, cells).heat_flux(); });
 }
 
-/// Kramers' problem by two plates: the slip, and the defect of velocity at a distance from one of them.
+/// Kramers' problem by two plates: the slip, and the velocity defect at a distance from one of them.
 struct kramers_problem {
   explicit kramers_problem(int cells) : flow(delta, cells), velocity(flow.velocity()) {
     slip = 0.5 * (std::sqrt(std::numbers::pi) / flow.shear_stress() - delta);
   }
 
-  /// Cubic interpolation between nodes, except at the plate.
+  /// Returns the defect by cubic interpolation between nodes, except at the plate.
   double defect(double distance) const {
     const Eigen::VectorXd x = delta * flow.nodes();
     const auto next = std::lower_bound(x.begin(), x.end(), distance) - x.begin();
@@ -63,16 +63,17 @@ TEST(linear_plates, has_the_published_stress) {
   for (const auto& printed : couette.references) {
     const double delta = std::stod(printed.at.at("delta"));
     if (delta > 20.0) continue;  // needs more cells
-    // Half a unit of the fourth digit.
+    // The tolerance is half a unit of the fourth digit, and the printed digits.
     EXPECT_NEAR(shear_stress(delta), printed.value, 6e-5) << delta;
   }
 }
 
 TEST(linear_plates, has_the_limits_of_the_heat_flux) {
-  // First collisions at δ -> 0 change the flux by a multiple of δ; 1e-7 leaves rounding and quadrature.
+  // First collisions at δ -> 0 change the flux by a multiple of δ. At 1e-7 only rounding
+  // and quadrature remain.
   EXPECT_NEAR(heat_flux(1e-7), 1.0, 1e-6);
-  // Fourier's law q = (5/4) δ (−dτ/dx) p v₀/δ² with jumps of temperature at both plates: 1/flux is linear in
-  // δ with slope 4/(5 √π), once the layers are thin.
+  // Fourier's law is q = (5/4) δ (−dτ/dx) p v₀/δ² with jumps of temperature at both plates. If the layers are
+  // thin, 1/flux is linear in δ with slope 4/(5 √π).
   const double slope = (1.0 / heat_flux(24.0) - 1.0 / heat_flux(20.0)) / 4.0;
   EXPECT_NEAR(slope, 4.0 / (5.0 * std::sqrt(std::numbers::pi)), 1e-4);
 }
@@ -94,10 +95,10 @@ TEST(linear_plates, has_the_published_flow_rates) {
     const double delta = std::stod(reference.at.at("delta"));
     const double value =
         extrapolated(400, [=](int cells) { return linear_plates(delta, cells).flow_rate(); });
-    // A unit of the last digit, that for δ = 10 included.
+    // The tolerance is a unit of the last digit, also for δ = 10.
     EXPECT_NEAR(value, reference.value, 1e-6 * reference.value) << delta;
   }
-  // The limit of thick gases is that of Stokes' flow.
+  // A thick gas approaches Stokes' flow.
   EXPECT_NEAR(linear_plates(1e4, 100).flow_rate(), 1e4 / 6.0, 2.0);
 }
 
@@ -107,7 +108,7 @@ TEST(linear_plates, has_the_slip_and_the_layer_of_kramers) {
     const double value = at == reference.at.end()
                              ? extrapolated(300, [](int cells) { return kramers_problem(cells).slip; })
                              : layer(std::stod(at->second));
-    // A unit of the fifth decimal, which is the last one that is printed.
+    // The tolerance is a unit of the fifth decimal, the last printed one.
     EXPECT_NEAR(value, reference.value, 1e-5) << (at == reference.at.end() ? "slip" : at->second);
   }
 }

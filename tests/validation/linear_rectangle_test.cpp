@@ -1,5 +1,5 @@
-// The linear solvers of a duct and of a square, against exact values and limits; they supply references of
-// quantities.
+// The linear solvers of a duct and of a square agree with exact values and limits. They supply
+// references of quantities.
 #include "linear_duct.hpp"
 #include "linear_square.hpp"
 
@@ -24,14 +24,14 @@ using validation_test::linear_duct;
 using validation_test::linear_square;
 using validation_test::side;
 
-/// Returns the limit of values f(n) with an error of fourth order in 1/n.
+/// Returns the limit of values f(n), for an error of fourth order in 1/n.
 template <class Function>
 double limit(int coarse, int fine, const Function& f) {
   const double ratio = std::pow(static_cast<double>(fine) / coarse, 4);
   return (ratio * f(fine) - f(coarse)) / (ratio - 1.0);
 }
 
-/// The mean of 1/distance of two points in a rectangle with the sides a and 1.
+/// Returns the mean of 1/distance of two points in a rectangle with the sides a and 1.
 double inverse_distance(double a) {
   const double diagonal = std::hypot(a, 1.0);
   return (2.0 * (a * a * std::asinh(1.0 / a) + a * std::asinh(a)) +
@@ -39,7 +39,7 @@ double inverse_distance(double a) {
          (a * a);
 }
 
-/// The mean of u in a viscous fluid in a square duct, −Δu = 1.
+/// Returns the mean of u in a viscous fluid in a square duct, −Δu = 1.
 double viscous_flow() {
   double sum = 0.0;
   for (int k = 1; k < 200; k += 2) {
@@ -49,16 +49,17 @@ double viscous_flow() {
   return 1.0 / 12.0 - 16.0 * sum;
 }
 
-/// A point of a side with its normal into the gas and its share of the length.
+/// A point of a side, with its normal into the gas and its share of the length.
 struct place {
   double x, y, normal_x, normal_y, length;
 };
 
-/// n points on each side of the unit square, those of the top first, at equal distances h in log(x/(1 − x)).
-/// Near a corner the kernel of two sides depends on the ratio of their distances from it, and the density on
-/// a broken power of that distance: both are analytic in the logarithm, and the error falls like exp(−π²/h).
+/// Returns n points on each side of the unit square, those of the top first, at equal distances h in log(x/(1
+/// − x)). Near a corner the kernel of two sides depends on the ratio of their distances from it. The density
+/// depends on a fractional power of that distance. Both are analytic in the logarithm, so the error falls
+/// like exp(−π²/h).
 std::vector<place> places_of_square(int n) {
-  constexpr double furthest = 20.0;  // exp(−20) of each side is left out
+  constexpr double furthest = 20.0;  // drops exp(−20) of each side
   std::vector<place> places;
   const std::array<place, 4> sides = {{{0, 1, 0, -1, 0}, {0, 0, 0, 1, 0}, {0, 0, 1, 0, 0}, {1, 0, -1, 0, 0}}};
   for (place one : sides)
@@ -71,9 +72,9 @@ std::vector<place> places_of_square(int n) {
   return places;
 }
 
-/// The shear force on the lid of a square of free molecules, from n points on each side: the density ρ of the
-/// molecules that leave a side is ½ ∫ ρ cos θ cos θ'/s over the other sides, and (2/√π) ∫ e_x cos θ cos θ'/s
-/// of the lid.
+/// Returns the shear force on the lid of a square of free molecules, from n points on each side. The density
+/// ρ of the molecules that leave a side is ½ ∫ ρ cos θ cos θ'/s over the other sides, and (2/√π) ∫ e_x cos θ
+/// cos θ'/s of the lid.
 double free_molecular_drag(int n) {
   const std::vector<place> places = places_of_square(n);
   const auto size = static_cast<Eigen::Index>(places.size());
@@ -89,7 +90,8 @@ double free_molecular_drag(int n) {
     }
   const double root = std::sqrt(std::numbers::pi);
   const Eigen::VectorXd thrown = 2.0 / root * along_x.leftCols(n).rowwise().sum();
-  // Determined but for a constant; reflections keep it odd in x − 1/2, and lessen such a density each time.
+  // The density is determined up to a constant. Reflections keep it odd in x − 1/2, and each reduces
+  // such a density.
   Eigen::VectorXd density = thrown;
   for (int iteration = 0; iteration < 60; ++iteration) density = thrown + 0.5 * kernel * density;
   const Eigen::VectorXd force = along_x.topRows(n) * density;
@@ -103,7 +105,7 @@ std::string setting(const reference_value& value, const std::string& name, const
   return found == value.at.end() ? otherwise : found->second;
 }
 
-/// The value of a quantity by the linear solvers, extrapolated from two numbers of polynomials.
+/// Returns the value of a quantity by the linear solvers, extrapolated from two numbers of polynomials.
 double linear_value(const std::string& quantity, const reference_value& of, int coarse, int fine) {
   const double delta = std::stod(setting(of, "delta", "1"));
   const double aspect = std::stod(setting(of, "aspect", "1"));
@@ -124,7 +126,7 @@ double linear_value(const std::string& quantity, const reference_value& of, int 
 TEST(linear_duct, has_the_flow_of_free_molecules) {
   for (const double aspect : {1.0, 3.0}) {
     const linear_duct duct(0.0, aspect, 4);
-    // The solution is one integral, by Gauss points to rounding and 100 speeds to 1e-10.
+    // The solution is one integral. Gauss points compute it to rounding, 100 speeds to 1e-10.
     const double flow = inverse_distance(aspect) * aspect / (2.0 * std::sqrt(std::numbers::pi));
     EXPECT_NEAR(duct.flow(), flow, 1e-9) << aspect;
     EXPECT_NEAR(duct.creep(), 0.5 * flow, 1e-9) << aspect;  // of free molecules
@@ -139,7 +141,7 @@ TEST(linear_duct, has_the_flow_of_a_viscous_gas) {
 }
 
 TEST(linear_duct, approaches_plates_when_it_is_wide) {
-  // The ends lessen the flow by a constant over the width.
+  // The ends reduce the flow by a constant over the width.
   const auto flow = [](double aspect) { return linear_duct(1.0, aspect, 14).flow(); };
   EXPECT_NEAR(2.0 * flow(12.0) - flow(6.0), 1.538678, 5e-3);
 }
@@ -154,9 +156,10 @@ TEST(linear_square, has_the_view_factors_of_free_molecules) {
 
 TEST(linear_square, has_the_drag_of_free_molecules) {
   const double drag = free_molecular_drag(80);
-  // h = 1/2 leaves 8e-9; ends of length 2e-9 are left out.
+  // h = 1/2 gives an error of 8e-9. Ends of length 2e-9 are dropped.
   EXPECT_NEAR(free_molecular_drag(96), drag, 2e-8);
-  // The density near a corner is no polynomial: 6 and 10 are 2e-5 and 3e-6 off, extrapolated 5e-8.
+  // The density near a corner is no polynomial. The errors with 6 and 10 are 2e-5 and
+  // 3e-6, extrapolated 5e-8.
   EXPECT_NEAR(limit(6, 10, [](int n) { return linear_square(0.0, n).drag(); }), drag, 5e-7);
 }
 
@@ -169,7 +172,7 @@ TEST(linear_square, loses_no_heat) {
 }
 
 TEST(linear_square, converges_with_fourth_order) {
-  // 1.125090: 12 and 16 polynomials, extrapolated.
+  // The reference 1.125090 is extrapolated from 12 and 16 polynomials.
   const double coarse = linear_square(1.0, 4).drag() - 1.125090,
                fine = linear_square(1.0, 8).drag() - 1.125090;
   EXPECT_NEAR(std::log2(coarse / fine), 4.4, 0.5);
@@ -177,14 +180,14 @@ TEST(linear_square, converges_with_fourth_order) {
 
 TEST(linear_square, is_the_source_of_a_value_of_the_cavity) {
   const reference_value& one = find_quantity("cavity").references.at(1);
-  // Half of the last digit, and 4e-6 of the extrapolation.
+  // The tolerance covers half of the last digit, and 4e-6 of the extrapolation.
   EXPECT_NEAR(linear_value("cavity", one, 6, 10), one.value, 9e-6);
 }
 
 TEST(linear_duct, is_the_source_of_values_of_duct) {
   for (const auto& reference : find_quantity("duct").references) {
     if (setting(reference, "delta", "1") != "1") continue;
-    // Half of the last digit, and 2e-6 of the extrapolation.
+    // The tolerance covers half of the last digit, and 2e-6 of the extrapolation.
     EXPECT_NEAR(linear_value("duct", reference, 8, 12), reference.value, 2.5e-6);
   }
 }
@@ -195,8 +198,8 @@ TEST(SLOW_linear_duct, is_the_source_of_all_values) {
 }
 
 TEST(SLOW_linear_square, is_the_source_of_all_values) {
-  // The order is between 4 and 5, which leaves 1e-5 at delta = 10, and 0.0001 stands for free molecules, 3e-5
-  // off.
+  // The order is between 4 and 5, so the error is 1e-5 at delta = 10. The value 0.0001 stands for free
+  // molecules, with an error of 3e-5.
   for (const std::string quantity : {"cavity", "enclosure"})
     for (const auto& reference : find_quantity(quantity).references)
       EXPECT_NEAR(linear_value(quantity, reference, 12, 16), reference.value, 4e-5) << quantity;

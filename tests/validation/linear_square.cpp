@@ -23,7 +23,7 @@ const std::array<velocity_function, 4> invariants = {
       return part{std::sqrt(2.0 / 3.0) * (x * x + y * y - 1.0), std::sqrt(1.0 / 3.0)};
     }};
 
-/// Emission of a moving side and of a hot one, 2 c_x and c² − 2, which carries no mass through the side.
+/// Emission of a moving side, 2 c_x, and of a hot one, c² − 2. The latter carries no mass through the side.
 const velocity_function moving = [](double x, double) { return part{2.0 * x, 0.0}; };
 const velocity_function hot = [](double x, double y) {
   return part{x * x + y * y - 1.5, 1.0 / std::numbers::sqrt2};
@@ -40,7 +40,7 @@ class system_of_square {
       received.middleRows(wall(k), n) = per_density * arriving_at(sides[k], invariants[0]);
     }
     MatrixXd system = MatrixXd::Identity(size, size) - received;
-    // A constant density solves it; the mean density is made 0, which changes nothing else.
+    // A constant density solves the system. The mean density is set to 0, which changes nothing else.
     VectorXd constant = VectorXd::Zero(size);
     constant[field(0)] = 1.0;
     for (std::size_t k = 0; k < 4; ++k) constant[wall(k)] = 1.0;
@@ -48,7 +48,7 @@ class system_of_square {
     solver_.compute(system);
   }
 
-  /// Returns the moments and densities for what the top emits.
+  /// Returns the moments and densities for an emission of the top.
   VectorXd solve(const velocity_function& emitted) const {
     VectorXd source(inside_ + 4 * n_);
     for (std::size_t k = 0; k < 4; ++k) {
@@ -66,13 +66,13 @@ class system_of_square {
   }
 
  private:
-  /// Over the flux ⟨c_n⟩ of density 1 that leaves a side.
+  /// One over the flux ⟨c_n⟩ of density 1 that leaves a side.
   static constexpr double per_density = 2.0 / std::numbers::inv_sqrtpi;
 
   Eigen::Index field(std::size_t k) const { return static_cast<Eigen::Index>(k) * n_ * n_; }
   Eigen::Index wall(std::size_t k) const { return inside_ + static_cast<Eigen::Index>(k) * n_; }
 
-  /// Returns the moment of f inside, of every unknown.
+  /// Returns the moment of f inside, for every unknown.
   MatrixXd arriving_inside(const velocity_function& f) const {
     MatrixXd out(n_ * n_, inside_ + 4 * n_);
     for (std::size_t k = 0; k < 4; ++k) {
@@ -82,7 +82,7 @@ class system_of_square {
     return out;
   }
 
-  /// Returns the flux of f through a side, of every unknown.
+  /// Returns the flux of f through a side, for every unknown.
   MatrixXd arriving_at(side to, const velocity_function& f) const {
     MatrixXd out(n_, inside_ + 4 * n_);
     for (std::size_t k = 0; k < 4; ++k) {

@@ -8,19 +8,20 @@ namespace validation_test {
 
 /// The steady linearized BGK equation in the unit square,
 ///     c·∇φ = δ (ρ + 2 c·u + (c² − 3/2) τ − φ),   c = v/v₀ in three dimensions, δ = pL/(μ v₀),
-/// with diffuse sides; the top moves along itself or is hotter than the others. Unknown are the
-/// moments ρ, u and τ inside and the density of the molecules that leave each side, by Galerkin's method. At
-/// the ends of the top the moments depend on the direction from there, so that their error is of second order
-/// in 1/n, and that of drag and heat, which are quadratic in it, of about fourth.
+/// with diffuse sides. The top moves along itself or is hotter than the others. Galerkin's method solves for
+/// the moments ρ, u and τ inside, and for the density of the molecules that leave each side. At the ends of
+/// the top the moments depend on the direction from there, so their error is of second order in 1/n. Drag and
+/// heat are quadratic in it, so their error is of about fourth order.
 class linear_square {
  public:
-  /// n polynomials in each direction.
+  /// `n` is the number of polynomials in each direction.
   linear_square(double delta, int n);
 
-  /// Returns the shear force on the top that moves with U, over ρ U √(RT/(2π)), with which molecules leave
-  /// it.
+  /// Returns the shear force on the top that moves with U, over ρ U √(RT/(2π)), the momentum with which
+  /// molecules leave it.
   double drag() const { return drag_; }
-  /// Returns the heat that a side receives from the hot top, over that with which molecules leave the top.
+  /// Returns the heat that a side receives from the hot top, over the heat with which molecules
+  /// leave the top.
   double heat(side of) const { return heat_[static_cast<std::size_t>(of)]; }
 
  private:

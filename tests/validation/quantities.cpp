@@ -1,4 +1,4 @@
-// Published values of gas flows, which runs of the program's own cases meet, and how a comparison fails.
+// Runs of the program's own cases reproduce published values of gas flows. Comparisons can also fail.
 #include <apsis/core/errors.hpp>
 #include <apsis/output/picture.hpp>
 
@@ -40,7 +40,7 @@ std::vector<one_value> all_references() {
   return all;
 }
 
-/// Lists of tests show it.
+/// Lists of tests show this text.
 void PrintTo(const one_value& one, std::ostream* out) {
   *out << one.quantity->name;
   for (const auto& [parameter, value] : one.reference->at) *out << ", " << parameter << " = " << value;
@@ -76,7 +76,7 @@ TEST(quantities, meet_some_reference_values) {
 }
 
 TEST(quantities, between_plates_have_five_digits) {
-  // 2.768644 and 1.538678 are printed with seven digits; 0.1473123 and 0.640853 are of the linear solver.
+  // 2.768644 and 1.538678 are printed with seven digits. 0.1473123 and 0.640853 are from the linear solver.
   // Terms of second order in the temperatures are 1e-5.
   for (const auto& [name, delta, exact] :
        {std::tuple<std::string, std::string, double>{"poiseuille", "10", 2.768644},
@@ -92,18 +92,18 @@ TEST(quantities, are_not_met_with_a_velocity_grid_that_is_too_coarse) {
   const double coarse = compute_quantity(couette, {"delta=5", "velocity.points=12"});
   const reference_value printed{{{"delta", "5"}}, 0.2522};
   EXPECT_FALSE((compared_value{&couette, &printed, coarse, 0.0}.holds())) << coarse;
-  EXPECT_NEAR(coarse, 0.2522, 0.02);  // the same quantity nevertheless
+  EXPECT_NEAR(coarse, 0.2522, 0.02);  // still the same quantity
 }
 
 TEST(quantities, depend_on_their_parameters_as_the_limits_say) {
-  // Navier–Stokes equations with the slip 1.016191 of the BGK equation: √π/(δ + 2·1.016191) for large δ;
-  // the difference is of the order exp(−δ/2).
+  // The Navier–Stokes equations with the slip 1.016191 of the BGK equation give √π/(δ + 2·1.016191) for large
+  // δ. The difference is of order exp(−δ/2).
   const double stress = compute_quantity(find_quantity("couette"), {"delta=14"});
   EXPECT_NEAR(stress, std::sqrt(3.14159265358979) / (14.0 + 2.032382), 1e-3 * stress);
 }
 
 TEST(quantities, approach_the_slip_and_the_layer_of_kramers_with_second_order) {
-  // With 35 of 560 cells the error of the slip, 8e-6, is 16² times as large and more.
+  // With 35 instead of 560 cells the error of the slip, 8e-6, is at least 16² times as large.
   const quantity_entry& kramers = find_quantity("kramers");
   const std::string coarse = "space.cells=35";
   EXPECT_NEAR(compute_quantity(kramers, {coarse}), 1.01619, 8e-3);
@@ -112,8 +112,8 @@ TEST(quantities, approach_the_slip_and_the_layer_of_kramers_with_second_order) {
 }
 
 TEST(quantities, are_near_the_linear_solver_in_the_plane_on_coarse_meshes) {
-  // A third of the cells of the comparison in each direction, or a half: with second order and x log x at
-  // walls the errors are some times larger than those of docs/validation.md.
+  // The meshes have a third or a half of the cells of the comparison in each direction. With second order,
+  // and x log x at walls, errors are some times larger than those of docs/validation.md.
   const std::vector<std::string> coarse = {"delta=1", "space.cells=[6,6]", "velocity.points=[10,10,10]"};
   const auto with = [&](std::vector<std::string> more) {
     more.insert(more.end(), coarse.begin(), coarse.end());
@@ -131,12 +131,12 @@ TEST(quantities, find_all_heat_of_a_hot_wall_again) {
     return compute_quantity(find_quantity("enclosure"),
                             {"wall=" + wall, "space.cells=[6,12]", "velocity.points=[12,14]"});
   };
-  // The right side has the heat of the left one. The residual is 1e-9 of that of the start.
+  // The right side receives as much heat as the left one. The residual is 1e-9 of that of the start.
   EXPECT_NEAR(heat("top") + heat("bottom") + 2.0 * heat("left"), 1.0, 1e-7);
 }
 
 TEST(quantities, average_cells_with_fourth_order) {
-  // The mean of x² y² over [0, 1]² is 1/9; second differences of quadratics are exact.
+  // The mean of x² y² over [0, 1]² is 1/9. Second differences of quadratics are exact.
   std::vector<double> values;
   for (int i = 0; i < 4; ++i)
     for (int j = 0; j < 5; ++j) values.push_back(std::pow((i + 0.5) / 4.0, 2) * std::pow((j + 0.5) / 5.0, 2));
@@ -157,7 +157,7 @@ TEST(quantities, have_the_states_of_the_exact_riemann_problem) {
 }
 
 TEST(quantities, find_the_plateaus_of_a_gas_that_nobody_has_printed) {
-  // A gas of six degrees of freedom. With a quarter of the cells the density oscillates by some 1e-3.
+  // The gas has six degrees of freedom. With a quarter of the cells the density oscillates by some 1e-3.
   const test_support::shock_tube tube(8.0 / 6.0, 1.0, 1.0, 0.125, 0.1);
   const auto computed = [](const std::string& value) {
     return compute_quantity(find_quantity("riemann"),
@@ -170,7 +170,8 @@ TEST(quantities, find_the_plateaus_of_a_gas_that_nobody_has_printed) {
 
 TEST(quantities, have_the_density_behind_a_shock_of_any_mach_number) {
   for (const std::string model : {"bgk", "shakhov", "es-bgk"}) {
-    // Rankine–Hugoniot: 4 · 9/(9 + 3). The plateau is flat to 1e-4; half the cells leave 1e-3.
+    // Rankine–Hugoniot gives 4 · 9/(9 + 3). The plateau is flat to 1e-4. With half the cells the
+    // error is 1e-3.
     const double ratio =
         compute_quantity(find_quantity("shock"), {"mach=3", "model=" + model, "space.cells=100"});
     EXPECT_NEAR(ratio, 3.0, 3e-3) << model;
@@ -181,10 +182,10 @@ TEST(quantities, have_constant_fluxes_in_a_shock_only_between_states_that_belong
   const quantity_entry& shock = find_quantity("shock");
   const std::vector<std::string> coarse = {"mach=3", "value=energy", "space.cells=150"};
   const double steady = compute_quantity(shock, coarse);
-  EXPECT_NEAR(steady, 1.0, 4e-3);  // third order or better: less than 2³ times the tolerance with 300 cells
+  EXPECT_NEAR(steady, 1.0, 4e-3);  // third order or better: below 2³ times the tolerance with 300 cells
   EXPECT_LE(steady, 1.0);
   std::vector<std::string> wrong = coarse;
-  wrong.push_back("boundary.right.T=4.5");  // for 3.667: the shock moves
+  wrong.push_back("boundary.right.T=4.5");  // instead of 3.667, so the shock moves
   EXPECT_LT(compute_quantity(shock, wrong), 0.97);
 }
 
@@ -212,14 +213,14 @@ TEST(quantities, refuse_what_they_do_not_know) {
     bad_input::expect_refused({
         {[&] { compute("kramers", {bad}); }, {"is not a number from 0 to 5"}},
     });
-  // The nearest end of the range.
+  // The message suggests the nearest end of the range.
   bad_input::expect_refused({
       {[&] { compute("sphere", {"cells=2"}); }, {"write for example cells=4"}},
       {[&] { compute("sphere", {"cells=100"}); }, {"write for example cells=64"}},
       {[&] { compute("riemann", {"degrees_of_freedom=0.5"}); }, {"is not a number from 1 to 100"}},
       {[&] { compute("riemann", {"initial.u=-3", "space.cells=40", "velocity.max=10"}); },
        {"give more space.cells"}},
-      // nothing moves to the right
+      // Nothing moves to the right.
       {[&] { compute("riemann", {"space.cells=20"}); }, {"give more space.cells"}},
   });
   for (const char* bad : {"mach=1", "mach=11", "mach=-2", "mach=nan", "mach=two"})
@@ -304,7 +305,7 @@ TEST(compared_value, is_drawn_at_distance_0_too) {
   for (const auto& one : kramers.references) values.push_back({&kramers, &one, one.value, 1.0});
   const auto picture = apsis::validation::quantity_picture(kramers, values);
   ASSERT_EQ(picture.panels.size(), 2U);
-  EXPECT_FALSE(picture.panels[0].log_x);  // where 0 would be omitted
+  EXPECT_FALSE(picture.panels[0].log_x);  // a logarithmic axis would omit 0
 }
 
 }  // namespace quantities_test

@@ -19,7 +19,7 @@ struct quadrature {
   VectorXd at, weight;
 };
 
-/// Gauss–Legendre points of [0, 1], the eigenvalues of the Jacobi matrix.
+/// Returns the Gauss–Legendre points of [0, 1], the eigenvalues of the Jacobi matrix.
 quadrature gauss(int points) {
   MatrixXd jacobi = MatrixXd::Zero(points, points);
   for (int k = 1; k < points; ++k)
@@ -36,7 +36,7 @@ bool upper(side s) {
   return s == side::right || s == side::top;
 }
 
-/// The direction into the gas along the axis of a side.
+/// Returns the direction into the gas along the axis of a side.
 double inward(side s) {
   return upper(s) ? -1.0 : 1.0;
 }
@@ -80,7 +80,7 @@ void rectangle_flights::set_differences() {
   const double diagonal = std::atan2(height_, width_);
   Eigen::Index q = 0;
   for (int triangle = 0; triangle < 8; ++triangle) {
-    // Angles from the axis x, in the first quadrant, up to and beyond the diagonal.
+    // Angles are from the axis x in the first quadrant, up to the diagonal or beyond it.
     const bool flat = triangle % 2 == 0;
     const double begin = flat ? 0.0 : diagonal, span = flat ? diagonal : 0.5 * std::numbers::pi - diagonal;
     const double sign_x = triangle % 4 < 2 ? 1.0 : -1.0, sign_y = triangle < 4 ? 1.0 : -1.0;
@@ -158,7 +158,7 @@ MatrixXd rectangle_flights::inside(const velocity_function& received,
 MatrixXd rectangle_flights::from_side(side from, const velocity_function& received,
                                       const velocity_function& started) const {
   const int normal = axis_of(from), along = 1 - normal;
-  const ArrayXd leaving = (inward(from) * direction_.col(normal).array()).max(0.0);  // cos θ, 0 backwards
+  const ArrayXd leaving = (inward(from) * direction_.col(normal).array()).max(0.0);  // cos θ, or 0 backwards
   const VectorXd weight = leaving * weight_.array() * kernel(kept_, direction_, 1, received, started).array();
   const ArrayXd away = distance_.array() * leaving;
   const VectorXd place = upper(from) ? (length(normal) - away).eval() : away;
@@ -169,7 +169,7 @@ MatrixXd rectangle_flights::from_side(side from, const velocity_function& receiv
 
 MatrixXd rectangle_flights::to_side(side to, const velocity_function& received,
                                     const velocity_function& started) const {
-  // The same flights backwards.
+  // The flights are the same, backwards.
   return from_side(to, reversed(started), reversed(received)).transpose();
 }
 
@@ -177,7 +177,7 @@ MatrixXd rectangle_flights::between(side to, side from, const velocity_function&
                                     const velocity_function& started) const {
   if (to == from) return MatrixXd::Zero(n_, n_);
   if (axis_of(to) == axis_of(from)) return to_opposite(from, received, started);
-  // Points of both sides at a common corner: their differences are those of a quadrant.
+  // The points of both sides have a common corner. Their differences are those of a quadrant.
   const int normal = axis_of(from), along = axis_of(to);
   const ArrayXd leaving = (inward(from) * direction_.col(normal).array()).max(0.0),
                 arriving = (-inward(to) * direction_.col(along).array()).max(0.0);

@@ -1,4 +1,4 @@
-// Sets of velocities: what a row of components is transported with, and what is refused.
+// Sets of velocities: the velocities of a row of components, and refused sets.
 #include <apsis/velocity/velocity_set.hpp>
 
 #include <apsis/core/errors.hpp>

@@ -1,4 +1,4 @@
-// Observed orders on a user-defined problem type.
+// Observed orders for a user-defined problem type.
 #include <apsis/verify/observed_order.hpp>
 
 #include <apsis/integrate/relaxation_problem.hpp>
@@ -14,7 +14,7 @@ using namespace apsis;
 
 namespace {
 
-// u1' = u2, u2' = (sin u1 − u2)/ε: the quickstart problem.
+// The quickstart problem, u1' = u2, u2' = (sin u1 − u2)/ε.
 auto problem_with(double epsilon) {
   using state = std::vector<double>;
   return relaxation_problem(
@@ -36,8 +36,7 @@ TEST(observed_order, is_that_of_the_method_at_both_ends_of_epsilon) {
           observed_orders(find_method(name), problem, {2.0, 0.0}, 0.0, 1.0, {64, 128, 192, 384}, l1);
       ASSERT_EQ(rows.size(), 3U);
       EXPECT_TRUE(std::isnan(rows[0].order));
-      // Differences of runs whose steps have the ratios 2, 1.5 and 2 scale as powers only between
-      // equal ratios.
+      // Differences of runs with the step ratios 2, 1.5 and 2 scale as powers only between equal ratios.
       EXPECT_NEAR(std::log(rows[0].error / rows[2].error) / std::log(3.0), order, 0.1)
           << name << " " << epsilon;
     }

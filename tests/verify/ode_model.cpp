@@ -1,5 +1,5 @@
-// The ODE model of the paper: the reference against an independent integrator, and the data on the slow
-// manifold.
+// The ODE model of the paper: the reference agrees with an independent integrator, and the data lie on the
+// slow manifold.
 #include <apsis/verify/ode_model.hpp>
 
 #include <cmath>
@@ -15,7 +15,7 @@ state slope(const state& u, long double epsilon) {
   return {u[1], (1 + u[0] * u[0]) * (std::sin(u[0]) - u[1]) / epsilon};
 }
 
-/// The classical method of order four.
+/// Takes steps of the classical method of order four.
 state runge_kutta(state u, long double epsilon, long steps) {
   const long double dt = 1.0L / static_cast<long double>(steps);
   const auto moved = [](const state& v, long double by, const state& k) -> state {
@@ -40,7 +40,7 @@ TEST(ode_model, the_reference_is_the_solution_for_moderate_epsilon) {
 }
 
 TEST(ode_model, the_reference_tends_to_the_solution_of_the_limit_as_epsilon) {
-  // u' = sin u from 2: tan(u/2) = tan(1) e^t.
+  // u' = sin u from 2 has the solution tan(u/2) = tan(1) e^t.
   const long double u = 2 * std::atan(std::tan(1.0L) * std::exp(1.0L));
   const state limit{u, std::sin(u)};
   for (const auto data : {ode_data::inconsistent, ode_data::consistent}) {
@@ -52,7 +52,7 @@ TEST(ode_model, the_reference_tends_to_the_solution_of_the_limit_as_epsilon) {
 }
 
 TEST(ode_model, consistent_data_lie_on_the_slow_manifold) {
-  // There u2' = E'(u1) u1' + O(ε); elsewhere u2' is of size 1/ε.
+  // On the slow manifold u2' = E'(u1) u1' + O(ε). Elsewhere u2' is of size 1/ε.
   const auto defect = [](ode_data data, long double epsilon) {
     const state u = ode_initial(data, epsilon);
     return std::abs(slope(u, epsilon)[1] - std::cos(u[0]) * u[1]);

@@ -1,4 +1,4 @@
-// Problems of the literature of stiff equations: digits of their solutions at a given tolerance.
+// Stiff problems of the literature: digits of their solutions at a given tolerance.
 #include <apsis/integrate/autodiff.hpp>
 #include <apsis/verify/stiff_problem.hpp>
 
@@ -33,7 +33,7 @@ std::vector<std::string> names(bool slow) {
   return found;
 }
 
-/// Solves a problem to rtol = 10^−digits; records digits, steps and calls of G (--gtest_output=json:FILE).
+/// Solves a problem to rtol = 10^−digits. Records digits, steps and calls of G (--gtest_output=json:FILE).
 void require_digits(const stiff_problem_entry& problem, const std::string& method, int digits) {
   const auto found = solve_stiff_problem(problem, method, std::pow(10.0, -digits));
   EXPECT_GE(found.digits, digits - 1) << method;
@@ -67,8 +67,8 @@ INSTANTIATE_TEST_SUITE_P(SLOW_stiff_problems, every_slow_stiff_problem,
                          });
 
 TEST(SLOW_stiff_problems, errors_of_lasting_oscillations_add_up) {
-  // The ring modulator takes 30 000 and 67 000 steps, and its fast oscillations do not damp their errors: at
-  // 1e-6 a digit more than elsewhere is lost.
+  // The ring modulator takes 30 000 and 67 000 steps. Its fast oscillations do not damp their errors. At 1e-6
+  // it loses a digit more than other problems.
   const auto& problem = find_stiff_problem("ring-modulator");
   require_digits(problem, "extrapolated-euler-6", 4);
   EXPECT_GE(solve_stiff_problem(problem, "extrapolated-euler-6", 1e-6).digits, 4);
@@ -89,7 +89,7 @@ TEST(stiff_problems, have_what_an_entry_must_have) {
 }
 
 TEST(stiff_problems, derivatives_stay_inside_their_patterns) {
-  // Products with single unit vectors against the pattern, at the start and off it.
+  // Products with single unit vectors must stay in the pattern, at the start and off it.
   for (const auto* one : stiff_problem_entries()) {
     if (one->pattern == nullptr) continue;
     const auto pattern = one->pattern();
@@ -122,7 +122,7 @@ TEST(stiff_problems, digits_are_those_of_the_worst_unknown) {
 }
 
 TEST(stiff_problems, e5_and_robertson_conserve_their_sums) {
-  // y₀ + y₁ + y₂ = 1, and y₁ − y₂ − y₃ = 0 of numbers up to 1.2e-10.
+  // The sums are y₀ + y₁ + y₂ = 1, and y₁ − y₂ − y₃ = 0 of numbers up to 1.2e-10.
   const auto robertson = solve_stiff_problem(find_stiff_problem("robertson"), "imdrk-9-5-accurate", 1e-6).u;
   EXPECT_NEAR(robertson[0] + robertson[1] + robertson[2], 1, 1e-13);
   const auto e5 = solve_stiff_problem(find_stiff_problem("e5"), "imdrk-9-5-accurate", 1e-6).u;
@@ -130,8 +130,8 @@ TEST(stiff_problems, e5_and_robertson_conserve_their_sums) {
 }
 
 TEST(stiff_problems, stages_without_second_derivatives_share_one_of_their_step) {
-  // Two unknowns: a derivative has two products. Every attempt of a step takes one, and more where the
-  // oscillator turns.
+  // With two unknowns a derivative has two products. Every attempt of a step computes one derivative, and
+  // more where the oscillator turns.
   const auto found = solve_stiff_problem(find_stiff_problem("van-der-pol"), "ark-437", 1e-6);
   const long attempts = found.steps + found.rejected;
   EXPECT_GE(found.products, 2 * found.steps);

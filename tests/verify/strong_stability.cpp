@@ -1,4 +1,4 @@
-// The largest step that preserves a property: the promise Δt ≤ r Δt_FE, and its sharpness.
+// The largest step that preserves a property: the promise Δt ≤ r Δt_FE and its sharpness.
 #include <apsis/verify/strong_stability.hpp>
 
 #include <apsis/integrate/newton_problem.hpp>
@@ -16,7 +16,7 @@ namespace {
 using row = std::vector<double>;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// Methods for T, and the r they promise.
+/// Returns the methods for T with the r that they promise.
 std::vector<std::pair<std::string, double>> promising_methods() {
   std::vector<std::pair<std::string, double>> all;
   for (const auto& name : method_names()) {
@@ -27,7 +27,7 @@ std::vector<std::pair<std::string, double>> promising_methods() {
   return all;
 }
 
-/// The bisection is accurate to 1e-4 of the step; the promise must hold to that accuracy.
+/// The bisection is accurate to 1e-4 of the step. The promise must hold to that accuracy.
 constexpr double bisection = 2e-4;
 
 step_limit words(const std::string& name, double epsilon, double lowest = 0.0625) {
@@ -41,7 +41,7 @@ step_limit words(const std::string& name, double epsilon, double lowest = 0.0625
 }
 
 TEST(strong_stability, the_promise_is_sharp_for_operators_that_change_from_stage_to_stage) {
-  // With collisions of moderate strength contributions of different stages still mix; they separate as ε → 0.
+  // With moderate collisions contributions of different stages still mix. They separate as ε → 0.
   for (const auto& [name, r] : promising_methods()) {
     const auto kind = find_method(name).kind;
     double sharpest = infinity;
@@ -49,7 +49,7 @@ TEST(strong_stability, the_promise_is_sharp_for_operators_that_change_from_stage
       if (kind == method_kind::explicit_only && epsilon < infinity) continue;
       const auto limit = words(name, epsilon);
       EXPECT_GE(limit.kept, r * (1 - bisection)) << name << " " << epsilon;
-      // An exact collision of time 1/3 leaves e^{−33} of a negative number where epsilon = 0.01.
+      // For epsilon = 0.01 an exact collision of time 1/3 reduces a negative number by e^{−33}.
       if (kind == method_kind::exact_collision && epsilon < 0.1) continue;
       EXPECT_GT(limit.excess, 0.0) << name << " " << epsilon;
       sharpest = std::min(sharpest, limit.lost);
@@ -71,7 +71,7 @@ TEST(strong_stability,
 }
 
 TEST(strong_stability, implicit_methods_on_square_decay_preserve_what_their_certificate_promises) {
-  // G = −10 u², u ≤ 10: u + τG ≥ 0 for τ ≤ 1/100.
+  // For G = −10 u² and u ≤ 10, u + τG ≥ 0 if τ ≤ 1/100.
   newton_problem problem(no_transport{}, [](const auto& u, auto& out) { out[0] = -10 * u[0] * u[0]; });
   const std::vector<row> data{{10.0}, {1.0}, {1e-3}};
   const auto positive = stays_inside<row>("positivity", negative_part());
@@ -86,8 +86,8 @@ TEST(strong_stability, implicit_methods_on_square_decay_preserve_what_their_cert
       EXPECT_NEAR(limit.kept, 2.0, 1e-3);
     }
   }
-  // The classical radius of dirk-2-2 is 2 and sharp here: C11. That of dirk-4-3 is 0, but this problem is not
-  // the worst for it.
+  // dirk-2-2 has the classical radius 2, which is sharp here (C11). dirk-4-3 has the radius 0, but this
+  // problem is not its worst case.
   EXPECT_EQ(promised_coefficient(find_certificate("dirk-2-2")), 2.0);
   EXPECT_EQ(promised_coefficient(find_certificate("dirk-4-3")), 0.0);
 }
@@ -100,7 +100,7 @@ TEST(strong_stability, the_forward_euler_step_of_upwind_advection_is_sharp) {
 }
 
 TEST(strong_stability, a_wrong_promise_is_detected) {
-  // Δt_FE too large by 1 %.
+  // Δt_FE is too large by 1 %.
   struct boastful : ring_advection {
     double forward_euler_step(double, const state&) const { return 1.01; }
   } problem;
@@ -108,7 +108,7 @@ TEST(strong_stability, a_wrong_promise_is_detected) {
   const auto tv = does_not_grow<row>("total variation", total_variation);
   EXPECT_LT(largest_step(find_method("ssprk-3-3"), problem, std::span<const row>(rows), tv).kept, 0.995);
   EXPECT_LT(largest_forward_euler_step(problem, std::span<const row>(rows), tv).kept, 0.995);
-  // Forward Euler does not preserve this functional, the sum of squares of second differences, at any step.
+  // Forward Euler does not preserve this concave functional for any step.
   const auto curvature = does_not_grow<row>("not convex", [](const row& u) { return -total_variation(u); });
   EXPECT_EQ(largest_step(find_method("ssprk-3-3"), problem, std::span<const row>(rows), curvature).kept, 0.0);
 }
@@ -116,14 +116,14 @@ TEST(strong_stability, a_wrong_promise_is_detected) {
 TEST(strong_stability, searches_test_the_promised_step_itself) {
   const auto up_to_one = [](std::size_t, double dt) { return dt <= 1.0 ? 0.0 : 1.0; };
   EXPECT_EQ(search_step(1, 1.0, {.accuracy = 0.1, .promised = 1.0}, up_to_one).kept, 1.0);
-  // A wrong promise only changes where the search begins.
+  // A wrong promise only changes the beginning of the search.
   const auto refuted = search_step(1, 1.0, {.promised = 1.02}, up_to_one);
   EXPECT_NEAR(refuted.kept, 1.0, 1e-4);
   EXPECT_GT(refuted.lost, 1.0);
 }
 
 TEST(strong_stability, searches_climb_before_they_bisect) {
-  // Preserved up to 0.3 and again from 0.5 on: the first loss counts.
+  // The property holds up to 0.3 and again from 0.5 on. The first loss counts.
   const auto limit = search_step(
       3, 2.0, {}, [](std::size_t k, double dt) { return k == 1 && dt > 0.6 && dt < 1.0 ? 7.0 : -1.0; });
   EXPECT_NEAR(limit.kept, 0.3, 1e-4);

@@ -116,8 +116,7 @@ TEST(c_integrators, report_callbacks_that_fail_with_step_and_time) {
   EXPECT_LE(apsis_time(s.get()), 0.5);
   EXPECT_GT(apsis_time(s.get()), 0.45);
   data.answer = 0;
-  EXPECT_EQ(apsis_integrate(s.get(), 1), APSIS_OK)
-      << apsis_error_message();  // continues from the last accepted step
+  EXPECT_EQ(apsis_integrate(s.get(), 1), APSIS_OK) << apsis_error_message();  // from the last accepted step
 }
 
 TEST(c_integrators, store_errors_of_libraries_that_extend_the_interface) {

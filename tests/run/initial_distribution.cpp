@@ -61,8 +61,7 @@ TEST(initial_distribution, is_averaged_over_cells_that_an_edge_of_a_region_cuts)
   const field u = state_of(text), below = state_of(line("[initial]\nf = \"" + maxwellian + "\""));
   for (int k = 0; k < u.components(); ++k) {
     EXPECT_NEAR(u.row(0)[k], 3.0 * below.row(0)[k], 1e-14 * u.row(0)[k] + 1e-300);
-    EXPECT_NEAR(u.row(4)[k], 2.0 * below.row(4)[k],
-                1e-14 * u.row(4)[k] + 1e-300);  // the edge is its centre
+    EXPECT_NEAR(u.row(4)[k], 2.0 * below.row(4)[k], 1e-14 * u.row(4)[k] + 1e-300);  // the edge is its middle
     EXPECT_NEAR(u.row(5)[k], below.row(5)[k], 1e-14 * u.row(5)[k] + 1e-300);
   }
 }

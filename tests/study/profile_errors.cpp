@@ -75,8 +75,7 @@ TEST(profile_errors, depend_on_the_collision_rate_of_the_solution) {
 
 TEST(SLOW_profile_errors, are_those_of_runs_with_a_narrow_band) {
   expect_prediction(mixed("md-imex-8-3-mixed", 1.0 / 8000, {"time.startup=graded"}), next_order);
-  expect_prediction(mixed("md-imex-8-3-mixed", 1.0 / 8000),
-                    2 * next_order);  // errors are 10 times smaller
+  expect_prediction(mixed("md-imex-8-3-mixed", 1.0 / 8000), 2 * next_order);  // 10 times smaller errors
 }
 
 TEST(profile_errors, of_a_method_without_viscosity_halve_with_the_step) {

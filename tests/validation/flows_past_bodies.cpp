@@ -1,5 +1,5 @@
-// Flows past bodies as a whole: the order of the drag, its scatter with the place and direction of the mesh,
-// every model of a gas between coaxial cylinders, and an oblique shock in the limit of the Euler equations.
+// Flows past bodies as a whole. The drag: its order, and its scatter with the place and direction of the
+// mesh. Every model of a gas between coaxial cylinders. An oblique shock in the limit of the Euler equations.
 #include <apsis/config/case.hpp>
 #include <apsis/core/errors.hpp>
 #include <apsis/run/simulation.hpp>

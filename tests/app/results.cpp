@@ -217,8 +217,8 @@ TEST(results, snapshots_of_the_distribution_are_of_some_cells_and_of_the_chosen_
   EXPECT_FALSE(apsis::hdf5_file::open((folder.path() / "all/solution.h5").string()).has("f"));
 }
 
-/// The runs share no kernel of transport or collision: point values, averages with collisions at Gauss points
-/// and at centres, laws with formulas, and a gas between walls.
+/// The runs share no kernel of transport or collision. They have point values, averages with collisions at
+/// Gauss points and at centres, laws with formulas, and a gas between walls.
 TEST(results, two_runs_and_any_number_of_threads_give_the_same_bits) {
   const std::vector<std::vector<std::string>> runs = {
       with(small, {"time.end=0.005"}),

@@ -1,4 +1,4 @@
-"""The C interface from Python by ctypes, and its two descriptions: apsis.h and the Fortran module apsis.f90.
+"""Python can call the C interface by ctypes, and its two descriptions, apsis.h and the Fortran module apsis.f90, agree.
 
 Usage: APSIS_C_LIBRARY=libapsis_c.so test_ctypes.py
 """
@@ -45,7 +45,7 @@ def message():
 
 
 class Integrator:
-    """u1' = u2, u2' = (1 + u1²)(sin u1 − u2)/ε, u(0) = (2, 0), by equal steps."""
+    """Integrates u1' = u2, u2' = (1 + u1²)(sin u1 − u2)/ε with u(0) = (2, 0) in equal steps."""
 
     def __init__(self, method, epsilon, steps, transport=None):
         def default_transport(t, n, u, out, data):
@@ -58,7 +58,7 @@ class Integrator:
             u[1] = of_u.value * u[1] + of_e.value * math.sin(u[0])
             return 0
 
-        self.callbacks = TRANSPORT(transport or default_transport), STAGE(stage)  # as long as they may be called
+        self.callbacks = TRANSPORT(transport or default_transport), STAGE(stage)  # keeps the callbacks alive
         found, self.handle = c_void_p(), c_void_p()
         assert apsis.apsis_find_method(method.encode(), byref(found)) == OK, message()
         assert apsis.apsis_new_integrator(found, 2, byref(self.handle)) == OK, message()
@@ -90,12 +90,12 @@ def distance(u, v):
 
 class FromPython(unittest.TestCase):
     def test_solves_the_model_of_the_paper(self):
-        # The digits of examples/quickstart.cpp.
+        # examples/quickstart.cpp prints these digits.
         self.assertLess(distance(solution("md-imex-6-3", 1e-8, 64), (2.677671, 0.447459)), 1e-6)
 
     def test_converges_with_the_order_of_the_method(self):
         for method, order in (("md-imex-3-2", 2), ("md-imex-6-3", 3)):
-            reference = solution(method, 1.0, 1024)  # whose errors are below a hundredth of the finer of the two
+            reference = solution(method, 1.0, 1024)  # has at most 1/64 of the errors below
             errors = [distance(solution(method, 1.0, steps), reference) for steps in (64, 128)]
             self.assertAlmostEqual(math.log2(errors[0] / errors[1]), order, delta=0.2, msg=method)
 

@@ -1,5 +1,5 @@
-"""tests/device/check.sh has an exit code for equal bits, other bits and no device. A fake driver (fake/driver.cpp) takes the part of
-a real one."""
+"""tests/device/check.sh returns different exit codes for equal bits, for other bits, and without a device. A fake driver
+(fake/driver.cpp) replaces a real one."""
 import os
 import subprocess
 import tempfile
@@ -8,13 +8,13 @@ from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 BUILD = Path(os.environ.get("APSIS_BUILD", HERE.parents[1] / "build" / "release"))
-# Some of the tests, for whose bits all kinds of kernels are needed.
+# Tests that together use all kinds of kernels.
 SOME = "device_transport.*scheme*:device_collision.rates*:device_runs.*continued*"
 
 
 def check(tests=SOME, **variables):
-    """The exit code and the output of the check; a variable None is not set."""
-    # A real driver of this machine finds no device.
+    """Returns the exit code and the output of the check. A variable that is None is removed from the environment."""
+    # The variables hide real devices of this machine.
     environment = {**os.environ, "CUDA_VISIBLE_DEVICES": "", "HIP_VISIBLE_DEVICES": "-1", "GTEST_FILTER": tests, **variables}
     environment = {name: value for name, value in environment.items() if value is not None}
     done = subprocess.run([HERE / "check.sh", BUILD], env=environment, capture_output=True, text=True, check=False)

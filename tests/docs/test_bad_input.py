@@ -17,7 +17,7 @@ PLACE = re.compile(r"(?P<place>c\.toml:\d+:\d+: |override '.*?': |[\w./-]+:\d+:\
 
 
 def tests_with_rows(program):
-    """The tests of a program test_ROOM, except slow ones, whose sources have rows of bad input."""
+    """Yields the names of the tests of a program test_ROOM whose sources have rows of bad input, without slow tests."""
     room = Path(program).name.removeprefix("test_")
     for file in sorted(Path(__file__).resolve().parents[1].joinpath(room).glob("*.cpp")):
         for test in re.split(r"^(?=TEST|RC_GTEST)", file.read_text(encoding="utf-8"), flags=re.M):
@@ -27,7 +27,7 @@ def tests_with_rows(program):
 
 
 def messages_of(program):
-    """(row, message) of every row of bad input that a program refuses."""
+    """Returns (row, message) of every row of bad input that a program refuses."""
     names = ":".join(tests_with_rows(program))
     with tempfile.TemporaryDirectory() as folder:
         record = Path(folder, "record.json")
@@ -39,7 +39,7 @@ def messages_of(program):
 
 
 def without_quotes(text):
-    """The words of the program, without those of the input that it quotes."""
+    """Returns the text without quoted parts of the input, which are not words of the program."""
     return re.sub(r"'[^']*'", "'…'", text)
 
 
@@ -68,7 +68,7 @@ class BadInput(unittest.TestCase):
         found = messages_of(self.program)
         tests = list(tests_with_rows(self.program))
         self.assertTrue(tests)
-        self.assertGreaterEqual(len(found), len(tests))  # a test without a message lost its rows
+        self.assertGreaterEqual(len(found), len(tests))  # fewer would mean that a test has lost its rows
         self.assertEqual([f"{label}: {problem}: {message}" for label, message in found for problem in problems_of(message)], [])
 
     def test_the_grammar_finds_what_is_wrong(self):

@@ -1,4 +1,4 @@
-"""The table by which time.method = "auto" is chosen follows from the measured contests in docs/data/speed."""
+"""The table of the methods that time.method = "auto" chooses follows from the measured contests in docs/data/speed."""
 import json
 import math
 import os
@@ -15,12 +15,12 @@ import records  # noqa: E402
 BUILD = Path(os.environ.get("APSIS_BUILD", ROOT / "build/release"))
 MIXED = ("peers-mixed-points", "peers-mixed", "peers-mixed-centres")
 SYSTEMS = ("peers-ode", "peers-prothero-robinson", "peers-kaps")
-# A contestant that does not reach an error within the time of the contest counts as this many times the best.
+# The relative time of a contestant that does not reach an error within the time of the contest.
 MISSING = 30.0
 
 
 def newest(table):
-    """The table of the file that was measured last."""
+    """Returns the most recently measured table of this name."""
     files = [records.read(path) for path in (ROOT / "docs/data/speed").glob("*.json.gz")]
     return max((one[table] for one in files if table in one), key=lambda one: one["machine"]["date"])
 
@@ -34,7 +34,7 @@ def is_ssp(name):
 
 
 def costs(table, error):
-    """CPU time by contestant, of methods of one step of the library; runs with negative values do not count as SSP."""
+    """Returns the CPU times to this error by contestant, for implicit-explicit one-step methods of the library."""
     result = newest(table)
     k = column(result, error)
     found = {}
@@ -47,8 +47,8 @@ def costs(table, error):
 
 
 def best_on_meshes(errors, wanted):
-    """The contestant with the smallest geometric mean of its time relative to the best, over contests and errors, and the
-    contestants that reach all of them."""
+    """Returns the method that has the smallest geometric mean of times relative to the best one, over contests and errors. Only
+    contestants that reach all errors of all contests can be chosen."""
     ratios, cells = {}, 0
     for table in MIXED:
         for error in errors:
@@ -64,7 +64,7 @@ def best_on_meshes(errors, wanted):
 
 
 def wins_on_systems(label, epsilons, errors, allowed=lambda name: True):
-    """The method that is cheapest most often among the winners of systems of two unknowns."""
+    """Returns the allowed method that wins most often in the contests on systems of two unknowns."""
     wins = Counter()
     for table in SYSTEMS:
         result = newest(table)

@@ -1,4 +1,4 @@
-"""Pages with one error each: the runner of blocks must report it with its line, and must accept correct pages."""
+"""docs/execute.py, which runs the blocks of pages, accepts correct pages and reports one planted error of a page with its line."""
 import os
 import subprocess
 import sys

@@ -1,5 +1,5 @@
-"""Commands of README.md, CONTRIBUTING.md and docs/first-steps.md that build and test everything. Only the existence of their make
-targets is checked here, since a test cannot run all tests; test_long.py executes `make run`."""
+"""README.md, CONTRIBUTING.md and docs/first-steps.md have commands that build and test everything. Only the existence of their
+make targets is checked here, since a test cannot run all tests; test_long.py executes `make run`."""
 import os
 import re
 import subprocess
@@ -56,7 +56,7 @@ class Repository(unittest.TestCase):
 
 
 class Packages(unittest.TestCase):
-    """scripts/install-packages.sh with commands that only record their calls; dpkg-query finds no package."""
+    """Runs scripts/install-packages.sh with substitutes: commands only record their calls, and dpkg-query finds no package."""
 
     def install(self, user="1000", commands=("apt-get", "sudo"), **variables):
         with tempfile.TemporaryDirectory() as folder:

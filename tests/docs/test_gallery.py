@@ -1,4 +1,4 @@
-"""The gallery makes cases small, quotes commands so that a shell repeats them, and every method and case has its page or picture."""
+"""The gallery makes cases small and quotes commands so that a shell can repeat them. Every case has a picture, every method a page."""
 import json
 import os
 import re
@@ -27,7 +27,7 @@ class SmallVersions(unittest.TestCase):
         for cells, cost in (([200], 1e12), ([72, 36], 1.7e10), ([64, 64, 64], 1e13)):
             small = gallery.fewer_cells(cells, cost)
             ratio = small[0] / cells[0]
-            # Halves of even numbers of cells are rounded, by at most one cell in eight at the least number.
+            # Numbers of cells are rounded to even numbers, by at most one cell. Of 36 cells and more, ratios differ by less than this.
             for a, b in zip(small, cells):
                 self.assertAlmostEqual(a / b, ratio, delta=0.125)
                 self.assertGreaterEqual(a, min(b, gallery.FEWEST))
@@ -61,7 +61,7 @@ class Methods(unittest.TestCase):
             self.assertEqual(re.findall("^##? (.*)$", page, re.M), [m["name"], "When to use it", "Steps", "Coefficients"])
             self.assertIn(f"SSP coefficient: {reference.coefficient(m)}", page)
             self.assertEqual(m["name"] in {choice["name"] for choice in choices}, "chooses it for" in page, m["name"])
-            # A page without a picture has the coefficients themselves.
+            # Coefficients are a picture of the tableau, or formulas.
             self.assertTrue("-tableau.png" in page or "$$" in page, m["name"])
 
     def test_the_list_links_every_page(self):

@@ -1,5 +1,5 @@
-"""The rooms of src/apsis include only the rooms below them, clients nothing of each other, and a planted violation of each kind
-is found."""
+"""The rooms of src/apsis include only the rooms below them, and clients do not include each other. scripts/check_layers.py finds a
+planted violation of each kind."""
 import shutil
 import sys
 import tempfile
@@ -19,11 +19,11 @@ class Layers(unittest.TestCase):
         rooms = check_layers.read_rooms((SOURCE / "src/apsis/CMakeLists.txt").read_text(encoding="utf-8"))
         self.assertEqual(rooms["core"], set())
         self.assertEqual(rooms["integrate"], {"core", "method"})
-        self.assertEqual(rooms["verify"], {"core", "method", "integrate"})  # questions to any problem
+        self.assertEqual(rooms["verify"], {"core", "method", "integrate"})  # verify takes any problem
         for room in ("method", "integrate", "velocity", "mesh", "model", "scheme"):
             self.assertFalse(rooms[room] & {"semidiscrete", "config", "output", "run", "study"}, room)
         self.assertIn("semidiscrete", rooms["run"])
-        self.assertFalse(rooms["output"] & {"config", "run"})  # files know no case
+        self.assertFalse(rooms["output"] & {"config", "run"})  # files do not depend on cases
 
     def test_the_page_for_contributors_lists_the_rooms_in_their_order(self):
         rooms = list(check_layers.read_rooms((SOURCE / "src/apsis/CMakeLists.txt").read_text(encoding="utf-8")))

@@ -37,7 +37,7 @@ class Long(unittest.TestCase):
         shutil.copytree(ROOT, source, ignore=shutil.ignore_patterns("build", "results", ".git", "__pycache__"))
         subprocess.run(["make", "-C", source, "run"], check=True, stdout=subprocess.DEVNULL)
         self.assertTrue((source / "results" / "bgk-mixed.png").exists())
-        # Next step of the front page: the library can be installed from this build.
+        # The next step of README.md is the installation of the library from this build.
         prefix = self.work / "prefix"
         subprocess.run(["cmake", "--install", source / "build" / "release", "--prefix", prefix], check=True, stdout=subprocess.DEVNULL)
         self.assertTrue((prefix / "bin" / "apsis").exists())

@@ -76,7 +76,7 @@ def all_messages():
 
 
 def unseparated(text):
-    """Whether only a space separates a suggestion from the preceding reason in parentheses or name."""
+    """Returns true if only a space separates a suggestion from the preceding reason in parentheses or name."""
     text = re.sub(r"(?<=\w)\(\)", "", text)  # the name of a function, as in "call on() first"
     return re.search(r"\) [^\s();][^();]*$|['})] (\{\})+$", text) is not None and re.search("[a-z]{3}", text) is not None
 
@@ -85,7 +85,7 @@ class Messages(unittest.TestCase):
     def test_reasons_are_separated_from_suggestions(self):
         found = list(all_messages())
         self.assertEqual([f"{place}: {text}" for place, text in found if unseparated(text)], [])
-        # Currently 246 with a separator; far fewer would mean that the reader misses them.
+        # Hundreds of messages have a separator; far fewer would mean that the reader misses some.
         self.assertGreater(sum("); " in text for _, text in found), 180)
 
     def test_the_reader_of_c_plus_plus_finds_every_form_of_a_message(self):

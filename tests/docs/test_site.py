@@ -14,14 +14,14 @@ from browser import Browser  # noqa: E402
 
 BUILD = Path(os.environ.get("APSIS_BUILD", ROOT / "build" / "release"))
 WORK = Path(os.environ.get("APSIS_DOCS", ROOT / "build" / "docs"))
-# Cases of the gallery that take seconds, and a method of each kind with pictures; docs/build.py draws all.
+# Cases of the gallery that take only seconds, and one method of each kind that has pictures. docs/build.py draws all of them.
 CASES = ["paper/bgk-mixed-fd", "gas/couette", "laws/dam-break"]
 METHODS = ["md-imex-6-3", "imdrk-2-3", "ssprk-3-3"]
 LOADING = {("script", "src"), ("img", "src"), ("iframe", "src"), ("source", "src"), ("object", "data")}
 
 
 class Reader(HTMLParser):
-    """Links, loaded resources, and link targets of a page."""
+    """Collects the links, loaded resources and link targets of a page."""
 
     def __init__(self, text):
         super().__init__()

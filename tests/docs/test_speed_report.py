@@ -1,4 +1,4 @@
-"""bench/report.py keeps what was measured before: a file with some tables replaces these only."""
+"""bench/report.py keeps earlier measurements: a new file replaces only the tables that it has."""
 import copy
 import importlib.util
 import sys
@@ -79,7 +79,7 @@ class SpeedReport(unittest.TestCase):
         self.assertEqual([line for line in text.splitlines() if line.startswith("| ")], ["| method |", "| best of Apsis |", "| best of the others |"])
         self.assertIn("(data/speed/long.csv)", text)
         text = module.section("short", result(rows[:module.SCREEN]))
-        self.assertEqual(sum(line.startswith("| method ") for line in text.splitlines()), module.SCREEN - 2 + 1)  # and the head
+        self.assertEqual(sum(line.startswith("| method ") for line in text.splitlines()), module.SCREEN - 2 + 1)  # the head is counted, too
 
     def test_pages_have_the_tables_of_the_newest_measurements(self):
         module = report()

@@ -13,7 +13,7 @@ README = (ROOT / "README.md").read_text(encoding="utf-8")
 METHODS = (ROOT / "docs/methods.md").read_text(encoding="utf-8")
 CLAIMS = (ROOT / "docs/claims.md").read_text(encoding="utf-8")
 
-# Claims on coefficients and orders alone: the same figures on every machine, within seconds.
+# Claims on coefficients and orders alone. Their figures are the same on every machine and take seconds.
 EXACT_CLAIMS = ["C1", "C2", "C3", "C4", "C5", "C6", "C7", "C8", "C9", "C11", "C16", "C25"]
 
 
@@ -43,7 +43,10 @@ def joined_tables(text, *head):
 
 
 def method_problems(rows, methods, members):
-    """Returns where rows of the table of methods differ from the certificates; `members` returns members of a family with their S."""
+    """Returns the differences between rows of the table of methods and the certificates.
+
+    `members` returns the members of a family, each with its S.
+    """
     problems = []
     listed = []
     for names, orders, acts_on, coefficients, source in rows:

@@ -1,8 +1,8 @@
-"""A boundary, shape of bodies, model with its fields, reconstruction, discretization, command, claim, quantity, case and method are
-one file each, a kind of integrator three.
+"""A new part of the library needs no change of existing files. A boundary, shape of bodies, model with its fields, reconstruction,
+discretization, command, claim, quantity, case and method are one file each, and a kind of integrator three.
 
-The files of planted/ are laid over a copy of the sources; a kind of integrator needs an entry of integrate/any_stepper.hpp,
-no other file changes. The program that is built from them lists and uses them all.
+The files of planted/ are copied into a copy of the sources. Only a kind of integrator also needs an entry in
+integrate/any_stepper.hpp. The program built from these sources lists and uses all parts.
 """
 import csv
 import json
@@ -20,12 +20,12 @@ SOURCE = HERE.parents[1]
 PARTS = ("CMakeLists.txt", "CMakePresets.json", "LICENSE", "README.md", "app", "cases", "cmake", "methods", "paper", "python",
          "scripts", "src", "validation")
 
-# The entry of a kind of integrator: a line of the header, and what is put in its place.
+# The entry of a kind of integrator: lines of the header, each with its replacement.
 ENTRY = ("src/apsis/integrate/any_stepper.hpp",
          (("#include <apsis/integrate/kinds/runge_kutta.hpp>\n",
            "#include <apsis/integrate/kinds/planted_halves.hpp>\n#include <apsis/integrate/kinds/runge_kutta.hpp>\n"),
           ("using stepper_kinds = std::tuple<", "using stepper_kinds = std::tuple<planted_halves_steps, ")))
-# A method file for each kind that has files: one of the catalogue under another name.
+# A method file for each kind that has files. It is a copy from the catalogue, under another name.
 COPIES = {"planted-explicit": "ssprk-3-3", "planted-implicit": "dirk-2-2", "planted-exponential": "exponential-2",
           "planted-two-step": "two-step-8-3-narrow"}
 
@@ -116,8 +116,8 @@ class OneFile(unittest.TestCase):
 
     def test_a_case_uses_all_of_them(self):
         result = json.loads(output_of(self.program, "run", "planted/exchange", "--json"))
-        # Both walls let in 0.25 in every velocity, which is the steady state; the slowest mode has decayed like
-        # exp(-pi^2 epsilon t) ~ 7e-6, more slowly with the layers at the walls.
+        # In the steady state, the values at both velocities are the inflow of the walls, 0.25. The slowest mode has decayed like
+        # exp(-pi^2 epsilon t) ~ 7e-6, but more slowly because of the layers at the walls, hence the tolerance.
         for rho in result["fields"]["rho"]:
             self.assertAlmostEqual(rho, 0.5, delta=2e-3)
         self.assertEqual(result["negative_values"], 0)
@@ -126,7 +126,7 @@ class OneFile(unittest.TestCase):
         usual = json.loads(output_of(self.program, "run", "planted/exchange", "--json"))["fields"]
         self.assertNotIn("flux", usual)
         fields = json.loads(output_of(self.program, "run", "planted/exchange", "output.fields=flux", "--json"))["fields"]
-        # The same number of particles moves in both directions.
+        # In the steady state, equal numbers of particles move in both directions. The tolerance is that of the density.
         for flux in fields["flux"]:
             self.assertAlmostEqual(flux, 0.0, delta=2e-3)
 
@@ -135,10 +135,10 @@ class OneFile(unittest.TestCase):
             result = json.loads(output_of(self.program, "run", "paper/bgk-mixed", f"space.formulation={formulation}",
                                           f"space.cells={cells}", "model.epsilon=0.05", "time.end=0.2", "velocity.points=60",
                                           "--json"))
-            self.assertLess(result["conservation_defect"], 1e-13)  # rounding of some thousand steps
+            self.assertLess(result["conservation_defect"], 1e-13)  # rounding errors of some thousand steps
             self.assertEqual(result["negative_values"], 0)
             return result["fields"]["rho"]
-        # Averages that collide as they are differ from those that collide at Gauss points by the second order.
+        # Collisions of cell averages differ from collisions at Gauss points by a term of second order.
         differences = [max(abs(a - b) for a, b in zip(density("planted-averages", cells), density("finite-volume", cells), strict=True))
                        for cells in (40, 80)]
         self.assertGreater(differences[0], 1e-7)
@@ -157,7 +157,7 @@ class OneFile(unittest.TestCase):
                   "--out", str(out))
         with open(out / "surfaces/cylinder.csv", newline="", encoding="utf-8") as file:
             areas = [float(row["area"]) for row in csv.DictReader(file)]
-        # Two straight walls of the length √2, whose ends lie on edges of cells: no error but rounding.
+        # The surface is two straight lines of length √2 with ends on edges of cells, so the only errors are those of rounding.
         self.assertAlmostEqual(sum(areas), 2 * math.sqrt(2), delta=1e-12)
         refused = subprocess.run([self.program, "run", "gas/sphere", "space.body.1.shape=planted-diamond"], capture_output=True,
                                  text=True, check=False)

@@ -8,7 +8,7 @@ from pathlib import Path
 SOURCE = Path(__file__).resolve().parents[2]
 CLANG = os.environ["APSIS_CLANG"]
 TARGETS = {"nvptx64-nvidia-cuda": "sm_70", "amdgcn-amd-amdhsa": "gfx90a"}
-# No header of any library is found: what a formula needs is its own text.
+# No standard header is found: formulas need no code from outside src.
 FLAGS = ["-std=c++20", "-nostdinc", "-fno-exceptions", "-fno-rtti", "-nogpulib", "-ffp-contract=off", "-Wall", "-Wextra",
          "-Wshadow", "-Wconversion", "-Werror", f"-I{SOURCE / 'src'}", "-x", "c++"]
 

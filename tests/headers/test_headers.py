@@ -1,4 +1,4 @@
-"""scripts/check_headers.py: headers that compile alone pass, a planted one that does not is named with its reason."""
+"""scripts/check_headers.py accepts headers that compile alone, and reports a planted header that does not, with the reason."""
 import contextlib
 import io
 import os

@@ -15,10 +15,10 @@ ROOT = Path(__file__).resolve().parents[2]
 SPACK = ROOT / "packaging" / "spack" / "packages" / "apsis" / "package.py"
 CONDA = ROOT / "packaging" / "conda" / "recipe.yaml"
 
-# Package of Debian (scripts/packages.txt): its names in Spack and conda-forge; None if the recipe does not need it.
+# The names in Spack and conda-forge of each Debian package in scripts/packages.txt; None if the recipe does not need the package.
 NAMES = {
     "g++-12": ("cxx", "${{ compiler('cxx') }}"), "make": (None, None), "cmake": ("cmake", "cmake"),
-    "ninja-build": (None, "ninja"),  # in Spack by generator("ninja")
+    "ninja-build": (None, "ninja"),  # Spack adds it for generator("ninja")
     "libfmt-dev": ("fmt", "fmt"), "libtomlplusplus-dev": ("tomlplusplus", "tomlplusplus"),
     "nlohmann-json3-dev": ("nlohmann-json", "nlohmann_json"), "libeigen3-dev": ("eigen", "eigen"),
     "libboost-dev": ("boost", "libboost-headers"), "libmuparser-dev": ("muparser", "muparser"), "libhdf5-dev": ("hdf5", "hdf5"),
@@ -30,7 +30,7 @@ NAMES = {
     "python3-pip": ("py-pip", "pip"), "python3-venv": (None, None),
     "libopenmpi-dev": ("mpi", None), "openmpi-bin": (None, None),
 }
-C = ("c", "${{ compiler('c') }}", "${{ stdlib('c') }}")  # comes with g++-12
+C = ("c", "${{ compiler('c') }}", "${{ stdlib('c') }}")  # g++-12 includes a C compiler
 
 
 def read(path):
@@ -100,7 +100,7 @@ class Spack(unittest.TestCase):
     def test_its_versions_are_the_tagged_ones_of_the_changelog(self):
         versions = {node.args[0].value: {key.arg: key.value.value for key in node.keywords}
                     for name, node in self.calls if name == "version"}
-        released = set(re.findall(r"(?m)^## (\d+\.\d+\.\d+) \(", read("CHANGELOG.md"))) - {"0.1.0"}  # which has no tag
+        released = set(re.findall(r"(?m)^## (\d+\.\d+\.\d+) \(", read("CHANGELOG.md"))) - {"0.1.0"}  # 0.1.0 has no tag
         self.assertEqual(versions, {"main": {"branch": "main"}} | {version: {"tag": f"v{version}"} for version in released})
 
     def test_it_fetches_this_repository(self):
@@ -170,7 +170,7 @@ class Container(unittest.TestCase):
                             shutil.copytree(ROOT / source, to, ignore=shutil.ignore_patterns("__pycache__"))
                         else:
                             shutil.copy(ROOT / source, to)
-            # The make target, without its build: a cmake that only configures.
+            # This cmake configures but does not build, so the make target takes seconds.
             bin_folder = Path(folder, "bin")
             bin_folder.mkdir()
             (bin_folder / "cmake").write_text(f"#!/bin/bash\n[[ $1 == --build ]] || exec '{shutil.which('cmake')}' \"$@\"\n",

@@ -15,7 +15,7 @@ def output_of(*command):
 
 
 def tests_of(program):
-    """The names suite.test of a program."""
+    """Yields the names suite.test of a program."""
     suite = ""
     for line in output_of(program, "--gtest_list_tests").splitlines():
         if re.match(r"\S+\.(\s|$)", line):
@@ -25,18 +25,18 @@ def tests_of(program):
 
 
 def entry_of(name):
-    """The test to which a name belongs: all instances of a parameterised test are one (discover.cmake)."""
+    """Returns the entry of the lists to which a name belongs. All instances of a parameterised test have one entry (discover.cmake)."""
     suite, _, test = name.partition(".")
     return suite + "." + test.split("/")[0]
 
 
 def is_slow(name):
-    """Whether the suite or its instantiation is named SLOW_NAME."""
+    """Returns true if the suite or its instantiation is named SLOW_NAME."""
     return re.match(r"(\w+/)?SLOW_", name) is not None
 
 
 def registered(ctest, build):
-    """(program, name) of every registered test -> the labels of each entry."""
+    """Returns the labels of each entry of every registered test, by (program, name)."""
     found = collections.defaultdict(list)
     for test in json.loads(output_of(ctest, "--test-dir", build, "--show-only=json-v1"))["tests"]:
         program, *arguments = test.get("command") or [""]
@@ -67,7 +67,7 @@ def main():
         problems.append(f"{len(programs)} test programs and their slow tests were not found in {build}")
     found = {path.resolve() for pattern in ("test_*", "*/test_*") for path in Path(build, "tests").glob(pattern)
              if path.is_file() and path.suffix == "" and path.stat().st_mode & 0o100}
-    # Tests that another program has too.
+    # The tests of test_races belong to another program, too.
     unregistered = found - set(programs) - {Path(build, "tests/test_races").resolve()}
     problems += [f"no test of {path} is in a list" for path in sorted(unregistered)]
     print("\n".join(problems) or f"{len(lists)} tests of {len(programs)} programs")

@@ -6,7 +6,7 @@ import sys
 
 @contextlib.contextmanager
 def busy_loops(count):
-    # They end with this process, however it ends.
+    # A loop ends when this process has ended in any way.
     text = "import os\nparent = os.getppid()\nwhile os.getppid() == parent: pass"
     loops = [subprocess.Popen([sys.executable, "-c", text]) for _ in range(count)]
     try:

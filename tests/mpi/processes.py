@@ -15,35 +15,35 @@ import numpy as np
 
 BUILD = Path(os.environ.get("APSIS_BUILD", Path(__file__).resolve().parents[2] / "build" / "release"))
 PROGRAM = BUILD / "app" / "apsis"
-# Every run ends in seconds; a deadlock must not hold up the tests. Generous, since the machine may be busy.
+# Seconds after which a run counts as a deadlock. Runs take seconds, but much longer on a busy machine.
 LIMIT = float(os.environ.get("APSIS_MPI_LIMIT", "600"))
 
-# Seconds after the end of all processes; beside four busy loops the launcher ends within one.
+# Seconds that the launcher has to end after its processes. Beside four busy loops it ends within one second.
 PATIENCE_WITH_LAUNCHER = 20.0
 
-# Launchers that start and end simultaneously remove each other's folder of sessions.
+# A folder of sessions for these tests alone: launchers that start and end simultaneously remove each other's folder.
 SESSIONS = tempfile.TemporaryDirectory(prefix="ompi-", ignore_cleanup_errors=True)
 
 ENVIRONMENT = {**os.environ, "OMPI_MCA_orte_tmpdir_base": SESSIONS.name, "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "OMPI_MCA_rmaps_base_oversubscribe": "1",
                "OMPI_MCA_hwloc_base_binding_policy": "none", "OMPI_MCA_btl_base_warn_component_unused": "0",
-               # Without a right to read the memory of other processes, as in containers.
+               # Containers often forbid to read the memory of other processes.
                "OMPI_MCA_btl_vader_single_copy_mechanism": "none", "OMP_NUM_THREADS": "1"}
 for name in [key for key in ENVIRONMENT if key.startswith(("PMI", "SLURM"))]:
     del ENVIRONMENT[name]
 
 
 def one_of(choices, number):
-    """All choices in a run of the slow tests, else one of them, in turn: each of them occurs in a loop over `number`."""
+    """Returns all choices in a run of the slow tests, otherwise the choice with this number (modulo their count)."""
     choices = list(choices)
     return choices if os.environ.get("APSIS_SLOW") else [choices[number % len(choices)]]
 
 
 def slow(test):
-    """A test of `make test-all` alone."""
+    """Marks a test that only `make test-all` runs."""
     return unittest.skipUnless(os.environ.get("APSIS_SLOW"), "part of make test-all")(test)
 
 
-# Every process leaves its exit code in a file, since the launcher may hang after their end.
+# Every process writes its exit code to a file, since the launcher may hang after the processes have ended.
 WITH_CODE = '"$@"; code=$?; echo $code > "$APSIS_CODES/$OMPI_COMM_WORLD_RANK"; exit $code'
 
 
@@ -56,7 +56,7 @@ def command(count, arguments):
 
 
 def descendants(pid):
-    """The living processes below a process, by their names."""
+    """Returns the names of the living descendants of a process, by their ids."""
     parents, names = {}, {}
     for entry in Path("/proc").iterdir():
         if entry.name.isdigit():
@@ -77,16 +77,16 @@ def descendants(pid):
 
 
 def launcher_is_idle(pid):
-    """Whether process `pid` is the launcher, or has it below it, and none of the launcher's processes runs."""
+    """Returns true if no process of the launcher runs. The launcher is the process `pid` or one of its descendants."""
     below = descendants(pid)
     launchers = [one for one, name in {**below, pid: "mpirun"}.items() if name in ("mpirun", "orterun")]
     return not descendants(launchers[0])
 
 
 class Started:
-    """A program that runs. The exit code is that of its processes also where the launcher hangs or crashes at its own end.
+    """A running program. Its exit code is that of its processes, even if the launcher hangs or crashes after their end.
 
-    Open MPI 4.1 does so rarely when all processes have ended, more often after MPI_Abort and on a busy machine.
+    The launcher of Open MPI 4.1 does so rarely, but more often after MPI_Abort and on a busy machine.
     """
 
     def __init__(self, program, env=None, **how):
@@ -103,7 +103,10 @@ class Started:
         return self.process.poll()
 
     def end(self, timeout=LIMIT):
-        """Waits for the end. `launcher_hung` of the result: whether the launcher had to be killed; `codes`: those of all processes."""
+        """Waits for the end and returns the completed process.
+
+        `launcher_hung` of the result is true if the launcher had to be killed; `codes` are the exit codes of all processes.
+        """
         begun = time.monotonic()
         idle_since, last_look, has_run, hung = begun, begun, False, False
         while self.poll() is None and not hung:
@@ -124,7 +127,7 @@ class Started:
     def result(self, hung):
         done = subprocess.CompletedProcess(self.program, self.process.returncode, self.text(self.out), self.text(self.err))
         done.launcher_hung = hung
-        # The launcher may have killed a process before it wrote its code.
+        # The file is empty if the launcher has killed a process before it wrote its code.
         written = {int(path.name): path.read_text() for path in self.codes.iterdir()}
         done.codes = {rank: int(text) for rank, text in sorted(written.items()) if text}
         aborted = re.search(r"MPI_ABORT was invoked .*?with errorcode (\d+)", done.stderr, re.S)
@@ -154,7 +157,7 @@ def run(program, timeout=LIMIT, **how):
 
 
 class Folder(unittest.TestCase):
-    """Tests with a folder of their own."""
+    """A test case with a temporary folder, in which all programs run."""
 
     def setUp(self):
         self.folder = Path(tempfile.mkdtemp(prefix="apsis-mpi-"))
@@ -175,14 +178,14 @@ class Folder(unittest.TestCase):
         return done
 
     def assert_same_results(self, a, b):
-        """Bit for bit, except for times and what describes a run."""
+        """Checks that two folders have equal results, bit for bit, except for wall times and the description of the run."""
         a, b = self.folder / a, self.folder / b
         names = sorted(path.relative_to(a) for path in a.rglob("*") if path.is_file() and path.name != ".lock")
         self.assertEqual(names, sorted(path.relative_to(b) for path in b.rglob("*") if path.is_file() and path.name != ".lock"))
         for name in names:
             if name.suffix in (".csv", ".xdmf"):
                 self.assertEqual((a / name).read_text(), (b / name).read_text(), name)
-            elif name.parts[0] == "snapshots":  # without a manifest: the same bytes
+            elif name.parts[0] == "snapshots":  # these files have no manifest, so their bytes are equal
                 self.assertEqual((a / name).read_bytes(), (b / name).read_bytes(), name)
             elif name.suffix == ".h5":
                 self.assert_same_datasets(a / name, b / name)

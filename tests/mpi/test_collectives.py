@@ -1,4 +1,4 @@
-"""A process that fails before any collective operation ends the others, which wait in it: with its error, without MPI_Abort."""
+"""If a process fails before a collective operation, the others, which wait in it, end too, with its error and without MPI_Abort."""
 import os
 import subprocess
 import unittest
@@ -8,7 +8,7 @@ from busy import busy_loops
 from processes import ENVIRONMENT, launched, main, one_of, run, slow
 
 COLLECTIVE = Path(os.environ["APSIS_COLLECTIVE"])
-# Failing runs of the slow test.
+# Number of failing runs in the slow test.
 RUNS = int(os.environ.get("APSIS_FAILING_RUNS", "500"))
 
 
@@ -27,7 +27,7 @@ class Collectives(unittest.TestCase):
         who = f"process {failing}: " if failing else ""
         self.assertEqual(errors(done.stderr), [f"error: {who}this process fails"], done.stderr)
         self.assertNotIn("MPI_ABORT", done.stderr)
-        # The launcher may kill a process after the end of the first one.
+        # The launcher may kill a process after the first one has ended; then the process has no code.
         self.assertLessEqual(done.codes.items(), {0: 3, 1: 0, 2: 0}.items(), done.stderr)
         return done
 

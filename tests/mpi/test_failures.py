@@ -1,4 +1,4 @@
-"""Errors on one process end all with one message and the exit code of a run on one process; nothing is lost."""
+"""An error on one process ends all processes, with one message and the exit code of a run on one process. Nothing is lost."""
 import os
 import random
 import re
@@ -12,7 +12,7 @@ from processes import ENVIRONMENT, LIMIT, PROGRAM, WITH_CODE, Folder, Started, c
 
 GAS = ("paper/bgk-mixed-fd", "space.cells=24", "velocity.points=40")
 
-# Beyond the step that its method allows, with large gradients: a stage has no equilibrium in some cell.
+# The step is longer than the method allows and the gradients are large, so a stage has no equilibrium in some cell.
 UNSTABLE = """
 title = "An unstable run"
 [model]
@@ -78,7 +78,7 @@ class Failures(Folder):
             step = re.search(r"step \d+", errors(alone.stderr)[0])
             self.assertIsNotNone(step, alone.stderr)
             self.assertIn(step[0] + ",", errors(together.stderr)[0])
-            # The history so far and the state before the failed step are kept.
+            # The files have the history and the state before the failed step.
             for name in ("history.csv", "fields.csv"):
                 self.assertEqual((self.folder / f"on-{count}" / name).read_text(), (self.folder / "one" / name).read_text(), name)
 
@@ -115,12 +115,12 @@ class Failures(Folder):
         self.assertIn("2 processes were started", refused.stderr)
 
     def exit_codes(self, count, *arguments):
-        """The exit code of every process by its rank; the launcher sees 0 of all."""
+        """Returns the exit codes of the processes in the order of ranks. To the launcher, every process returns 0."""
         shell = WITH_CODE.replace("exit $code", "exit 0")
         return list(run(launched(count, PROGRAM, *arguments, shell=shell), cwd=self.folder).codes.values())
 
     def test_only_the_process_that_reports_an_error_returns_its_code(self):
-        # mpirun kills all processes once one has returned another code than 0, perhaps before the error is reported.
+        # mpirun kills all processes as soon as one returns a code other than 0, perhaps before the error is reported.
         self.write("bad.toml", UNSTABLE.replace("cells = 40", "cells = -1"))
         self.assertEqual(self.exit_codes(3, "run", "bad.toml"), [2, 0, 0])
         self.assertEqual(self.exit_codes(3, "run", "bad.toml", "--no-such-option"), [2, 0, 0])
@@ -142,7 +142,7 @@ class Signals(Folder):
         return Started(command(count, arguments), cwd=self.folder)
 
     def processes_of(self, run):
-        """The processes of the program that mpirun started."""
+        """Returns the ids of the program's processes, without the launcher."""
         return sorted(pid for pid, name in descendants(run.pid).items() if name == "apsis")
 
     def await_checkpoint(self, run, before):
@@ -167,7 +167,7 @@ class Signals(Folder):
                 begun = time.monotonic()
                 done = run.end()
                 self.assertNotEqual(done.returncode, 0, done.stderr)
-                # mpirun names the process and its signal.
+                # mpirun reports the signal.
                 self.assertRegex(done.stderr, "(?i)signal 9|killed")
                 self.assertLess(time.monotonic() - begun, 60.0)
             else:
@@ -196,7 +196,7 @@ class Signals(Folder):
         self.assertTrue((self.folder / "out" / "checkpoint.h5").exists())
 
     def test_the_batch_script_of_the_page_runs_and_continues(self):
-        # docs/processes.md, with an srun that starts two processes.
+        # The script of docs/processes.md calls srun; the srun of this test starts two processes by mpirun.
         page = (Path(__file__).resolve().parents[2] / "docs" / "processes.md").read_text(encoding="utf-8")
         self.write("job.sh", re.search(r"```sh\n(#!/bin/bash.*?)```", page, re.S)[1])
         self.write("case.toml", UNSTABLE.replace("cfl = 3.5", "cfl = 0.4").replace("end = 10", "end = 0.01"))
@@ -216,7 +216,7 @@ class Signals(Folder):
     def test_a_full_disk_ends_all_and_loses_nothing(self):
         run = self.start(2, "run", *GAS, "time.end=1000.0", "output.checkpoint_every=1", "--out", "out")
         self.await_checkpoint(run, 0)
-        # The root writes small files for all.
+        # The process with the lowest id writes the checkpoint for all; its files are now limited to 4 KiB.
         resource.prlimit(min(self.processes_of(run)), resource.RLIMIT_FSIZE, (4096, 4096))
         done = run.end()
         self.assertEqual(done.returncode, 4, done.stderr)

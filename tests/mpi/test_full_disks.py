@@ -1,4 +1,4 @@
-"""A file that cannot be written by any one of several processes ends all with one message and exit code 4; earlier results are kept."""
+"""If one of several processes cannot write a file, all end with one message and exit code 4. Earlier results are kept."""
 import shutil
 import subprocess
 
@@ -10,10 +10,10 @@ OUTPUTS = {
     "checkpoint.h5": ("output.checkpoint_every=2",),
     "f-000000000.h5": ("output.distribution=snapshots", "output.every=0.002"),
 }
-LIMIT = 16384  # bytes; every HDF5 file of the case is longer, and each part of it as well
+LIMIT = 16384  # bytes; every HDF5 file of the case is longer, and so is the part of each process
 LIMITED = 'if [ "$OMPI_COMM_WORLD_RANK" = "$1" ]; then bytes=$2; shift 2; exec prlimit --fsize=$bytes "$@"; else shift 2; exec "$@"; fi'
 
-# Fills a file system of its own, which ends with this process.
+# Fills a small file system, which only this process has, and lists the files before and after.
 FILLED = """
 set -e
 mount -t tmpfs -o size=$1 none out
@@ -30,7 +30,7 @@ exit $code
 
 
 def name_space():
-    """The command that gives a process file systems of its own, or None."""
+    """Returns the command that gives a process its own file systems, or None if this machine forbids it."""
     for words in (["unshare", "--mount", "--propagation", "private"], ["unshare", "--user", "--map-root-user", "--mount"]):
         tried = subprocess.run([*words, "mount", "-t", "tmpfs", "none", "/mnt"], capture_output=True, check=False)
         if tried.returncode == 0:
@@ -75,7 +75,7 @@ class FullDisks(Folder):
     def test_of_a_file_system(self):
         (self.folder / "out").mkdir()
         words = name_space()
-        # Where no file system may be mounted, all processes have a limit.
+        # If no file system can be mounted, the size of files is limited on all processes instead.
         reason = "No space left on device" if words else "File too large"
         environment = {**ENVIRONMENT, "PROGRAM_ALONE": str(PROGRAM), "CASE": GAS[0]}
         filled = FILLED if words else FILLED.replace("mount -t tmpfs", ": mount")
@@ -87,7 +87,7 @@ class FullDisks(Folder):
                 self.assertEqual(done.returncode, 4, done.stderr)
                 self.assertEqual(len(errors(done.stderr)), 1, done.stderr)
                 self.assertRegex(errors(done.stderr)[0], rf"\.h5\.partial'.*{reason}\); free some space or choose another folder$")
-                # A checkpoint that was complete before the file system was full has replaced the one before.
+                # All files are unchanged. Only a checkpoint may be newer: one was completed before the file system was full.
                 before, after = ([line for line in (self.folder / when).read_text().splitlines()
                                   if name != "checkpoint.h5" or not line.endswith(name)] for when in ("before", "after"))
                 self.assertEqual(after, before)

@@ -1,4 +1,4 @@
-"""Runs of Python on several processes (docs/processes.md)."""
+"""Runs from Python on several processes (docs/processes.md)."""
 import sys
 
 from processes import BUILD, ENVIRONMENT, Folder, launched, main, run
@@ -44,7 +44,7 @@ except apsis.InputError as problem:
 """
 
 
-# The difference of one process: an override, options, and a part of the error on the first process.
+# Arguments in which one process differs: an override, options, and a part of the error on the first process.
 DIFFERENT = {
     "time.end": ('"time.end=0.01" if first else "time.end=0.02"', "{}",
                  "process 1 was given another case than process 0 ('end = 0.02' instead of 'end = 0.01'); give all processes the same"),

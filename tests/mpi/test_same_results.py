@@ -1,11 +1,12 @@
-"""A case on any number of processes and threads has the same results, bit for bit, also across restarts (docs/processes.md, docs/device.md)."""
+"""A case has the same results, bit for bit, on any number of processes and threads, and after restarts on other numbers of them
+(docs/processes.md, docs/device.md)."""
 import json
 import unittest
 
 from processes import Folder, main, one_of, slow
 
-# A gas of three dimensions between moving walls with and without a given temperature and ends of all kinds, around two solid boxes, with a force; near walls it is
-# so thin in places that the limiter works there.
+# A gas with a force around two solid boxes. Its boundaries are of many kinds: moving, with a given temperature, adiabatic,
+# radiating, open. Near two corners the density is so small that the limiter acts there.
 STEP = """
 title = "Gas around boxes"
 [model]
@@ -71,7 +72,7 @@ normal = "y"
 at = 1.0
 """
 
-# Bodies that overlap and touch the solid boxes and the faces of the domain: small cells join across the borders of blocks.
+# Bodies that overlap, and that touch the solid boxes and the faces of the domain. Small cells join others across borders of blocks.
 BODIES = STEP.replace("[force]", '''[[space.body]]
 name = "disc"
 shape = "circle"
@@ -184,7 +185,7 @@ end = 0.01
 cfl = 0.4
 """
 
-# Jets that meet and heat the gas beyond what its velocities hold.
+# Two jets collide and heat the gas, so that its distribution reaches beyond the velocity grid.
 JETS = """
 title = "Jets"
 [model]
@@ -240,7 +241,7 @@ class SameResults(Folder):
 
     @slow
     def test_bodies_in_blocks_of_two_cells(self):
-        # The rows that a process needs are not those of its neighbours alone.
+        # In such narrow blocks a process needs rows of cells beyond those of its neighbours.
         self.write("bodies.toml", BODIES)
         self.completed(1, "run", "bodies.toml", "--out", "one")
         for count, blocks in ((7, "[7,1]"), (6, "[1,6]"), (9, "[3,3]")):

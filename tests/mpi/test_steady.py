@@ -1,4 +1,4 @@
-"""A steady state found by several processes is that of one, below the tolerance (docs/steady.md)."""
+"""Several processes find the same steady state as one process, up to the tolerance (docs/steady.md)."""
 import csv
 import unittest
 
@@ -40,7 +40,8 @@ tolerance = 1e-9
 # Half of a cylinder in a supersonic stream. Borders of blocks pass through its groups of cut cells.
 CYLINDER = ("gas/cylinder", "parameters.Kn=0.5", "space.cells=[36,18]", "velocity.points=12", "steady.tolerance=1e-9",
             'output.surfaces=["cylinder"]')
-# Iterates differ from the state by the tolerance times the number of iterations that an error survives, here about ten.
+# An iterate differs from the steady state by the tolerance (1e-9) times the number of iterations in which an error decays (about
+# ten). The bound has a margin of ten.
 CLOSE = 1e-7
 
 
@@ -51,7 +52,7 @@ class SteadyStates(Folder):
         return {name: np.array([float(row[name]) for row in rows]) for name in rows[0]}
 
     def last(self, folder):
-        """The last row of the history."""
+        """Returns the last row of the history."""
         with open(self.folder / folder / "history.csv", encoding="utf-8") as file:
             return list(csv.DictReader(file))[-1]
 
@@ -69,7 +70,10 @@ class SteadyStates(Folder):
             self.assertTrue(np.allclose(values, others[name], rtol=0, atol=CLOSE * max(1.0, np.nanmax(np.abs(values))), equal_nan=True), name)
 
     def expect_close(self, *case, counts=(2, 3, 4), most=1.5):
-        """`most`: iterations relative to those of one process. Free flight crosses one block in an iteration."""
+        """Checks that several processes find the state of one process in fewer than `most` times its iterations.
+
+        They need more iterations, since molecules in free flight cross one block in an iteration.
+        """
         alone = self.found(1, *case, out="one")
         for count in counts:
             self.assertLess(self.found(count, *case, out=f"on-{count}"), most * alone, count)
@@ -86,7 +90,7 @@ class SteadyStates(Folder):
         self.expect_close("channel.toml", counts=(2, 5))
 
     def test_a_nonnegative_state_between_cold_and_hot_plates(self):
-        # Values that the tolerance leaves below 0 lie on several processes.
+        # The solver removes negative values of the size of the tolerance. Here they are on several processes.
         self.expect_close("gas/fourier", "parameters.delta=10", "boundary.left.T=9", "velocity.max=18", "velocity.points=48",
                           "model.name=es-bgk", "space.cells=24", "space.limiter=positivity", "steady.tolerance=1e-9", counts=(2, 3), most=6)
         for folder in ("one", "on-2", "on-3"):

@@ -1,5 +1,6 @@
-/* u_t + u_x = (v - u^2)/epsilon, v_t = -(v - u^2)/epsilon on a periodic line: a program of PETSc that knows
- * nothing of Apsis. Prints the time reached, the norm of the solution and the type of the time stepper. */
+/* A program of PETSc without any code of Apsis. It solves u_t + u_x = (v - u^2)/epsilon and
+ * v_t = -(v - u^2)/epsilon on a periodic line. It prints the type of the time stepper, the time reached and the
+ * norm of the solution. */
 #include <petscdm.h>
 #include <petscdmda.h>
 #include <petscts.h>

@@ -1,6 +1,6 @@
 """Runs of PETSc with the type "apsis" on 1, 2 and 4 processes, and of a program that loads the library as a plug-in.
 
-The programs are named by variables of the environment, which CMakeLists.txt sets.
+CMakeLists.txt passes the paths of the programs in environment variables.
 """
 import os
 import re
@@ -21,7 +21,7 @@ LEFT = r"objects were never freed|\[ *\d+\] *\d+ bytes"
 
 
 def output_of(count, *command, code=0):
-    """Standard output of a program on some processes, which must end with this exit code."""
+    """Returns the output of a program on `count` processes. Fails unless it ends with this exit code."""
     launcher = [] if count == 1 else ["mpirun", "-n", str(count)]
     done = subprocess.run([*launcher, *command], env=ENVIRONMENT, capture_output=True, text=True, timeout=LIMIT)
     if done.returncode != code:
@@ -33,7 +33,7 @@ class Runs(unittest.TestCase):
     def passes_without_objects_left(self, count, tests):
         text = output_of(count, RUNS, "-malloc_dump", "-objects_dump", "-options_left", "no", "--gtest_color=no", "--gtest_filter=" + tests)
         self.assertRegex(text, r"\[  PASSED  \] \d+ tests")
-        # -objects_dump and -malloc_dump list what PetscFinalize() finds.
+        # With -objects_dump and -malloc_dump, PetscFinalize() lists objects and memory that were not freed.
         self.assertNotRegex(text, LEFT)
 
     def test_all_tests_pass_on_one_process_and_leave_no_object(self):
@@ -44,7 +44,7 @@ class Runs(unittest.TestCase):
 
     @slow
     def test_tests_of_several_processes_pass_on_four(self):
-        # On two processors that others use, they take minutes.
+        # These tests take minutes on two busy processors.
         self.passes_without_objects_left(4, OF_SEVERAL_PROCESSES)
 
     def test_the_check_for_objects_finds_one_that_is_left(self):
@@ -53,7 +53,7 @@ class Runs(unittest.TestCase):
 
 
 class PlugIn(unittest.TestCase):
-    # Few points and steps, since a busy machine takes milliseconds for each sum over processes.
+    # The points and steps are few, since each sum over the processes takes milliseconds on a busy machine.
     def norm(self, count, *options):
         text = output_of(count, ALONE, "-da_grid_x", "18", "-ts_adapt_type", "none", *options)
         return text.split(":")[0], float(re.search(r"t = 0.5, norm ([\d.]+)", text)[1])
@@ -66,7 +66,7 @@ class PlugIn(unittest.TestCase):
     def test_a_program_that_knows_nothing_of_apsis_uses_its_methods(self):
         name, expected = self.norm(1, "-ts_dt", "0.0078125", "-ts_arkimex_type", "4")
         self.assertEqual(name, "arkimex")
-        # Methods of order 3 and 4, with steps of half a cell.
+        # These methods of order 3 and 4 take longer steps, of about half a cell; their errors are below the tolerance.
         for count, method in (1, "md-imex-8-3-mixed"), (2, "ark-436"), (4, "md-imex-8-3-mixed"):
             self.assertAlmostEqual(self.apsis(count, method), expected, delta=1e-5)
 
@@ -74,7 +74,7 @@ class PlugIn(unittest.TestCase):
         self.assertEqual(len({self.apsis(1, method) for method in ("md-imex-4-2", "ssp2-222", "md-imex-8-3-mixed")}), 3)
 
     def test_every_name_of_the_library_is_found(self):
-        # libapsis_petsc.so, the file with its versions, and the name without a suffix.
+        # The library is given as libapsis_petsc.so, as the file with its version, and by its name without a suffix.
         for library in LIBRARY, LIBRARY_FILE, str(Path(LIBRARY).with_suffix("")):
             with self.subTest(library=library):
                 self.apsis(1, "md-imex-4-2", library)

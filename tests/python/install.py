@@ -1,5 +1,5 @@
-"""install.py BUILD: makes a wheel and installs the package into a new virtual environment, both from the build folder BUILD, and checks
-the result. These are the commands of docs/linking.md."""
+"""install.py BUILD: makes a wheel, installs the package into a new virtual environment, and checks the results. Both are made from the
+build folder BUILD, by the commands of docs/linking.md."""
 import os
 import shutil
 import subprocess
@@ -20,7 +20,7 @@ import apsis.report
 assert apsis.report.make_report('result').exists()
 print(apsis.__version__)
 """
-# Records its calls. Of a build it shows only what would be compiled (-n), since other tests use the folder.
+# A cmake that records its calls. A build only lists what would be compiled (-n), since other tests use the folder.
 CMAKE = """#!/bin/bash
 printf '%s\\n' "$*" >>'{calls}'
 case $1 in --build) exec '{cmake}' "$@" -- -n ;; *) exec '{cmake}' "$@" ;; esac
@@ -30,8 +30,8 @@ case $1 in --build) exec '{cmake}' "$@" -- -n ;; *) exec '{cmake}' "$@" ;; esac
 def main(build):
     with tempfile.TemporaryDirectory() as folder:
         source, environment, wheels = Path(folder, "source"), Path(folder, "venv"), Path(folder, "wheels")
-        # A copy without build folders, since pip writes build files into its source folder. A link to setup.py, which takes the
-        # folder of its file as the sources of BUILD.
+        # The sources are copied without build folders, since pip writes build files into its source folder. Only setup.py is a link,
+        # since it takes the folder of the file as the sources of BUILD.
         shutil.copytree(ROOT, source, ignore=shutil.ignore_patterns("build", "results", ".git", "__pycache__", "*.egg-info"))
         (source / "setup.py").unlink()
         (source / "setup.py").symlink_to(ROOT / "setup.py")
@@ -47,11 +47,11 @@ def main(build):
         subprocess.run([*pip, "wheel", "--no-build-isolation", "--no-deps", "-w", wheels, source], check=True, env=clean)
         (wheel,) = wheels.iterdir()
         subprocess.run([*pip, "install", "--no-build-isolation", "--no-index", source], check=True, env=clean)
-        # Neither configures or compiles: the folder has the module already.
+        # Neither command configures or compiles, since the folder has the module already.
         called = calls.read_text(encoding="utf-8").splitlines()
         assert called == [f"--build {build} --target apsis_python"] * 2, called
         subprocess.run([python, "-c", USE], check=True, env=clean, cwd=folder)
-        # The wheel is bound to this Python and contains the files that were installed.
+        # The wheel is for this version of Python and contains the files that were installed.
         tag = f"cp{sys.version_info.major}{sys.version_info.minor}"
         assert f"-{tag}-{tag}-linux_" in wheel.name, wheel.name
         files = {name for name in zipfile.ZipFile(wheel).namelist() if name.startswith("apsis/")}

@@ -1,4 +1,4 @@
-"""Bodies in Python: loads, outlines in pictures, and the files for ParaView, read by a parser of its own."""
+"""Bodies in Python: loads, outlines in pictures, and the files for ParaView, which a parser of this file reads."""
 import base64
 import xml.etree.ElementTree as xml
 from collections import Counter
@@ -36,7 +36,7 @@ def computed(request, tmp_path_factory):
 
 
 def numbers(element):
-    """The numbers of a DataArray: 8 bytes with their size, then these bytes."""
+    """Returns the numbers of a DataArray. Its first 8 bytes are the number of bytes that follow."""
     raw = base64.b64decode(element.text, validate=True)
     size = int(np.frombuffer(raw[:8], "<u8")[0])
     assert element.get("format") == "binary" and size == len(raw) - 8
@@ -46,7 +46,7 @@ def numbers(element):
 
 
 def read_vtp(path):
-    """Points, the numbers of the points of each cell, and the arrays of the cells."""
+    """Returns the points, the indices of the points of each cell, and the arrays of the cells."""
     root = xml.parse(path).getroot()
     assert root.attrib == {"type": "PolyData", "version": "1.0", "byte_order": "LittleEndian", "header_type": "UInt64"}
     piece = root.find("PolyData/Piece")
@@ -119,7 +119,7 @@ def test_outlines_are_the_pieces_of_the_wall(computed):
     assert list(result.walls) == ["disc"]
     pieces = result.walls["disc"]
     assert len(pieces) == len(result.surfaces["disc"]["area"])
-    # Points on the circle, counter-clockwise around it.
+    # The points are on the circle and run around it counter-clockwise.
     np.testing.assert_allclose(np.hypot(pieces[..., 0] + 0.4, pieces[..., 1] - 0.1), 0.8, atol=1e-6)
     along = pieces[:, 1] - pieces[:, 0]
     out = pieces.mean(axis=1) - [-0.4, 0.1]
@@ -156,8 +156,8 @@ def test_a_plane_cuts_polygons_along_closed_lines_around_the_body(computed, norm
         segments = cut_of(result.walls["ball"], normal, place)
         ends = np.round(segments, 9)
         assert sorted(map(tuple, ends[:, 0])) == sorted(map(tuple, ends[:, 1]))
-        # Counter-clockwise around a circle. The corners of a polygon in a cell of 0.5 lie on the sphere, within a circle of radius
-        # 0.5 sqrt(3)/2: so its points are at most that far inside of the sphere.
+        # The lines run counter-clockwise around a circle. The corners of a polygon are on the sphere of radius 1.1, in a cell of width
+        # 0.5 with half a diagonal of 0.25 sqrt(3). So all points of the polygon have a radius of at least sqrt(1.1² − 3·0.25²).
         beside = (place - [0.1, 0.2, 0][normal])**2
         inner = np.sqrt(1.1**2 - 3 * 0.25**2)
         radii = np.sqrt(((segments - np.delete([0.1, 0.2, 0], normal))**2).sum(axis=2) + beside)
@@ -181,7 +181,7 @@ def test_slices_cover_what_the_wall_encloses(computed, normal):
         area += np.isnan(np.take(result.fields["rho"][-1], layer, axis=normal)).sum() * 0.25
         assert area == pytest.approx(enclosed_area(segments), rel=1e-12, abs=1e-12)
         covered += len(hidden)
-    assert covered > 0  # cells of gas whose middle lies in the body
+    assert covered > 0  # some cells of gas have their middle in the body
 
 
 def test_slices_show_the_outline_of_a_body(computed):

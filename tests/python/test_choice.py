@@ -62,7 +62,7 @@ def test_problems_on_meshes_choose_too():
 
 
 def test_exceptions_for_states_of_the_estimate_alone_do_not_end_an_integration():
-    """The estimate starts from the equilibrium, here y = 0, which the solution y = 1 does not meet."""
+    """The estimate of unfit steps evaluates the transport at the equilibrium y = 0, but the solution is y = 1 at all times."""
     def transport(t, u):
         if u[1] == 0.0:
             raise ValueError("y = 0")

@@ -1,4 +1,4 @@
-"""Problems with a general collision: Newton's stages with given, complex-step and difference derivatives."""
+"""Problems with a general collision. Newton's method for stages takes derivatives that are given, by complex steps or by differences."""
 import pickle
 
 import apsis
@@ -15,7 +15,7 @@ def robertson_jacobian(u):
     return np.array([[-0.04, 1e4 * u[2], 1e4 * u[1]], [0.04, -1e4 * u[2] - 6e7 * u[1], -1e4 * u[1]], [0.0, 6e7 * u[1], 0.0]])
 
 
-# A problem in units of the smallest unknown would do as well: the norm of a tolerance is absolute.
+# Units of the unknowns. They make the second one larger, since tolerances are absolute.
 SCALES = np.array([1.0, 1e-4, 1.0])
 
 
@@ -31,8 +31,8 @@ def test_robertson_is_right_at_late_times(jacobian, derivatives, method, toleran
     times = [0, 40, 4e5, 4e7, 4e10]
     found = apsis.integrate(problem, [1.0, 0.0, 0.0], times, method, tolerance=tolerance)
     assert found.derivatives == derivatives
-    # Hairer & Wanner II, IV.10, and CVODE with a relative tolerance of 1e-11. The tolerance of a step is absolute, and errors of some
-    # hundred steps add up; a frozen stage leaves 6.3e-5 at the end.
+    # The values are those of Hairer & Wanner II, IV.10, and of CVODE with a relative tolerance of 1e-11. The tolerance is that of one
+    # step; errors of some hundred steps add up. A frozen stage, which Newton's method does not change, would leave 6.3e-5 at the end.
     for y, exact in zip(found.u[1:, 0], [0.7158270688, 4.938274e-3, 5.203072e-5, 5.208345e-8]):
         assert y == pytest.approx(exact, abs=20 * tolerance)
     np.testing.assert_allclose((found.u * SCALES).sum(axis=1), 1.0, rtol=0, atol=1e-12)
@@ -50,14 +50,14 @@ def test_three_kinds_of_derivatives_agree():
     for collision, by in ((robertson, "complex steps"), (real_only, "finite differences"), (wrong_for_complex, "finite differences")):
         found = apsis.integrate(apsis.GeneralProblem(collision), start, times, "imdrk-9-5", dt=0.5)
         assert found.derivatives == by
-        # Complex steps are exact to rounding. Differences have some ten digits of Q', which Q'Q multiplies by Δt λ = 500.
+        # Complex steps are exact up to rounding. Differences have errors of about 1e-10 in Q', and Δt λ = 500 multiplies them in Q'Q.
         np.testing.assert_allclose(found.u[-1], exact.u[-1], rtol=1e-11 if by == "complex steps" else 1e-6)
 
 
 @pytest.mark.parametrize("method, order", [("md-imex-3-2", 2), ("md-imex-6-3", 3), ("md-imex-14-4-accurate", 4), ("ark-436", 4),
                                            ("kutta-4", 4), ("dirk-4-3", 3)])
 def test_orders_with_transport(method, order):
-    """A pendulum with damping: T the motion, Q cubic damping and its restoring part; no transport for implicit methods."""
+    """A damped pendulum: T is the motion, Q is cubic damping and a restoring force. For implicit methods there is no transport."""
     implicit = apsis.method(method).kind == "implicit"
 
     def transport(t, u):
@@ -73,7 +73,7 @@ def test_orders_with_transport(method, order):
 
 
 def test_cells_of_a_local_problem_are_solved_alone():
-    """Two species that exchange, u₁ ⇌ u₂², advected: cells as one system and cell by cell."""
+    """Two advected species react as u₁ ⇌ u₂². Stages solved cell by cell equal those solved as one system."""
     cells = 12
     x = (np.arange(cells) + 0.5) / cells
     start = np.stack([1 + 0.5 * np.sin(2 * np.pi * x), np.ones(cells)], axis=-1)
@@ -156,7 +156,7 @@ def test_large_systems_are_warned_of_once_before_the_run(unknowns, local, method
 
 
 def test_explicit_and_additive_methods_keep_tolerances():
-    """Methods without an embedded solution compare one step with two halves."""
+    """Methods without an embedded solution estimate errors from one step and two half steps."""
     problem = apsis.RelaxationProblem(lambda t, u: np.array([u[1], 0.0]), lambda u: u[0], lambda w: [w, np.sin(w)], lambda w: 1 + w * w, 1.0)
     exact = apsis.integrate(problem, [2.0, 0.0], (0, 1), "md-imex-16-4-accurate", dt=1 / 512).u[-1]
     for method, p in (("kutta-4", 4), ("dop853", 8), ("ark-548", 5), ("ars-443", 3), ("exponential-2", 2)):

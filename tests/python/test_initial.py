@@ -34,7 +34,7 @@ def test_functions_are_sampled_as_formulas_of_a_case(formulation):
     space = {"formulation": formulation}
     by_formulas = apsis.run(case(FORMULAS, space=space))
     by_functions = apsis.run(case(space=space), initial=FUNCTIONS)
-    # sin of NumPy and of the C library may differ in the last bit, and steps add up such differences.
+    # sin of NumPy and of the C library may differ in the last bit. Such differences add up over the steps.
     np.testing.assert_allclose(by_functions.f, by_formulas.f, rtol=0, atol=1e-14)
     problem = gas(formulation=formulation)
     np.testing.assert_allclose(problem.state(**FUNCTIONS), apsis.run(case(FORMULAS, space=space, time={"end": 0})).f, rtol=1e-12, atol=1e-300)
@@ -117,7 +117,7 @@ def test_arrays_are_values_at_the_velocities_of_cells():
     problem = gas()
     values = maxwellian(problem.v) * np.linspace(1, 2, 20)[:, None]
     np.testing.assert_array_equal(problem.state(f=values), values)
-    np.testing.assert_allclose(problem.state(f=values[3]), np.tile(values[3], (20, 1)), rtol=1e-15)  # averages, with rounding
+    np.testing.assert_allclose(problem.state(f=values[3]), np.tile(values[3], (20, 1)), rtol=1e-15)  # the averages have rounding errors
     for wrong, says in ((values[:, :39], "state['f'] has the shape (20, 39)"), (lambda x, v: v[1:], "state['f'] returned an array of shape (39,)"),
                         (lambda x, v: -maxwellian(v), "state has no distribution at x = "), (lambda x, v: v * np.nan, "state has no distribution")):
         with pytest.raises(apsis.InputError) as refused:
@@ -141,7 +141,7 @@ def test_a_given_boundary_is_a_function_of_the_velocity():
 
 
 def test_a_total_flow_is_a_function_of_the_time():
-    """On a line it is the flux."""
+    """In one space dimension the total flow equals the flux."""
     def channel(left, right):
         return gas(boundary=({"kind": "mass-flow", **left}, {"kind": "mass-flow", **right}))
     problem = channel({"total_flow": lambda t: 0.2 + t}, {"total_flow": -0.3})
@@ -236,7 +236,7 @@ WALLS = {"left": {"kind": "diffuse", "T": "1 + 0.2*sin(40*t)", "accommodation": 
 
 @pytest.mark.parametrize("formulation", ["finite-volume", "finite-difference"])
 def test_walls_with_functions_equal_those_of_a_case(formulation):
-    """Also with several threads, which call the functions."""
+    """Functions give the same solution if several threads call them."""
     by_case = apsis.run(case({"rho": 1, "T": 1}, space={"formulation": formulation, "cells": 40}, boundary=WALLS, force={"acceleration": "0.3*cos(9*t)*x"}))
     problem = gas(cells=40, formulation=formulation, acceleration=lambda t, x: 0.3 * np.cos(9 * t) * x, largest_acceleration=0.3,
                   boundary={"left": {"kind": "diffuse", "T": lambda t, x: 1 + 0.2 * np.sin(40 * t), "accommodation": 0.7},
@@ -244,7 +244,7 @@ def test_walls_with_functions_equal_those_of_a_case(formulation):
     steps = by_case.summary["steps"]
     solutions = [apsis.integrate(problem, problem.state(rho=1, T=1), (0, 0.005), "md-imex-3-2", dt=0.005 / steps, threads=n) for n in (1, 2)]
     np.testing.assert_array_equal(solutions[0].u, solutions[1].u)
-    # The time step of the case is that of its rule, which is not exactly end/steps.
+    # The tolerance is the error of steps: those of the case follow its rule and are not exactly end/steps.
     np.testing.assert_allclose(solutions[0].u[-1], by_case.f, rtol=0, atol=2e-5)
 
 
@@ -329,7 +329,7 @@ def test_collisions_at_centres_are_those_of_a_case():
     by_case = apsis.run(case(FORMULAS, space={"collisions": "centres"}))
     by_functions = apsis.run(case(space={"collisions": "centres"}), initial=FUNCTIONS)
     np.testing.assert_allclose(by_functions.f, by_case.f, rtol=0, atol=1e-14)
-    assert np.abs(by_case.f - apsis.run(case(FORMULAS)).f).max() > 1e-12  # at Gauss points
+    assert np.abs(by_case.f - apsis.run(case(FORMULAS)).f).max() > 1e-12  # the default collides at Gauss points
     problem = gas(collisions="centres")
     u = problem.state(**FUNCTIONS)
     assert np.abs(apsis.integrate(problem, u, (0, 1e-3), "md-imex-3-2", dt=1e-4).u - apsis.integrate(gas(), u, (0, 1e-3), "md-imex-3-2", dt=1e-4).u).max() > 1e-12

@@ -1,4 +1,4 @@
-"""Tables of other programs as initial data: whatever HDF5 reads is read, and what nobody asks for is ignored."""
+"""Initial data can be tables of other programs. All forms of HDF5 data are read, and columns that are not needed are ignored."""
 import json
 
 import apsis
@@ -148,7 +148,7 @@ def test_columns_that_cannot_be_read_are_refused_by_name(make, message, tmp_path
 
 
 def test_a_small_file_that_claims_to_be_large_is_refused_before_it_is_expanded(tmp_path):
-    """Bounded by the table: as many numbers as x has. The file has some hundred bytes for a gibibyte of numbers."""
+    """A column may have only as many numbers as x. This file of some hundred bytes has a column of a gibibyte."""
     write(tmp_path / "a.h5", columns={name: values for name, values in COLUMNS.items() if name != "T"})
     with h5py.File(tmp_path / "a.h5", "a") as file:
         file.create_dataset("T", (2**27,), "f8", chunks=(2**20,), compression="gzip", fillvalue=1.0)
@@ -188,7 +188,7 @@ def test_columns_of_a_table_that_nobody_asks_for_may_have_anything(tmp_path, exp
 
 
 def test_messages_do_not_obey_a_file(tmp_path):
-    """Names of columns come from the file; a terminal must not obey them."""
+    """Messages escape control characters in names of columns, since a terminal would execute them."""
     (tmp_path / "a.csv").write_text("x,\x1b]0;owned\x07rho\n0.5,1\n")
     with pytest.raises(apsis.InputError) as refused:
         run(tmp_path / "a.csv")

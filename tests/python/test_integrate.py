@@ -27,7 +27,7 @@ def test_results_are_those_of_the_program():
     mine = apsis.integrate(ode(1e-4), [2.0, 0.0], (0, 1), "md-imex-6-3", dt=1 / 64)
     theirs = apsis.run("paper/ode", "model.epsilon=1e-4", "time.dt=1/64", "time.end=1.0", "time.method=md-imex-6-3")
     assert mine.steps == theirs.summary["steps"] == 64
-    # The same stages in the same order; sin may be rounded differently in NumPy.
+    # Both compute the same stages in the same order, but NumPy may round sin differently.
     np.testing.assert_allclose(mine.u[-1], theirs.f[0], rtol=1e-13)
 
 
@@ -36,7 +36,7 @@ def test_a_smaller_tolerance_gives_smaller_errors_and_more_steps():
     exact = apsis.integrate(ode(1e-2), [2.0, 0.0], (0, 1), name, dt=1 / 4096).u[-1]
     found = [apsis.integrate(ode(1e-2), [2.0, 0.0], (0, 0.5, 1), name, dt=0.5, tolerance=tol) for tol in (1e-3, 1e-6)]
     errors = [np.abs(one.u[-1] - exact).max() for one in found]
-    # Errors accumulate over steps, and the estimate of a step exceeds its error by far.
+    # Bounds have wide margins: errors add up over steps, while the estimate of a step is far above its error.
     assert errors[0] < 1e-2 and errors[1] < 1e-4 and errors[1] < errors[0] / 10
     assert found[1].steps > 2 * found[0].steps
 
@@ -151,11 +151,11 @@ def test_arrays_given_to_functions_may_be_kept():
 
 
 def test_a_view_of_u_may_be_the_moments():
-    # The moments outlive the call, and u changes.
+    # The integrator needs the moments after the call, when u, whose memory they share, has changed.
     u0 = np.ones((2, 50)) + np.arange(50)
     problem = apsis.RelaxationProblem(lambda t, u: np.zeros((2, 50)), lambda u: u[0], lambda w: np.stack([w, 2 * w]), lambda w: 1.0, 0.0)
     end = apsis.integrate(problem, u0, (0, 1), "md-imex-6-3", dt=0.5).u[-1]
-    # A stage is a convex combination of equal numbers: one rounding error.
+    # Each stage is a convex combination of equal numbers, with one rounding error.
     np.testing.assert_allclose(end, [u0[0], 2 * u0[0]], rtol=4e-16)
 
 
@@ -204,7 +204,7 @@ def test_an_exception_of_a_conversion_is_the_cause_of_the_message():
 
 @pytest.mark.parametrize("where", ["transport", "conversion", "moments", "rate", "admissible"])
 def test_control_c_raises_keyboard_interrupt_wherever_it_arrives(where):
-    # The signal arrives in Python code of a call, and Python handles it there or at the next step.
+    # The signal arrives while a function in Python runs. Python handles it there or at the next step.
     class Interrupting:
         def __array__(self, *_, **__):
             signal.raise_signal(signal.SIGINT)
@@ -223,8 +223,8 @@ def test_control_c_raises_keyboard_interrupt_wherever_it_arrives(where):
 
 
 def test_a_tolerance_needs_no_step():
-    # The final error is proportional to tol^(p/(q + 1)) = tol; the tables of docs/methods.md have errors of
-    # up to 32 tolerances.
+    # The final error is proportional to tol^(p/(q + 1)) = tol. In the tables of docs/methods.md, errors are at most
+    # 32 tolerances.
     exact = apsis.integrate(ode(1e-3), [2.0, np.sin(2.0)], (0, 1), "md-imex-14-4-accurate", dt=1 / 4096).u[-1]
     for tolerance in (1e-3, 1e-5):
         found = apsis.integrate(ode(1e-3), [2.0, np.sin(2.0)], (0, 1), "md-imex-8-3-mixed", tolerance=tolerance)
@@ -236,9 +236,9 @@ def test_every_law_of_step_control_keeps_the_tolerance():
     exact = apsis.integrate(ode(1e-2), [2.0, np.sin(2.0)], (0, 1), "md-imex-14-4-accurate", dt=1 / 2048).u[-1]
     found = {law: apsis.integrate(ode(1e-2), [2.0, np.sin(2.0)], (0, 1), "md-imex-8-3-mixed", tolerance=1e-5, controller=law)
              for law in ("predictive", "integral", "pi", "pid", "h211b", "h312pid")}
-    # The tables of docs/methods.md have errors of up to 32 tolerances.
+    # In the tables of docs/methods.md, errors are at most 32 tolerances.
     assert all(np.abs(one.u[-1] - exact).max() < 32e-5 for one in found.values())
-    # Laws agree where every step may be twice as long as the last one.
+    # Some laws may take the same steps: those in which every step is twice as long as the last one.
     assert len({one.u[-1].tobytes() for one in found.values()}) >= 4
     assert found["predictive"] == apsis.integrate(ode(1e-2), [2.0, np.sin(2.0)], (0, 1), "md-imex-8-3-mixed", tolerance=1e-5)
     with pytest.raises(apsis.InputError, match="unknown controller 'pdi' .*valid: predictive, integral, pi, pid"):
@@ -252,7 +252,7 @@ def test_a_graded_start_takes_fewer_steps_with_a_larger_growth():
         return apsis.integrate(ode(1e-4), [2.0, 0.0], (0, 1), "extrapolated-euler-7", dt=0.25, startup="graded",
                                startup_growth=growth).steps
 
-    # The first of four steps becomes 1 + ceil(log(8 dt C/(g epsilon))/log(g)), with C = 5.
+    # The first of four steps is divided into 1 + ceil(log(8 dt C/(g epsilon))/log(g)) steps, with C = 5.
     assert [steps(g) for g in (2, 4, 8, 64)] == [3 + 1 + 16, 3 + 1 + 8, 3 + 1 + 5, 3 + 1 + 2]
     with pytest.raises(apsis.InputError, match="growth of a graded start is 1 .*from 2 to 64"):
         steps(1)
@@ -266,7 +266,7 @@ def test_a_method_that_cannot_integrate_the_problem_is_refused():
     with pytest.raises(apsis.InputError, match="SSP coefficient"):
         apsis.integrate(ode(1e-2, forward_euler_step=lambda t, u: 0.1), [2.0, 0.0], (0, 1), "ars-443")
     wrong = ode(1e-2)
-    wrong.equilibrium = lambda w: [w + 1e-3, np.sin(w)]  # its moment is not w
+    wrong.equilibrium = lambda w: [w + 1e-3, np.sin(w)]  # the moment of this equilibrium is not w
     with pytest.raises(apsis.InputError, match="moments"):
         apsis.integrate(wrong, [2.0, 0.0], (0, 1), dt=0.1)
 

@@ -1,4 +1,4 @@
-"""Ctrl-C before the first step: KeyboardInterrupt within the sampling of initial data, which takes minutes, and no files."""
+"""Ctrl-C before the first step raises KeyboardInterrupt while initial data are sampled, which can take minutes. No files are written."""
 import signal
 import subprocess
 import sys
@@ -25,7 +25,7 @@ CALLS = {
 
 @pytest.mark.parametrize("name", CALLS)
 def test_sampling_ends_with_keyboard_interrupt(name, tmp_path):
-    # A shell without job control ignores the signal in what it runs in the background, and Python then has no handler.
+    # In the background of a shell without job control, programs ignore the signal, and Python sets no handler. So the test sets it.
     code = f"""
     import signal
     import sys

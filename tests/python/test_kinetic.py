@@ -13,7 +13,7 @@ def bgk(**more):
 @pytest.mark.parametrize("method", ["md-imex-6-3", "exponential-2"])
 @pytest.mark.parametrize("formulation", ["finite-volume", "finite-difference"])
 def test_it_equals_the_problem_of_the_case(formulation, method):
-    """Bit for bit the numbers of a run of the same problem from a case file."""
+    """The problem has, bit for bit, the numbers of a run of a case file for the same problem."""
     case = apsis.run("paper/bgk-mixed", "space.cells=20", "velocity.points=40", f"space.formulation={formulation}", "model.epsilon=1e-2",
                      "time.end=0.05", f"time.method={method}", "time.dt=0.0005", threads=1)
     problem = bgk(formulation=formulation, positivity=True)
@@ -35,7 +35,7 @@ def test_functions_of_position_are_data_and_epsilon():
     u = problem.sample(gas)
     np.testing.assert_allclose(problem.fields(u)["rho"], 1.0 + 0.2 * np.sin(np.pi * problem.x), rtol=1e-12)
     np.testing.assert_allclose(problem.fields(u)["T"], 1.0, rtol=1e-12)
-    # Equilibrium up to the accuracy of the midpoint rule: the collision vanishes.
+    # The state is an equilibrium up to the accuracy of the midpoint rule, so the collision vanishes.
     assert np.abs(problem.collision(u)).max() < 1e-9
     np.testing.assert_allclose(problem.solve_collision(u, 0.1, -0.01), u, rtol=0, atol=1e-12)
 
@@ -47,7 +47,7 @@ def test_a_state_is_projected_to_its_equilibrium(more):
     equilibrium = problem.project_to_equilibrium(u)
     for name in ("rho", "u", "T"):
         np.testing.assert_allclose(problem.fields(equilibrium)[name], problem.fields(u)[name], rtol=1e-12, atol=1e-13)
-    if more.get("formulation") == "finite-difference":  # of averages, Q is an average over a cell
+    if more.get("formulation") == "finite-difference":  # for cell averages, Q would be an average, too
         scale = np.abs(problem.collision(u)).max()
         assert np.abs(problem.collision(equilibrium)).max() < 1e-10 * scale
     with pytest.raises(apsis.InputError, match="t = nan is not finite"):
@@ -73,7 +73,7 @@ def test_transport_is_minus_the_derivative_of_the_flux():
     problem = apsis.KineticProblem("broadwell", cells=160, domain=(-1, 1), formulation="finite-difference")
     u = problem.sample(lambda x: [2 + np.sin(np.pi * x), 1.0, 1.0])
     expected = -np.pi * np.cos(np.pi * problem.x)  # the first component has speed 1
-    # Fifth order on 160 cells: (πΔx)⁵ π/60 ≈ 5e-9, and more at smooth extrema.
+    # The scheme of order 5 has errors of (πΔx)⁵ π/60 ≈ 5e-9 on 160 cells, but larger ones at smooth extrema.
     np.testing.assert_allclose(problem.transport(u)[:, 0], expected, atol=1e-5)
     assert problem.forward_euler_step(u) == pytest.approx(2 / 160, rel=1e-12)
 
@@ -147,8 +147,8 @@ def test_failures_report_their_cell():
 def test_what_the_velocities_miss_is_measured_and_warned_of(capfd):
     problem = bgk(velocities=(4.5, 40), formulation="finite-difference")
     good, poor = problem.state(rho=1, T=1), problem.state(rho=1, T=lambda x: 1.0 if x < 1 else 2.0)
-    assert "velocity.max = 4.5 is too small for the data" in capfd.readouterr().err  # of the second alone: one warning
-    # The energy of a Maxwellian beyond 4.5 √T/σ, by the normal distribution, and the midpoint rule at its ends.
+    assert "velocity.max = 4.5 is too small for the data" in capfd.readouterr().err  # only the second state causes a warning
+    # The energy of a Maxwellian at speeds above 4.5, from the normal distribution. The tolerance is for the midpoint rule at the ends.
     kappa = 4.5 / np.sqrt(np.where(problem.x < 1, 1.0, 2.0))
     beyond = np.array([math.erfc(k / math.sqrt(2)) + 2 * k * math.exp(-k * k / 2) / math.sqrt(2 * math.pi) for k in kappa])
     np.testing.assert_allclose(problem.velocity_missed(poor), beyond, rtol=0.1)

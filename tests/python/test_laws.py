@@ -1,4 +1,4 @@
-"""Conservation laws of the user: cases as mappings, and problems without a case."""
+"""Conservation laws of the user, in cases that are mappings and in problems without a case."""
 import apsis
 import numpy as np
 import pytest
@@ -13,8 +13,8 @@ WATER = {"parameters": {"g": 1.0},
 def test_a_law_is_run_from_a_mapping_with_overrides():
     result = apsis.run(WATER)
     h, q = result.fields["h"][-1], result.fields["q"][-1]
-    np.testing.assert_allclose(h.mean(), result.fields["h"][0].mean(), rtol=1e-13)  # walls
-    # The hump splits into two that run with about √(gh): mirror images, up to rounding in nonlinear weights.
+    np.testing.assert_allclose(h.mean(), result.fields["h"][0].mean(), rtol=1e-13)  # no water flows through walls
+    # The hump splits into two with speeds of about √(gh). They are mirror images up to rounding errors, which nonlinear weights amplify.
     np.testing.assert_allclose(h, h[::-1], atol=1e-10)
     np.testing.assert_allclose(q, -q[::-1], atol=1e-10)
     assert abs(abs(result.x[np.argmax(h)]) - 1.0) < 0.1
@@ -33,7 +33,7 @@ def test_errors_of_a_law_have_their_key_and_state():
         with pytest.raises(error, match=change.split("=")[0]) as caught:
             apsis.run(WATER, change)
         assert says in str(caught.value)
-    # Two halves of a deep hump meet the walls.
+    # The two halves of a high hump reach the walls, where the water is too fast for this speed.
     with pytest.raises(apsis.NumericalError, match="broken promise: model.speed = 1.8 is too small"):
         apsis.run(WATER, "initial.h=1 + 2*exp(-10*x^2)", "model.speed=1.8")
 

@@ -20,7 +20,7 @@ def test_arrays_fractions_and_certificate_agree(name):
         assert m.A.shape == m.A_dot.shape == (s, s)
         np.testing.assert_allclose(R @ m.A, m.D, atol=1e-12)
     exact = m.exact
-    # The convex weights of a double form are on a grid of 2^-53 or so.
+    # Convex weights in double precision are rounded to multiples of about 2^-53.
     np.testing.assert_allclose([[float(x) for x in row] for row in exact["W"]], m.W, atol=1e-15)
     c = m.certificate
     assert c.claims_hold and c.failures == []
@@ -36,11 +36,11 @@ def test_the_certificate_is_that_of_the_paper():
 
 
 def test_conditions_of_a_tableau_are_exact():
-    # The trapezoidal rule with two stages, of order 2 exactly.
+    # The trapezoidal rule has two stages and order 2, not 3.
     trapezoidal = [[0, 0], [Fraction(1, 2), Fraction(1, 2)]]
     conditions = apsis.order_conditions(trapezoidal, order=3)
     assert [one.residual for one in conditions if one.order <= 2] == [0.0, 0.0]
-    # Both trees of order 3: Σ b c² = 1/2 instead of 1/3, Σ b A c = 1/4 instead of 1/6.
+    # Both conditions of order 3 are violated: Σ b c² is 1/2 instead of 1/3, and Σ b A c is 1/4 instead of 1/6.
     assert sorted(one.residual for one in conditions if one.order == 3) == [float(Fraction(1, 12)), float(Fraction(1, 6))]
     third = apsis.order_conditions([["1/3"]], order=1)
     assert third[0].residual == float(Fraction(1, 3) - 1)
@@ -53,7 +53,7 @@ def test_methods_of_the_catalogue_satisfy_the_conditions_from_their_arrays(name)
     order = m.certificate.order
     tableau = dict(A=m.A.tolist(), A_dot=m.A_dot.tolist(), A_hat=None if m.kind.startswith("implicit") else m.A_hat.tolist())
     conditions = apsis.order_conditions(**tableau, order=order + 1)
-    # Coefficients in double of size up to 10, products of up to five of them.
+    # Conditions have products of up to five coefficients of size up to 10, in double precision.
     assert max(abs(one.residual) for one in conditions if one.order <= order) < 1e-10
     assert max(abs(one.residual) for one in conditions if one.order == order + 1) > 1e-6
 
@@ -93,7 +93,7 @@ def test_a_file_that_changed_is_read_and_certified_again(tmp_path):
     file.write_text(text, encoding="utf-8")
     first = apsis.method(str(file))
     assert first.certificate.order == 1
-    # The implicit Taylor method of order 2.
+    # With this coefficient, the method is the implicit Taylor method of order 2.
     file.write_text(text.replace("order = 1", "order = 2").replace('ddot = ["0"]', 'ddot = ["-1/2"]'), encoding="utf-8")
     second = apsis.method(str(file))
     assert second.certificate.order == 2 and second != first
@@ -110,7 +110,7 @@ def test_methods_and_certificates_are_values(tmp_path):
         copy = pickle.loads(pickle.dumps(value))
         assert copy == value and repr(copy) == repr(value)
     assert np.array_equal(pickle.loads(pickle.dumps(one)).W, one.W)
-    # A method outlives its file, also one with false claims.
+    # A method, even one with false claims, can be used after its file was removed.
     file = tmp_path / "mine.toml"
     file.write_text('name = "mine-1"\ntitle = "backward Euler"\nkind = "implicit"\ncitation = "none"\n'
                     '[claims]\norder = 2\n[shu_osher]\nP = [[]]\nd = ["1"]\nddot = ["0"]\n', encoding="utf-8")
@@ -125,7 +125,7 @@ def test_representations_are_short_and_escaped():
     assert repr(m.certificate) == "<apsis.Certificate of md-imex-6-3: order 3, SSP coefficient 0.904402, type A>"
     assert "any step" in repr(apsis.method("imdrk-5-4").certificate)
     assert "<td>0.904402</td>" in m.certificate._repr_html_()
-    # Text of a file is escaped.
+    # Text from the file is escaped: the only tags are those of the representation.
     assert set(re.findall(r"<(/?\w+)", m._repr_html_())) <= {f"{end}{tag}" for end in ("", "/") for tag in ("table", "tr", "th", "td")}
 
 
@@ -142,7 +142,7 @@ def test_exponential_methods_have_no_butcher_matrix_of_the_collision():
 def test_the_certificate_has_linear_stability_limits():
     limits = apsis.method("md-imex-5-2").certificate.cfl_limits
     assert set(limits) == {"teno5", "upwind1", "upwind5", "weno5-js", "weno5-z", "weno5-z-smooth"}
-    assert limits["upwind1"] == pytest.approx(2, rel=2e-3)  # r; the allowed growth adds 1e-3
+    assert limits["upwind1"] == pytest.approx(2, rel=2e-3)  # the limit is r; the allowed growth adds 1e-3
     assert 0.5 < limits["weno5-z"] < 0.8
     assert apsis.method("ssprk-3-3").certificate.cfl_limits["weno5-js"] == pytest.approx(1.43, abs=0.01)
     assert apsis.method("imdrk-5-4").certificate.cfl_limits == {}
@@ -157,5 +157,5 @@ def test_steps_of_a_problem_without_limiter_are_linearly_stable(method):
     maxwellian = np.exp(-v**2 / 2) / np.sqrt(2 * np.pi)
     u0 = (1 + 0.1 * np.sin(2 * np.pi * x))[:, None] * maxwellian
     u = apsis.integrate(problem, u0, (0.0, 5.0), method).u[-1]
-    # Free flight in a periodic domain keeps the 2-norm of the exact solution.
+    # In a periodic domain, free flight keeps the 2-norm of the exact solution.
     assert np.linalg.norm(u) <= np.linalg.norm(u0) * 1.001

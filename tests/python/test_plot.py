@@ -34,7 +34,7 @@ def test_fields_of_a_run_are_in_the_order_of_the_model(tmp_path):
     figure = fields_figure(read_result(tmp_path))
     assert [a.get_ylabel() for a in figure.axes] == [f"{name} (dimensionless)" for name in ("density", "bulk velocity", "temperature", "heat flux")]
     for axes, name in zip(figure.axes, ("rho", "u", "T", "heat_flux")):
-        # Earlier snapshots in grey, the final one last.
+        # Earlier snapshots are grey, and the final one is drawn last.
         assert len(computed.t) == 4
         assert [line.get_label() for line in axes.lines] == [f"t = {t:.4g}" for t in computed.t]
         for line, values in zip(axes.lines, computed.fields[name]):
@@ -48,7 +48,7 @@ def test_axes_of_results_in_si_units_have_these_units(tmp_path):
     assert {a.get_xlabel() for a in figure.axes} == {"x (m)"}
     assert "temperature (K)" in [a.get_ylabel() for a in figure.axes]
     assert history_figure(result).axes[-1].get_xlabel() == "t (s)"
-    # The same numbers without a folder.
+    # A result without a folder gives the same numbers.
     np.testing.assert_array_equal(computed.fields["T"][-1], result.fields["T"])
     np.testing.assert_array_equal(computed.x, result.arrays["x"])
     assert math.isclose(computed.t[-1], 2e-10) and 300 < result.fields["T"].mean() < 350
@@ -90,7 +90,7 @@ def test_history_of_a_steady_state_shows_its_iterations(tmp_path):
 
 
 def test_history_shows_the_checks_and_varying_steps(tmp_path):
-    # No snapshot between start and end: constant steps have no panel.
+    # Snapshots are only at the start and the end, so steps are constant and have no panel.
     computed = run(tmp_path / "a", "paper/bgk-mixed", *SMALL_BGK[:-1], "output.every=0.01")
     smallest, defects, entropy = history_figure(read_result(tmp_path / "a")).axes
     np.testing.assert_array_equal(smallest.lines[0].get_ydata(), computed.history["min_value"])
@@ -134,14 +134,14 @@ def test_a_comparison_of_different_models_is_refused(tmp_path):
 
 @pytest.mark.parametrize("name", ["md-imex-6-3", "ars-222", "imdrk-5-4", "ssprk-3-3", "hsz-a-3-2"])
 def test_the_stability_function_is_one_step_of_the_integrator(name):
-    # u′ = −λ_Q (u − 0·w) with transport λ_T u: of RelaxationProblem with E = 0, Q = −u/ε, T = λ_T u.
+    # The test equation u′ = λ_T u + λ_Q u is a RelaxationProblem with E = 0, Q = −u/ε and T = λ_T u.
     z_T, z_Q, method = -0.3, -1.7, apsis.method(name)
     if method.kind == "implicit":
         z_T = 0.0
     problem = apsis.RelaxationProblem(transport=lambda t, u: [z_T * u[0]], moments=lambda u: 0.0, equilibrium=lambda w: [0.0],
                                       rate=lambda w: 1.0, epsilon=-1 / z_Q)
     stepped = apsis.integrate(problem, [1.0], (0, 1), dt=1.0, method=name).u[-1][0]
-    # Rounding errors of some tens of operations.
+    # The tolerance is for rounding errors of some tens of operations.
     assert complex(stability_function(describe(name), z_T, z_Q)) == pytest.approx(stepped, rel=1e-12)
 
 
@@ -213,7 +213,7 @@ def test_a_study_names_its_quantity_and_has_one_range():
     assert left.get_ylim() == right.get_ylim() and left.get_ylim()[0] < 1e-7 and left.get_ylim()[1] > 1
     for axes in (left, right):
         assert axes.get_ylabel().replace("\n", " ") == "l2 norm of the difference in rho to the next finer run (dimensionless)"
-    # Other pictures keep the labels and ranges of their panels.
+    # In other pictures, panels keep their own labels and ranges.
     left, right = draw(picture(one, other)).axes
     assert left.get_ylim() != right.get_ylim() and left.get_ylabel() == "error"
 
@@ -225,7 +225,7 @@ def test_a_legend_lies_on_no_slope_triangle_label_or_curve(slopes):
     figure.canvas.draw()
     (axes,) = figure.axes
     legend = axes.get_legend().get_window_extent()
-    # All curves lie inside the axes, whose labels are below.
+    # The legend overlaps neither the curves, which are inside the axes, nor the labels below them.
     assert not legend.overlaps(axes.get_window_extent()) and not legend.overlaps(axes.xaxis.label.get_window_extent())
     assert legend.y0 >= 0 and legend.x0 >= 0 and legend.x1 <= figure.bbox.width
 
@@ -283,7 +283,7 @@ def test_a_picture_whose_name_is_a_path_is_refused(tmp_path, capsys):
 
 def test_a_method_without_a_butcher_form_is_refused(tmp_path, capsys):
     file = tmp_path / "exponential-2.json"
-    file.write_text(json.dumps({"name": "exponential-2", "A_hat": [[0]]}), encoding="utf-8")  # as the program describes it
+    file.write_text(json.dumps({"name": "exponential-2", "A_hat": [[0]]}), encoding="utf-8")  # the program describes it so
     assert command.main([str(file), "--out", str(tmp_path)]) == 4
     assert "'exponential-2' cannot be drawn (an exponential method has no Butcher form); give" in capsys.readouterr().err
     assert sorted(path.name for path in tmp_path.iterdir()) == [file.name]

@@ -65,7 +65,7 @@ def space(tmp_path_factory):
 
 
 def maps(figure):
-    """The maps of a figure, each with its title in one line."""
+    """Returns the maps of a figure, each with its title in one line."""
     return [(axes.get_title().replace("\n", " "), axes) for axes in figure.axes if axes.get_label() != "<colorbar>"]
 
 
@@ -80,12 +80,12 @@ def test_maps_show_the_fields_with_x_across_and_y_up(plane):
         np.testing.assert_array_equal(mesh.get_array().filled(np.nan).reshape(8, 16), result.fields[name].T)
         np.testing.assert_allclose([axes.dataLim.x0, axes.dataLim.x1, axes.dataLim.y0, axes.dataLim.y1], [0, 2, 0, 1], atol=1e-15)
         assert axes.get_aspect() == 1.0
-        # Equal scales, without empty margins that Matplotlib would cut off.
+        # Both axes have equal scales and no empty margins, which Matplotlib would cut off.
         box = axes.get_position().transformed(axes.figure.transFigure)
         assert box.width == pytest.approx(2 * box.height)
-        # The box is blank.
+        # The 4 x 2 cells of the box are blank.
         assert mesh.get_array().mask.sum() == 4 * 2
-    # Both signs: symmetric about 0.
+    # Colors of a field with both signs are symmetric about 0.
     low, high = drawn[1][1].collections[0].get_clim()
     assert low == -high < 0.0
     assert history_figure(result) is not None
@@ -96,7 +96,7 @@ def test_streamlines_turn_as_the_gas_does(plane):
     speed = maps(fields_figure(result))[-1][1]
     arrows = [patch for patch in speed.patches]
     assert arrows
-    # u = 0.3 (-(y - 1/2), x - 1) turns counter-clockwise about (1, 1/2): so does every arrow.
+    # The velocity u = 0.3 (-(y - 1/2), x - 1) turns counter-clockwise about (1, 1/2), and so does every arrow.
     for arrow in arrows:
         (x0, y0), (x1, y1) = arrow._posA_posB
         middle = np.array([0.5 * (x0 + x1) - 1.0, 0.5 * (y0 + y1) - 0.5])
@@ -125,7 +125,7 @@ def test_gas_that_hardly_moves_has_no_streamlines():
     _, panel = plt.subplots()
     draw_streamlines(panel, SimpleNamespace(arrays={"x": x, "y": x}), fields, Plane("x", "y"), (3.0, 3.0))
     lines = np.concatenate(panel.collections[0].get_segments())
-    assert 2.5 < lines[:, 0].max() <= 4.0  # from the last cell that moves at most to its neighbour
+    assert 2.5 < lines[:, 0].max() <= 4.0  # lines end at most one cell behind the last cell that moves
 
 
 def test_the_speed_of_a_run_in_si_units_has_a_unit(tmp_path):
@@ -145,7 +145,7 @@ def test_a_comparison_of_planes_has_a_row_for_each_field_with_one_range_of_colou
     for (_, left), (_, right), name in zip(drawn[::2], drawn[1::2], ("rho", "u_x", "u_y", "T")):
         assert left.collections[0].get_clim() == right.collections[0].get_clim()
         np.testing.assert_array_equal(right.collections[0].get_array().filled(np.nan).reshape(16, 32), runs[1][1].fields[name].T)
-    # The finer run is averaged over 2 x 2 cells; those of the box have no value in either.
+    # The finer run is averaged over 2 x 2 cells. Cells of the box have no value in either run.
     coarse, fine = (run.fields["rho"] for _, run in runs)
     blocks = 0.25 * (fine[::2, ::2] + fine[1::2, ::2] + fine[::2, 1::2] + fine[1::2, 1::2])
     (line,) = differences(runs)
@@ -202,7 +202,7 @@ def test_a_plane_of_symmetry_at_one_end_is_drawn_in_place_of_the_middle(space):
         case = whole.manifest["case"] | {"boundary": {face: {"kind": kind} for face, kind in kinds.items()}}
         result = replace(whole, manifest=whole.manifest | {"case": case})
         return [plane.place for plane in planes_of(result, None)]
-    # All ends are symmetric: none is drawn. Centres of cells along z, y and x.
+    # If all ends are symmetric, the planes in the middle are drawn. The places are centres of cells along z, y and x.
     assert places() == pytest.approx([1.5, 0.5, 1.125])
     assert places(front="outflow", bottom="outflow") == pytest.approx([1 / 6, 1 - 1 / 14, 1.125])
     assert places(front="outflow", back="outflow", right="inflow") == pytest.approx([1.5, 0.5, 0.125])

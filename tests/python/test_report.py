@@ -45,7 +45,7 @@ def page_of_claims(folder, *claims):
 
 @pytest.fixture(scope="module")
 def run(tmp_path_factory):
-    """A run whose title contains HTML markup."""
+    """Makes a run whose title contains HTML markup, and returns its folder."""
     folder = tmp_path_factory.mktemp("run")
     apsis.run("paper/bgk-mixed", *SMALL, 'title="a <b> & \\"c\\""', out=folder)
     return folder
@@ -53,7 +53,7 @@ def run(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def page_of_run(run):
-    """Its page, made once for all tests that read it."""
+    """Returns the page of this run, made once for all tests."""
     return page_of(run)
 
 
@@ -80,7 +80,7 @@ def test_text_is_escaped(page_of_run):
 
 
 def test_a_broken_promise_is_reported(tmp_path):
-    # No case breaks a promise; the manifest is edited to that of such a run.
+    # No case breaks a promise, so the manifest is changed to that of a run that does.
     apsis.run("paper/bgk-mixed", *SMALL, out=tmp_path)
     manifest = json.loads((tmp_path / "manifest.json").read_text(encoding="utf-8"))
     manifest |= {"state": "failed", "message": "broken promise: 1 values are negative [step 3, t = 0.1]"}
@@ -243,7 +243,7 @@ SCRIPT = "<script>alert(1)</script>"
 
 
 def leaves(document, path=()):
-    """Paths of all values of a JSON document, and of all keys."""
+    """Yields the paths of all values and keys of a JSON document."""
     inner = document.items() if isinstance(document, dict) else enumerate(document) if isinstance(document, list) else ()
     for key, value in inner:
         yield (*path, key)
@@ -277,8 +277,8 @@ def attacks(document):
 
 
 def check_pages(folder, name, document, monkeypatch):
-    """No value and no name of a document reaches the page as markup; what cannot be shown is an error of one line."""
-    # Pictures are images of their own, and take seconds.
+    """Checks that no value and no name of a document is markup in the page. Documents that cannot be shown raise PictureError."""
+    # Pictures are left out: they are separate images and take seconds.
     monkeypatch.setattr("apsis.report.run.figures", lambda result: {})
     for module in ("claims", "study", "validation"):
         monkeypatch.setattr(f"apsis.report.{module}.page.embedded", lambda figure, *words: f"<p>{page.text(' '.join(map(str, words[:3])))}</p>")
@@ -298,7 +298,7 @@ def check_pages(folder, name, document, monkeypatch):
 
 
 def test_no_value_of_a_manifest_is_markup(run, tmp_path, monkeypatch):
-    stored = read_result(run)  # read once: it takes most of the time
+    stored = read_result(run)  # read only once, since this takes most of the time
     monkeypatch.setattr("apsis.report.run.read_result", lambda folder: replace(stored, manifest=read_json(folder / "manifest.json")))
     check_pages(tmp_path, "manifest.json", stored.manifest, monkeypatch)
 
@@ -329,7 +329,7 @@ def test_columns_of_a_history_are_text(run, tmp_path):
 
 
 def test_titles_of_results_are_not_formulas(run, tmp_path):
-    """Matplotlib takes $…$ as a formula, and fails where it cannot read one."""
+    """Matplotlib would take $…$ as a formula and fail if it is not valid."""
     shutil.copytree(run, tmp_path / "run")
     manifest = json.loads((run / "manifest.json").read_text(encoding="utf-8"))
     manifest["case"]["title"] = r"costs $\frac{ and $1 \x1b[31m"

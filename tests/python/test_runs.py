@@ -38,7 +38,7 @@ def test_initial_data_of_a_mapping_may_have_regions_and_sums(tmp_path):
             "time": {"method": "md-imex-3-2", "end": 0, "cfl": 0.04}}
     data, named = apsis.run(case), apsis.run("paper/bgk-mixed", *SMALL, "time.end=0")
     assert data.fields["T"][-1][0] == pytest.approx(2.0, rel=1e-14) and data.fields["u"][-1][1] == pytest.approx(0.25, rel=1e-14)
-    # T is recovered from moments, and its rounding error is amplified in the tails.
+    # T is computed from moments; the tails of the Maxwellian amplify its rounding error.
     assert np.allclose(data.f[3:], named.f[3:], rtol=1e-11, atol=1e-300)
     assert data.summary["case"]["initial"]["region"][0]["where"] == "x < 0.25"
 
@@ -48,13 +48,13 @@ def test_arrays_agree_with_each_other_and_with_the_files(tmp_path):
     r = apsis.run("paper/bgk-mixed", *SMALL, "output.every=0.002", out=tmp_path / "o")
     assert r.state == "complete" and r.f.shape == (20, 100) and r.f.min() >= 0.0
     assert r.fields["rho"].shape == (len(r.t), 20) and r.t[0] == 0.0 and r.t[-1] == 0.005
-    # Midpoint sums of 100 numbers below 1.
+    # The tolerance is for rounding errors of midpoint sums of 100 numbers below 1.
     np.testing.assert_allclose(r.f.sum(axis=1) * (r.v[1] - r.v[0]), r.fields["rho"][-1], rtol=1e-13)
     with h5py.File(tmp_path / "o" / "solution.h5") as file:
         assert np.array_equal(file["f"][()], r.f) and np.array_equal(file["epsilon"][()], r.epsilon)
         assert json.loads(file.attrs["manifest"])["result"]["steps"] == r.summary["steps"]
     assert len(r.history["t"]) == r.summary["steps"] + 1
-    assert not r.f.flags.owndata  # memory of the library
+    assert not r.f.flags.owndata  # f is memory of the library
 
 
 def test_progress_is_told_and_can_end_the_run(tmp_path):
@@ -64,7 +64,7 @@ def test_progress_is_told_and_can_end_the_run(tmp_path):
         return np.bool_(len(calls) < 3)
     r = apsis.run("paper/bgk-mixed", "time.end=50.0", out=tmp_path / "o", progress=watch)
     assert r.state == "interrupted" and len(calls) == 3 and calls[-1][0] > 0
-    # The last 64 steps share the remaining time, and earlier ones do not depend on it.
+    # Only the last 64 steps depend on the end: they divide the remaining time.
     end = float(r.t[-1]) + 80 * float(r.history["dt"][-1])
     again = apsis.run("paper/bgk-mixed", f"time.end={end!r}", restart=tmp_path / "o" / "checkpoint.h5")
     whole = apsis.run("paper/bgk-mixed", f"time.end={end!r}")
@@ -112,7 +112,7 @@ def test_the_readme_runs(capsys):
     (block,) = re.findall(r"```python\n(.*?)```", text, re.DOTALL)
     exec(block, {})
     said = capsys.readouterr().out
-    # u2 relaxes to 0 within ε, and u1 = 2 + ε/2; eight digits are printed.
+    # u2 relaxes to 0 in a time of ε, and u1 is then 2 + ε/2. Eight digits are printed.
     assert "0.904402" in said and "\n[2. 0.]" in said, said
 
 
@@ -162,7 +162,7 @@ def test_a_forked_child_has_threads_of_its_own():
 
 
 def test_a_full_disk_is_an_error_and_no_crash(tmp_path):
-    """In a separate process: HDF5 used to crash at the exit of the interpreter."""
+    """The run is in a separate process, since HDF5 used to crash at the exit of the interpreter."""
     script = (
         "import resource, apsis\n"
         "resource.setrlimit(resource.RLIMIT_FSIZE, (20000, 20000))\n"

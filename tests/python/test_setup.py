@@ -16,7 +16,7 @@ spec.loader.exec_module(setup)
 
 
 def configured(build, **changes):
-    """Writes a cache as of the preset release with the Python package; None removes a variable."""
+    """Writes the cache of a build with the preset release and the Python package. A variable that is None is removed."""
     cache = {"CMAKE_HOME_DIRECTORY": str(ROOT), "CMAKE_BUILD_TYPE": "Release", "APSIS_PYTHON_PACKAGE": "ON",
              "PYTHON_MODULE_EXTENSION": SUFFIX} | changes
     build.mkdir(parents=True, exist_ok=True)
@@ -61,7 +61,7 @@ def test_build_release_is_reused_if_it_fits_and_silently_ignored_otherwise(tmp_p
 
 
 def calls_of(tmp_path, build, **environment):
-    """Runs setup.py with a cmake that records its calls and whose builds write an empty module into `build`."""
+    """Runs setup.py and returns its calls of cmake. This cmake writes an empty module into `build` instead of compiling."""
     bin_folder, calls = tmp_path / "bin", tmp_path / "calls"
     bin_folder.mkdir()
     (bin_folder / "cmake").write_text(f"#!/bin/bash\nprintf '%s\\n' \"$*\" >>'{calls}'\nmkdir -p '{build}/python/apsis'\n"

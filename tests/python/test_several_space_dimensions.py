@@ -42,7 +42,7 @@ def test_arrays_have_the_shape_of_the_mesh(computed):
 
 
 def test_x_is_the_first_index():
-    """The first snapshot of the vortex is its initial velocity: point values, with the quadrature error of 12 velocities."""
+    """The first snapshot of the vortex has the values of its initial velocity, up to the quadrature error of 12 velocities."""
     result = apsis.run(VORTEX)
     x, y = np.meshgrid(result.x, result.y, indexing="ij")
     np.testing.assert_allclose(result.fields["u_x"][0], 0.1 * np.sin(2 * np.pi * x) * np.cos(2 * np.pi * y), atol=1e-6)
@@ -63,7 +63,7 @@ def test_a_probe_is_a_column_of_cells_in_their_middle(computed):
     probe = result.probes["middle"]
     assert list(probe) == ["t", "s", "x", "y", *result.fields]
     u = probe["u_y"].reshape(3, 25)
-    # x = 0.5 is between cells 7 and 8; every second of 25 points is a centre of the 12 cells along y.
+    # The probe at x = 0.5 is between cells 7 and 8. Every second one of its 25 points is the centre of one of 12 cells along y.
     np.testing.assert_allclose(u[:, 1::2], 0.5 * (result.fields["u_y"][:, 7] + result.fields["u_y"][:, 8]), atol=1e-15)
     np.testing.assert_allclose(u[:, 0], u[:, -1], atol=1e-15)  # periodic
 
@@ -73,7 +73,7 @@ def numbers(text):
 
 
 def value_of(item, folder):
-    """The array of a DataItem, by the rules of XDMF 2: references, hyperslabs, and JOIN."""
+    """Returns the array of a DataItem by the rules of XDMF 2 for references, hyperslabs and JOIN."""
     shape = numbers(item.get("Dimensions"))
     kind = item.get("ItemType", "Uniform")
     if kind == "Uniform" and item.get("Format") == "XML":
@@ -83,7 +83,7 @@ def value_of(item, folder):
         with h5py.File(folder / file) as h5:
             data = h5[path]
             assert data.dtype.itemsize == int(item.get("Precision")) and data.dtype.kind == "f"
-            return data[()].reshape(shape)  # the extents of the topology may have further ones
+            return data[()].reshape(shape)  # the shape may have additional extents of 1
     children = [value_of(child, folder) for child in item]
     if kind == "HyperSlab":
         slab, data = children
@@ -98,7 +98,7 @@ def value_of(item, folder):
 
 
 def grids_of(path):
-    """Every grid of a description: its time, points and attributes."""
+    """Yields the time, the points and the attributes of every grid of a description."""
     for grid in xml.parse(path).getroot().iter("Grid"):
         if grid.get("GridType") != "Uniform":
             continue
@@ -159,7 +159,7 @@ def test_a_slice_has_a_description_of_its_own(computed):
     assert len(found) == 3
     points, attributes = found[-1][2][0], found[-1][3]
     assert points.shape == (8, 7, 1, 3) and np.all(points[..., 2] == 0.5)
-    # The centres along z are 1/9 + 2 k/9: 0.5 is between k = 1 and 2, at 3/4 of the way.
+    # The centres along z are 1/9 + 2 k/9, so 0.5 is between k = 1 and 2, at 3/4 of the distance.
     expected = 0.25 * result.fields["rho"][-1][..., 1] + 0.75 * result.fields["rho"][-1][..., 2]
     np.testing.assert_allclose(attributes["rho"][1][..., 0], expected, rtol=1e-13)
 
@@ -169,7 +169,7 @@ def test_f_at_chosen_points_is_in_place_of_all(tmp_path):
     result = apsis.run(VORTEX, *overrides, out=tmp_path)
     with h5py.File(tmp_path / "solution.h5") as h5:
         assert "f" not in h5 and "marginals" not in h5
-        # 0.1 is in cell 1 of width 1/16, 0.2 in cell 2 of width 1/12.
+        # The point (0.1, 0.2) is in cell 1 of width 1/16 and in cell 2 of width 1/12.
         np.testing.assert_array_equal(h5["points/f"][:], result.f[1, 2][None, :])
         assert h5["points/x"][0] == result.x[1] and h5["points/y"][0] == result.y[2]
     assert apsis.open(tmp_path).f.size == 0

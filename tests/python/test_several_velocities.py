@@ -21,7 +21,7 @@ def overrides(d):
 
 @pytest.fixture(scope="module", params=[2, 3])
 def computed(request, tmp_path_factory):
-    """Dimensions, folder and result of a small run."""
+    """Returns the dimensions, the folder and the result of a small run."""
     folder = tmp_path_factory.mktemp("run")
     return request.param, folder, apsis.run("paper/bgk-mixed", *overrides(request.param), out=folder)
 
@@ -42,7 +42,7 @@ def test_moments_of_f_are_the_fields(computed):
     for k, name in enumerate(names_of_velocity(d)):
         u = result.f @ (result.v_weights * result.v[:, k]) / rho
         np.testing.assert_allclose(u, result.fields[name][-1], atol=1e-13)
-    # The data move along x only, between 0.4 and 0.5, and are even in the other components.
+    # The initial velocity is along x, between 0.4 and 0.5. The data are even in the other components.
     assert result.fields["u_x"][-1].min() > 0.3 and np.abs(result.fields["u_y"]).max() < 1e-14
 
 
@@ -100,7 +100,7 @@ def test_the_report_says_what_its_picture_shows(computed):
 
 
 def numbers_of(item, folder):
-    """The numbers that a DataItem refers to or has."""
+    """Returns the numbers of a DataItem, from its text or from the file that it names."""
     if item.get("Format") == "XML":
         return np.array([float(x) for x in item.text.split()])
     file, name = item.text.split(":")
@@ -144,6 +144,6 @@ def test_a_reduced_gas_is_drawn_by_its_first_function(tmp_path):
     result = read_result(out)
     v, g = results.distribution_over_velocity(result)
     assert np.array_equal(g, r.f[:, :100]) and results.distribution_name(result) == "∫ f dη"
-    # The density is the sum of g alone; dv = 0.3.
+    # The density is the sum of g without h, times dv = 0.3.
     assert np.allclose(g.sum(axis=1) * 0.3, r.fields["rho"][-1], rtol=1e-13)
     assert results.distribution_figure(result) is not None

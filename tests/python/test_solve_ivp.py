@@ -1,4 +1,4 @@
-"""apsis.solve_ivp: the arguments and results of scipy.integrate.solve_ivp, for stiff problems and for T and Q apart."""
+"""apsis.solve_ivp has the arguments and results of scipy.integrate.solve_ivp, for stiff problems and for separate T and Q."""
 import math
 
 import apsis
@@ -30,9 +30,9 @@ def test_one_line_replaces_radau(rtol, jac):
     found = apsis.solve_ivp(None, robertson, (0, 1e5), [1.0, 0, 0], jac=jac, rtol=rtol, atol=atol)
     assert found.success and found.status == 0 and found.t[-1] == 1e5
     assert found.derivatives == ("complex steps" if jac is None else "jacobian") and (found.njev > 0) == (jac is not None)
-    # A digit less than the tolerance of one step: errors of steps add up.
+    # The error at the end is at most ten tolerances of a step, since errors of steps add up.
     np.testing.assert_allclose(found.y[:, -1], radau.y[:, -1], rtol=10 * rtol)
-    np.testing.assert_allclose(found.y.sum(axis=0), 1.0, rtol=0, atol=1e-11)  # rounding of some thousand solves
+    np.testing.assert_allclose(found.y.sum(axis=0), 1.0, rtol=0, atol=1e-11)  # rounding errors of some thousand solves
 
 
 def test_the_result_has_what_that_of_scipy_has():
@@ -49,7 +49,7 @@ def test_the_result_has_what_that_of_scipy_has():
     assert isinstance(ours.sol, scipy_integrate.OdeSolution)
     times = np.linspace(0, 20, 50).reshape(-1)
     np.testing.assert_allclose(ours.sol(times), theirs.sol(times), rtol=1e-3, atol=1e-3)
-    np.testing.assert_array_equal(ours.sol(ours.t), ours.y)  # both are the same steps
+    np.testing.assert_array_equal(ours.sol(ours.t), ours.y)  # both are values of the same dense output
     assert type(ours).__mro__[0].__name__ == "OptimizeResult" and ours.nfev > 0 and ours.nlu > 0
 
 
@@ -61,7 +61,7 @@ def test_without_t_eval_the_times_are_the_ends_of_steps():
     np.testing.assert_allclose(found.y[0], np.exp(-found.t), rtol=1e-5)
 
 
-# Motion with a phase of time in both parts: T and Q depend on t and y.
+# An oscillator whose transport and collision both depend on t and y.
 def swing(t, y):
     return np.array([y[1] + 0.3 * np.sin(2 * t), np.cos(t) * y[0]])
 
@@ -86,7 +86,7 @@ def test_orders_of_steps_and_of_dense_output(method, order):
 @pytest.mark.parametrize("method", ["imdrk-9-5", "extrapolated-euler-6", "md-imex-8-3-mixed"])
 @pytest.mark.parametrize("phase", [np.cos, math.cos], ids=["analytic in time", "for real times alone"])
 def test_stiff_sources_that_depend_on_time(method, phase):
-    """Prothero and Robinson: y' = -λ(y − cos t) − sin t stays at cos t for every λ."""
+    """The solution of Prothero's and Robinson's equation y' = −λ(y − cos t) − sin t is cos t for every λ."""
     def collision(t, y):
         return -1e5 * (y - phase(t)) - np.sin(t)
 
@@ -121,14 +121,14 @@ def test_directions_and_numbers_of_events():
     up.direction, third.terminal = 1, 3
     found = apsis.solve_ivp(lambda t, y: np.array([y[1], -y[0]]), None, (0, 100), [0.0, 1.0], method="dop853", rtol=1e-10, atol=1e-12,
                             events=[up, third])
-    # sin t starts at a zero, which is no event.
+    # The start of sin t at 0 is not an event.
     np.testing.assert_allclose(found.t_events[0], [2 * np.pi], rtol=1e-8)
     np.testing.assert_allclose(found.t_events[1], np.pi * np.arange(1, 4), rtol=1e-8)
     assert found.status == 1 and found.t[-1] == found.t_events[1][-1] and np.shape(found.y_events[1]) == (3, 2)
 
 
 def decays(t, y):
-    """A fast and a slow decay: y1 is far below the tolerance soon."""
+    """A fast and a slow decay. The first unknown is soon far below the tolerance."""
     return np.array([-1e4 * y[0], 1e4 * y[0] - y[1]])
 
 
@@ -141,17 +141,17 @@ def test_a_method_that_promises_nothing_stays_in_the_admissible_set():
 
 
 def test_dense_output_is_positive_where_steps_are():
-    # Newton's iterates end within a part of the tolerance, so that signs of 1e-40 need the admissible set.
+    # Newton's method ends with errors of a fraction of the tolerance. So the signs of values near 1e-40 need the admissible set.
     found = apsis.solve_ivp(None, decays, (0, 1), [1.0, 0.0], method="imdrk-9-5", rtol=1e-2, atol=1e-4, dense_output=True,
                             admissible=lambda y: np.all(y >= 0))
     inside = found.sol(np.geomspace(1e-7, 1, 400))
     radau = scipy_integrate.solve_ivp(decays, (0, 1), [1.0, 0.0], method="Radau", rtol=1e-2, atol=1e-4, dense_output=True)
     assert found.y.min() >= 0 and inside.min() >= 0
-    assert radau.sol(np.geomspace(1e-7, 1, 400)).min() < 0  # the question is one
+    assert radau.sol(np.geomspace(1e-7, 1, 400)).min() < 0  # dense output is not positive by itself
 
 
 def brusselator(t, y):
-    """The Brusselator with diffusion on a line: u and v in turns."""
+    """The Brusselator with diffusion on a line. The unknowns are u and v of each cell in turn."""
     u, v = y[0::2], y[1::2]
     n, out = len(u), np.empty_like(y)
     diffusion = 0.02 * (n + 1) ** 2
@@ -170,7 +170,7 @@ def test_sparse_derivatives_give_the_same_solution_with_fewer_calls():
     dense = apsis.solve_ivp(None, brusselator, (0, 1), y0, **arguments)
     sparse = apsis.solve_ivp(None, brusselator, (0, 1), y0, jac_sparsity=sparsity, **arguments)
     np.testing.assert_allclose(sparse.y[:, -1], dense.y[:, -1], rtol=1e-5)
-    # A derivative for each step, of five groups of columns instead of 80 columns.
+    # Each step computes one derivative, from differences of five groups of columns instead of 80 columns.
     assert dense.nfev - sparse.nfev >= (80 - 5) * dense.steps and sparse.steps == dense.steps
     columns = apsis.solve_ivp(None, lambda t, y: np.array([brusselator(t, one) for one in y.T]).T, (0, 1), y0, vectorized=True, **arguments)
     np.testing.assert_allclose(columns.y[:, -1], dense.y[:, -1], rtol=1e-5)
@@ -234,7 +234,8 @@ def test_laws_of_step_control_avoid_rejections_at_the_limit_of_stability():
 
 
 def test_strong_stability_limits_steps():
-    """A solute enters a column and is adsorbed at a high rate: a and b in turns. Its front is half as fast as the liquid."""
+    """A solute enters a column and is adsorbed at a high rate, so its front is half as fast as the liquid. The unknowns of each cell
+    are the dissolved and the adsorbed concentration."""
     cells = 50
 
     def transport(t, y):
@@ -252,7 +253,7 @@ def test_strong_stability_limits_steps():
                             **arguments)
     assert found.success and np.diff(found.t).max() <= r / cells * (1 + 1e-12) and found.steps < 2 * cells / r
     assert found.y[0::2, -1].sum() / cells == pytest.approx(0.5, abs=1e-3)
-    # Without error control stages are solved to rounding, so that the length of steps alone keeps the bounds, or breaks them.
+    # Without error control, stages are solved up to rounding errors. So only the length of steps decides if the bounds are kept.
     for factor, kept in ((1, True), (4, False)):
         y = apsis.solve_ivp(transport, adsorption, (0, 1), np.zeros(2 * cells), dt=factor * r / cells, **arguments).y
         assert (y.min() >= -1e-13 and y.max() <= 1 + 1e-13) == kept

@@ -7,7 +7,7 @@ TOLERANCE = 1e-9
 
 
 def plates(u=0.1, **more):
-    """A gas between plates that move with -u and u."""
+    """Returns the problem of a gas between plates that move with velocities -u and u."""
     walls = [{"kind": "diffuse", "T": 1, "velocity": [0, -u]}, {"kind": "diffuse", "T": 1, "velocity": [0, u]}]
     return apsis.KineticProblem("bgk", **{
         "parameters": {"velocity_dimensions": 2, "degrees_of_freedom": 3}, "cells": 16, "domain": (0, 1), "velocities": (6, (16, 10)),
@@ -28,12 +28,12 @@ def test_the_steady_state_solves_the_equation():
     fields = problem.fields(steady.u)
     assert np.sum(fields["rho"]) == pytest.approx(16, rel=1e-12)
     np.testing.assert_allclose(fields["u_y"], -fields["u_y"][::-1], atol=1e-9)
-    assert 0.05 < fields["u_y"][-1] < 0.1  # the gas slips
+    assert 0.05 < fields["u_y"][-1] < 0.1  # the gas is slower than the plate
     assert "iterations" in repr(steady)
 
 
 def test_it_is_the_limit_of_the_integrator():
-    """By a method whose steady state is that of the equation."""
+    """The method of the integrator has the steady state of the equation."""
     problem = plates(cells=8)
     start = problem.state(rho=1, T=1)
     end = apsis.integrate(problem, start, (0, 22), "forward-backward-euler", safety=0.4).u[-1]  # 22 viscous times

@@ -1,4 +1,4 @@
-"""The fluxes from the gas to its walls: columns in Python and in files, and their pictures."""
+"""Fluxes from the gas to its walls are columns in Python and in files, and have pictures."""
 import apsis
 import numpy as np
 import pytest
@@ -34,9 +34,9 @@ def test_surfaces_are_those_of_the_case_and_add_up_to_the_history(computed):
     for name, columns in result.surfaces.items():
         for invariant in ("mass", "momentum_x", "momentum_y", "energy"):
             given = (columns["area"] * columns[invariant]).sum()
-            # Roundings of a sum of some ten terms of the size of the pressure.
+            # The bound is for rounding errors of a sum of about ten terms of the size of the pressure.
             assert abs(given + result.history[f"flux_{name}_{invariant}"][-1]) < 1e-14
-        # Half of the gas at the wall comes from it.
+        # Half of the molecules at a wall come from it, and walls have T from 0.9 to 1.2.
         assert np.all(np.abs(columns["T"] - 1) < 0.5) and np.all(np.abs(columns["rho"] - 1) < 0.5) and "u_y" in columns
 
 
@@ -61,7 +61,7 @@ def test_profiles_are_those_of_the_table_without_lines_across_corners_and_gaps(c
     assert [axes.get_ylabel() for axes in figure.axes] == [f"{name} (dimensionless)" for name in ("pressure", "shear stress", "heat flux")]
     box = result.surfaces["box"]
     lines = [line for line in figure.axes[0].lines if line.get_color() == "#0072B2"]
-    # It stands on the floor: right, top and left, three lines of two cells.
+    # The box stands on the floor, so only right, top and left are lines, each of two cells.
     assert list(box["face"]) == ["right"] * 2 + ["top"] * 2 + ["left"] * 2
     assert [len(line.get_xdata()) for line in lines] == [2, 2, 2]
     np.testing.assert_array_equal(np.concatenate([line.get_xdata() for line in lines]), box["s"])
@@ -80,10 +80,10 @@ def test_faces_in_space_are_maps_with_the_covered_part_blank(computed):
     panel = made["surface-bottom"].axes[0]
     assert (panel.get_xlabel(), panel.get_ylabel()) == ("x (dimensionless)", "z (dimensionless)")
     shown = panel.collections[0].get_array().filled(np.nan).reshape(3, 4)
-    # A direct look-up by coordinates; the bottom is not covered.
+    # The bottom is not covered: every cell has its pressure, found here by coordinates.
     for x, z, p in zip(bottom["x"], bottom["z"], bottom["pressure"]):
         assert shown[round(z / 0.5 - 0.5), round(x / 0.25 - 0.5)] == p
-    # Of the box, which stands on the back: all other faces; the front has 2 x 2 cells.
+    # The box stands on the back, so all its other faces are drawn. The front has 2 x 2 cells.
     titles = [axes.get_title() for axes in made["surface-box"].axes if axes.get_title()]
     assert titles[:5] == ["left", "right", "bottom", "top", "front"]
     front = result.surfaces["box"]["face"] == "front"

@@ -1,6 +1,7 @@
-"""Threads of Python and functions of the user that call Apsis again: equal results, bit for bit, and no deadlock.
+"""Threads of Python may share objects of Apsis, and functions of the user may call Apsis again. Results are equal, bit for bit, and
+there is no deadlock.
 
-Each test runs in a process of its own: before objects could be shared, most of them ended with a segmentation fault.
+Each test runs in a separate process. Before objects could be shared, most of them ended with a segmentation fault.
 """
 import subprocess
 import sys
@@ -41,7 +42,7 @@ BEGINNING = """
 
 
 def run(code, tmp_path):
-    # A hang is a failure too; an idle machine needs seconds.
+    # A deadlock fails by the time limit. The tests take seconds on an idle machine.
     done = subprocess.run([sys.executable, "-X", "faulthandler", "-c", textwrap.dedent(BEGINNING) + textwrap.dedent(code)], cwd=tmp_path,
                           capture_output=True, text=True, timeout=900, check=False)
     assert done.returncode == 0, done.stderr[-2000:]
@@ -83,7 +84,7 @@ def test_threads_share_a_problem_with_functions_of_the_user(more, tmp_path):
 
 
 def test_threads_choose_their_numbers_of_threads(tmp_path):
-    """Scratch memory is prepared for the threads of a loop, whose number another thread of Python must not change."""
+    """A loop allocates scratch memory for its number of threads. Another thread of Python must not change this number."""
     run("""
         problem = bgk(cells=400, velocities=(8, 48))
         at_once([lambda u=u, n=n: apsis.integrate(problem, u, (0, 0.002), dt=0.001, threads=n).u
@@ -92,7 +93,7 @@ def test_threads_choose_their_numbers_of_threads(tmp_path):
 
 
 def test_a_function_of_the_user_calls_its_own_problem(tmp_path):
-    """A wall calls the problem that asks for its temperature: on the threads of a step, and from a thread that it waits for."""
+    """The temperature of a wall calls the problem to which the wall belongs, on the threads of a step and in a new thread."""
     assert run("""
         depth = threading.local()
         def wall(t, x):
@@ -123,7 +124,7 @@ def test_a_function_of_the_user_calls_its_own_problem(tmp_path):
 
 
 def test_runs_in_threads_with_results(tmp_path):
-    """HDF5 is not safe for threads in every build."""
+    """Runs in threads can write results, although some builds of HDF5 are not safe for threads."""
     run("""
         def one(k, n):
             r = apsis.run("paper/bgk-mixed", "space.cells=24", "velocity.points=20", "time.end=0.02", "output.every=0.005",

@@ -1,4 +1,4 @@
-"""Prints the slowest 1 % of the tests of a run, and their share of the time of all.
+"""Prints the slowest 1 % of the tests of a run, and their part of the total time.
 
 Usage: slowest.py JUNIT_FILE (ctest --output-junit)
 """

@@ -1,4 +1,4 @@
-"""Integrations over vectors of threads and of processes have the bits of serial vectors."""
+"""Integrations with threaded and parallel vectors give the same bits as with serial vectors."""
 import os
 import shutil
 import subprocess
@@ -29,7 +29,7 @@ class EqualBits(unittest.TestCase):
     def test_the_result_is_complete(self):
         lines = self.serial.split()
         self.assertEqual(len(lines), 3 * (1 + 2 * 97 + 11))
-        self.assertGreater(int(lines[2 * 97 + 1 + 6]), 20)  # linear iterations
+        self.assertGreater(int(lines[2 * 97 + 1 + 6]), 20)  # the number of linear iterations
 
     def test_threads(self):
         for kind in ("pthreads", "openmp"):

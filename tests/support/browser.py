@@ -1,4 +1,4 @@
-"""A headless Chromium that records its console and every request, for tests of pages."""
+"""A headless Chromium for tests of pages. It records the messages of the console and all requests."""
 import json
 from pathlib import Path
 
@@ -29,8 +29,11 @@ class Browser:
         self.driver.quit()
 
     def show(self, page: Path, width: int) -> dict:
-        """Opens a page in a window of this width. Returns sizes in pixels: window, content, smallest letters, widest
-        paragraph, `drawn`, the smallest scale of a picture, and `broken`, the number of pictures that are not loaded."""
+        """Opens a page in a window of this width and returns measurements.
+
+        The sizes of the window, the content, the smallest letters and the widest paragraph are in pixels. `drawn` is the smallest
+        scale of a picture, and `broken` the number of pictures that were not loaded.
+        """
         self.driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride",
                                     {"width": width, "height": 900, "deviceScaleFactor": 1, "mobile": width < 600})
         self.console(), self.requests()
@@ -38,10 +41,10 @@ class Browser:
         return self.driver.execute_script(MEASURE)
 
     def console(self) -> list[str]:
-        """Messages since the last call."""
+        """Returns the messages of the console since the last call."""
         return [entry["message"] for entry in self.driver.get_log("browser")]
 
     def requests(self) -> list[str]:
-        """Addresses requested since the last call."""
+        """Returns the addresses requested since the last call."""
         events = (json.loads(entry["message"])["message"] for entry in self.driver.get_log("performance"))
         return [event["params"]["request"]["url"] for event in events if event["method"] == "Network.requestWillBeSent"]

@@ -1,6 +1,6 @@
 /* A program of PETSc without any code of Apsis. It solves u_t + u_x = (v - u^2)/epsilon and
- * v_t = -(v - u^2)/epsilon on a periodic line. It prints the type of the time stepper, the time reached and the
- * norm of the solution. */
+ * v_t = -(v - u^2)/epsilon on a periodic line. It prints the type of the time stepper, the time reached and
+ * the norm of the solution. */
 #include <petscdm.h>
 #include <petscdmda.h>
 #include <petscts.h>

@@ -15,8 +15,6 @@ import records  # noqa: E402
 BUILD = Path(os.environ.get("APSIS_BUILD", ROOT / "build/release"))
 MIXED = ("peers-mixed-points", "peers-mixed", "peers-mixed-centres")
 SYSTEMS = ("peers-ode", "peers-prothero-robinson", "peers-kaps")
-# The relative time of a contestant that does not reach an error within the time of the contest.
-MISSING = 30.0
 
 
 def newest(table):
@@ -58,9 +56,8 @@ def best_on_meshes(errors, wanted):
             cells += 1
             for name, time in found.items():
                 ratios.setdefault(name, []).append(time / min(found.values()))
-    mean = {name: math.exp((sum(map(math.log, own)) + (cells - len(own)) * math.log(MISSING)) / cells) for name, own in ratios.items()}
-    complete = {name for name, own in ratios.items() if len(own) == cells}
-    return min(complete, key=mean.get).removesuffix(", adaptive")
+    mean = {name: math.exp(sum(map(math.log, own)) / cells) for name, own in ratios.items() if len(own) == cells}
+    return min(mean, key=mean.get).removesuffix(", adaptive")
 
 
 def wins_on_systems(label, epsilons, errors, allowed=lambda name: True):

@@ -126,7 +126,6 @@ TEST(vacuum_end, of_a_continuum_passes_the_mass_of_a_sonic_flow) {
   finish(run);
   const double a = std::sqrt(5.0 / 3.0), sonic = std::pow(0.75, 3) * 0.75 * a;
   const double flux = -run.last().flux[3];
-  std::cout << "flux " << flux << " sonic " << sonic << "\n";
   EXPECT_NEAR(flux, sonic, 0.03 * sonic);
 }
 

@@ -56,6 +56,14 @@ module apsis
       real(c_double), intent(out) :: q(n)
       type(c_ptr), value :: data
     end function
+    integer(c_int) function apsis_timed_rate_function(t, block, n, u, q, data) bind(c)
+      import :: c_double, c_int, c_ptr, c_size_t
+      real(c_double), value :: t
+      integer(c_size_t), value :: block, n
+      real(c_double), intent(in) :: u(n)
+      real(c_double), intent(out) :: q(n)
+      type(c_ptr), value :: data
+    end function
     ! jacobian(j, i) is dQ_i/du_j
     integer(c_int) function apsis_jacobian_function(block, n, u, jacobian, data) bind(c)
       import :: c_double, c_int, c_ptr, c_size_t
@@ -66,6 +74,14 @@ module apsis
     end function
     integer(c_int) function apsis_product_function(block, n, u, x, jx, data) bind(c)
       import :: c_double, c_int, c_ptr, c_size_t
+      integer(c_size_t), value :: block, n
+      real(c_double), intent(in) :: u(n), x(n)
+      real(c_double), intent(out) :: jx(n)
+      type(c_ptr), value :: data
+    end function
+    integer(c_int) function apsis_timed_product_function(t, block, n, u, x, jx, data) bind(c)
+      import :: c_double, c_int, c_ptr, c_size_t
+      real(c_double), value :: t
       integer(c_size_t), value :: block, n
       real(c_double), intent(in) :: u(n), x(n)
       real(c_double), intent(out) :: jx(n)
@@ -235,6 +251,11 @@ module apsis
       type(c_ptr), value :: integrator
       type(c_funptr), value :: rate
     end function
+    integer(c_int) function apsis_set_timed_rate(integrator, rate) bind(c)
+      import :: c_funptr, c_int, c_ptr
+      type(c_ptr), value :: integrator
+      type(c_funptr), value :: rate
+    end function
     integer(c_int) function apsis_set_jacobian(integrator, jacobian) bind(c)
       import :: c_funptr, c_int, c_ptr
       type(c_ptr), value :: integrator
@@ -244,6 +265,26 @@ module apsis
       import :: c_funptr, c_int, c_ptr
       type(c_ptr), value :: integrator
       type(c_funptr), value :: product
+    end function
+    integer(c_int) function apsis_set_timed_product(integrator, product) bind(c)
+      import :: c_funptr, c_int, c_ptr
+      type(c_ptr), value :: integrator
+      type(c_funptr), value :: product
+    end function
+    ! rows and columns count from 0
+    integer(c_int) function apsis_set_sparsity(integrator, count, rows, columns) bind(c)
+      import :: c_int, c_ptr, c_size_t
+      type(c_ptr), value :: integrator
+      integer(c_size_t), value :: count
+      integer(c_size_t), intent(in) :: rows(count), columns(count)
+    end function
+    ! rows and columns count from 0
+    integer(c_int) function apsis_set_mass(integrator, count, rows, columns, values) bind(c)
+      import :: c_double, c_int, c_ptr, c_size_t
+      type(c_ptr), value :: integrator
+      integer(c_size_t), value :: count
+      integer(c_size_t), intent(in) :: rows(count), columns(count)
+      real(c_double), intent(in) :: values(count)
     end function
     integer(c_int) function apsis_set_curvature(integrator, curvature) bind(c)
       import :: c_funptr, c_int, c_ptr

@@ -132,11 +132,17 @@ typedef int apsis_stage_function(double t, double a, double b, size_t n, double*
 typedef int apsis_flow_function(double t, double s, size_t n, double* u, void* data);
 /// q ← Q(u) for one block (apsis_set_block_size), numbered from 0.
 typedef int apsis_rate_function(size_t block, size_t n, const double* u, double* q, void* data);
+/// q ← Q(t, u) for one block.
+typedef int apsis_timed_rate_function(double t, size_t block, size_t n, const double* u, double* q,
+                                      void* data);
 /// The n × n entries ∂Q_i/∂u_j of one block, row by row.
 typedef int apsis_jacobian_function(size_t block, size_t n, const double* u, double* jacobian, void* data);
 /// jx ← Q'(u) x for one block. Its error enters the solution through Q̇ = Q'Q.
 typedef int apsis_product_function(size_t block, size_t n, const double* u, const double* x, double* jx,
                                    void* data);
+/// jx ← ∂Q/∂u (t, u) x for one block.
+typedef int apsis_timed_product_function(double t, size_t block, size_t n, const double* u, const double* x,
+                                         double* jx, void* data);
 /// hx ← Q''(u)[k, x] for one block. Its error only slows Newton's method.
 typedef int apsis_curvature_function(size_t block, size_t n, const double* u, const double* k,
                                      const double* x, double* hx, void* data);
@@ -183,6 +189,11 @@ int apsis_set_transport(apsis_integrator* integrator, apsis_transport_function* 
 int apsis_set_stage(apsis_integrator* integrator, apsis_stage_function* stage);
 /// Sets Q, which explicit methods and Newton's method need.
 int apsis_set_rate(apsis_integrator* integrator, apsis_rate_function* rate);
+/// Sets Q(t, u) instead of Q(u). Methods without T that use Q̇ then need ∂Q/∂t, which differences of Q compute
+/// over 1e-5 of the step. Derivatives must be products with the Jacobian (apsis_set_timed_product).
+int apsis_set_timed_rate(apsis_integrator* integrator, apsis_timed_rate_function* rate);
+/// Sets products with the Jacobian of Q(t, u).
+int apsis_set_timed_product(apsis_integrator* integrator, apsis_timed_product_function* product);
 /// Sets the Jacobian of Q as a matrix.
 int apsis_set_jacobian(apsis_integrator* integrator, apsis_jacobian_function* jacobian);
 /// Sets products with the Jacobian of Q, which are used in preference to the matrix.
@@ -198,6 +209,18 @@ int apsis_set_block_size(apsis_integrator* integrator, size_t size);
 /// Sets the largest block, initially 96 unknowns, whose linear systems in Newton's method are dense. GMRES
 /// without a preconditioner solves larger ones, which is only suitable if Q is not stiff.
 int apsis_set_dense_limit(apsis_integrator* integrator, size_t unknowns);
+/// Sets the places of the Jacobian of a block that may be nonzero: `count` rows and columns, counted from 0,
+/// which are copied. Places on the diagonal always belong to them. Stages are then solved by sparse
+/// factorizations, and products compute the entries of several columns at a time. Set it after the block
+/// size; count = 0 removes it. Error: APSIS_INPUT_ERROR for a place outside of the block.
+int apsis_set_sparsity(apsis_integrator* integrator, size_t count, const size_t* rows, const size_t* columns);
+/// Makes the system M u' = T(t, u) + Q(t, u), where the constant, invertible matrix M couples the unknowns of
+/// a block and is the same for all blocks: `count` entries with rows and columns counted from 0, which are
+/// copied; values at one place are added. Δt_FE is then that of u' = M⁻¹ T. It cannot be combined with a
+/// stage solver or a flow. Set it after the block size; count = 0 removes it. Error: APSIS_INPUT_ERROR for a
+/// place outside of the block, a number that is not finite, or a singular matrix.
+int apsis_set_mass(apsis_integrator* integrator, size_t count, const size_t* rows, const size_t* columns,
+                   const double* values);
 /// Sets the condition that every stage must satisfy. Newton's method does not leave the admissible states.
 int apsis_set_admissible(apsis_integrator* integrator, apsis_admissible_function* admissible);
 /// Sets the relaxation time of a collision with a stage solver. Error estimates then give less weight to

@@ -73,6 +73,54 @@ contains
     if (t < 0 .or. .not. c_associated(data)) level = -1
   end function
 
+  ! 2 u1' + u2'/2 = t - u1 + 5/2 and 6 u2' = 3 (t - u2) + 6 have the solution u1 = u2 = t.
+  integer(c_int) function timed_rate(t, block, n, u, q, data) bind(c)
+    real(c_double), value :: t
+    integer(c_size_t), value :: block, n
+    real(c_double), intent(in) :: u(n)
+    real(c_double), intent(out) :: q(n)
+    type(c_ptr), value :: data
+    q(1) = t - u(1) + 2.5_c_double
+    q(2) = 3 * (t - u(2)) + 6
+    timed_rate = 0
+    if (block /= 0 .or. .not. c_associated(data)) timed_rate = -1
+  end function
+
+  integer(c_int) function timed_product(t, block, n, u, x, jx, data) bind(c)
+    real(c_double), value :: t
+    integer(c_size_t), value :: block, n
+    real(c_double), intent(in) :: u(n), x(n)
+    real(c_double), intent(out) :: jx(n)
+    type(c_ptr), value :: data
+    jx(1) = -x(1)
+    jx(2) = -3 * x(2)
+    timed_product = 0
+    if (block /= 0 .or. t < 0 .or. size(u) /= 2 .or. .not. c_associated(data)) timed_product = -1
+  end function
+
+  ! Checks a system with a mass matrix, sparse stages and a collision that depends on time.
+  subroutine check_mass(p)
+    type(parameters), target, intent(inout) :: p
+    real(c_double), pointer :: u(:)
+    type(c_ptr) :: method, s
+    integer(c_size_t), parameter :: rows(3) = [0, 0, 1], columns(3) = [0, 1, 1]
+    call check(apsis_find_method("imdrk-3-3" // c_null_char, method) == APSIS_OK, "method")
+    call check(apsis_new_integrator(method, 2_c_size_t, s) == APSIS_OK, "integrator")
+    call apsis_free_method(method)
+    call check(apsis_set_data(s, c_loc(p)) == APSIS_OK, "data")
+    call check(apsis_set_timed_rate(s, c_funloc(timed_rate)) == APSIS_OK, "rate of time")
+    call check(apsis_set_timed_product(s, c_funloc(timed_product)) == APSIS_OK, "product of time")
+    call check(apsis_set_sparsity(s, 3_c_size_t, rows, columns) == APSIS_OK, "sparsity")
+    call check(apsis_set_mass(s, 3_c_size_t, rows, columns, [2.0_c_double, 0.5_c_double, 6.0_c_double]) == APSIS_OK, "mass")
+    call check(apsis_set_step(s, 0.125_c_double) == APSIS_OK, "step")
+    call check(apsis_start(s, 0.0_c_double, [0.0_c_double, 0.0_c_double]) == APSIS_OK, "start")
+    call check(apsis_integrate(s, 1.0_c_double) == APSIS_OK, "integrate")
+    call c_f_pointer(apsis_state(s), u, [2])
+    ! A method of any order is exact; differences of q in time have ten digits.
+    call check(maxval(abs(u - 1)) < 1e-9_c_double, "the solution t")
+    call apsis_free_integrator(s)
+  end subroutine
+
   ! Stops with a message unless the condition holds.
   subroutine check(condition, what)
     logical, intent(in) :: condition
@@ -147,6 +195,8 @@ program model_of_the_paper
   coarse = sum(abs(solution("md-imex-6-3", p, 64) - reference))
   fine = sum(abs(solution("md-imex-6-3", p, 128) - reference))
   call check(abs(log(coarse / fine) / log(2.0_c_double) - 3) < 0.2, "order 3")
+
+  call check_mass(p)
 
   status = apsis_find_method("md-imex-6-33" // c_null_char, none)
   call check(status == APSIS_INPUT_ERROR .and. .not. c_associated(none), "an unknown method")

@@ -19,6 +19,7 @@ double largest(std::span<const double> x) {
 void known_jacobian::product(callbacks& of, const stage_position& now, std::span<const double> u,
                              std::span<const double> x, std::span<double> jx) {
   const std::size_t n = u.size();
+  if (of.jacobian == nullptr) return std::fill(jx.begin(), jx.end(), 0.0);  // Q = 0
   if (now.solve != solve_ || !std::equal(u.begin(), u.end(), at_.begin(), at_.end())) {
     at_.clear();  // until the matrix is known
     matrix_.resize(n * n);
@@ -37,9 +38,25 @@ void known_jacobian::product(callbacks& of, const stage_position& now, std::span
 
 void block_field::product(known_jacobian& known, std::span<const double> u, std::span<const double> x,
                           std::span<double> jx) {
-  if (of_->product == nullptr) return known.product(*of_, *now_, u, x, jx);
+  if (of_->timed_product == nullptr && of_->product == nullptr) return known.product(*of_, *now_, u, x, jx);
   of_->count(APSIS_PRODUCT_EVALUATIONS);
-  require_success("product", of_->product(now_->block, u.size(), u.data(), x.data(), jx.data(), of_->data));
+  const std::size_t n = u.size();
+  require_success("product",
+                  of_->timed_product != nullptr
+                      ? of_->timed_product(t_, now_->block, n, u.data(), x.data(), jx.data(), of_->data)
+                      : of_->product(now_->block, n, u.data(), x.data(), jx.data(), of_->data));
+}
+
+void block_field::time_derivative(std::span<const double> u, std::span<double> out) {
+  std::fill(out.begin(), out.end(), 0.0);
+  if (of_->timed_rate == nullptr) return;
+  // The cube root of the rounding unit balances rounding and truncation. Rounding errors of t limit it, too.
+  const double h = std::max(6e-6 * now_->step, 1e-10 * std::abs(t_));
+  other_.resize(u.size());
+  for (const double side : {1.0, -1.0}) {
+    of_->evaluate_block(t_ + side * h, now_->block, u, other_);
+    for (std::size_t i = 0; i < u.size(); ++i) out[i] += side * other_[i] / (2.0 * h);
+  }
 }
 
 void block_field::curvature(std::span<const double> u, std::span<const double> k, std::span<const double> x,

@@ -19,21 +19,22 @@ void callbacks::evaluate_transport(double t, const std::vector<double>& u, std::
   require_finite(out, "the result of the callback 'transport'");
 }
 
-void callbacks::evaluate_block(std::size_t block, std::span<const double> u, std::span<double> q) {
-  count(APSIS_RATE_EVALUATIONS);
-  require_success("rate", rate(block, u.size(), u.data(), q.data(), data));
-}
-
-void callbacks::evaluate_rate(const std::vector<double>& u, std::vector<double>& out) {
-  out.resize(u.size());
-  if (rate == nullptr) {  // Q = 0: make_run() accepts nothing else without a rate
-    std::fill(out.begin(), out.end(), 0.0);
+void callbacks::evaluate_block(double t, std::size_t block, std::span<const double> u, std::span<double> q) {
+  if (!has_rate()) {  // Q = 0: make_run() accepts nothing else without a rate
+    std::fill(q.begin(), q.end(), 0.0);
     return;
   }
+  count(APSIS_RATE_EVALUATIONS);
+  require_success("rate", timed_rate != nullptr ? timed_rate(t, block, u.size(), u.data(), q.data(), data)
+                                                : rate(block, u.size(), u.data(), q.data(), data));
+}
+
+void callbacks::evaluate_rate(double t, const std::vector<double>& u, std::vector<double>& out) {
+  out.resize(u.size());
   const std::span<const double> all(u);
   const std::span<double> rates(out);
   for (std::size_t block = 0; block * block_size < u.size(); ++block)
-    evaluate_block(block, all.subspan(block * block_size, block_size),
+    evaluate_block(t, block, all.subspan(block * block_size, block_size),
                    rates.subspan(block * block_size, block_size));
   require_finite(out, "the result of the callback 'rate'");
 }

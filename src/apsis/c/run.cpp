@@ -11,6 +11,8 @@
 #include <string>
 #include <type_traits>
 
+#include <fmt/format.h>
+
 namespace apsis::c {
 namespace {
 
@@ -70,11 +72,11 @@ class run_of final : public any_run {
 };
 
 bool has_derivatives(const callbacks& of) {
-  return of.jacobian != nullptr || of.product != nullptr;
+  return of.jacobian != nullptr || of.product != nullptr || of.timed_product != nullptr;
 }
 
 bool has_collision(const callbacks& of) {
-  return of.stage != nullptr || of.rate != nullptr || of.flow != nullptr;
+  return of.stage != nullptr || of.has_rate() || of.flow != nullptr;
 }
 
 /// Whether a method solves no stages.
@@ -82,19 +84,56 @@ bool is_explicit(const time_integrator& m) {
   return m.file() != nullptr && m.file()->kind == method_kind::explicit_only;
 }
 
+/// Throws input_error if functions of Q(u) and of Q(t, u) are mixed.
+void require_one_time(const callbacks& of) {
+  if (of.rate != nullptr && of.timed_rate != nullptr)
+    throw input_error("Q(u) and Q(t, u) are given (there is one Q); remove one of them");
+  if (of.timed_rate != nullptr &&
+      (of.jacobian != nullptr || of.product != nullptr || of.curvature != nullptr))
+    throw input_error(
+        "derivatives of Q(u) are given for Q(t, u) (they do not receive t); give apsis_set_timed_product()");
+  if (of.timed_product != nullptr && of.timed_rate == nullptr)
+    throw input_error(
+        "derivatives of Q(t, u) are given without Q(t, u) (stages need both); give it by "
+        "apsis_set_timed_rate()");
+}
+
+/// Throws input_error unless pattern and mass matrix are those of a block, and Newton's method uses them.
+void require_matrices(const time_integrator& m, const callbacks& of) {
+  const auto require_size = [&](const char* what, std::size_t n) {
+    if (n != of.block_size)
+      throw input_error(
+          fmt::format("{} of {} unknowns is given and a block has {} (the block size was changed); give it "
+                      "again, after apsis_set_block_size()",
+                      what, n, of.block_size));
+  };
+  if (of.pattern) require_size("a sparsity pattern", of.pattern->size());
+  if (!of.mass) return;
+  require_size("a mass matrix", of.mass->size());
+  if (of.stage != nullptr || of.flow != nullptr)
+    throw input_error(
+        "a mass matrix is given with a stage solver or a flow (they solve u' = Q(u)); remove one, or give a "
+        "rate and its derivatives");
+  if (m.needs.exact_collision)
+    throw input_error("method '" + m.name +
+                      "' solves u' = Q(u) exactly (and a mass matrix is given); choose another method");
+}
+
 /// Throws input_error unless the collision is given in the form that the method needs.
 void require_collision(const time_integrator& m, const callbacks& of) {
   if (of.stage != nullptr && has_derivatives(of))
     throw input_error(
         "a stage solver and derivatives of Q are given (only one of them can solve the stages); remove one");
-  if (has_derivatives(of) && of.rate == nullptr)
+  if (has_derivatives(of) && !of.has_rate())
     throw input_error("derivatives of Q are given without Q (stages need both); give it by apsis_set_rate()");
+  require_one_time(of);
+  require_matrices(m, of);
   if (!has_collision(of)) return;
   if (m.needs.exact_collision && of.flow == nullptr)
     throw input_error("method '" + m.name +
                       "' solves u' = Q(u) exactly (and there is no flow); give it by apsis_set_flow(), or "
                       "choose another method");
-  if (m.needs.explicit_collision && of.rate == nullptr)
+  if (m.needs.explicit_collision && !of.has_rate())
     throw input_error("method '" + m.name +
                       "' evaluates Q (and there is no rate); give it by apsis_set_rate(), or choose another "
                       "method");
@@ -137,7 +176,7 @@ std::unique_ptr<any_run> make_run(const time_integrator& m, callbacks& of, const
     tolerance = {1.0,
                  [limits](const numbers& a, const numbers& b) { return weighted_difference(limits, a, b); },
                  std::nullopt, limits.controller};
-  const bool by_newton = has_derivatives(of) && !m.needs.exact_collision;
+  const bool by_newton = (has_derivatives(of) || of.mass) && !m.needs.exact_collision;
   if (by_newton && of.relaxation_time != nullptr)
     throw input_error(
         "a relaxation time is given and Newton's method solves the stages (it belongs to a stage solver); "

@@ -89,6 +89,39 @@ int apsis_set_product(apsis_integrator* integrator, apsis_product_function* prod
   return set(integrator, [=](auto& s) { s.of.product = product; });
 }
 
+int apsis_set_timed_rate(apsis_integrator* integrator, apsis_timed_rate_function* rate) {
+  return set(integrator, [=](auto& s) { s.of.timed_rate = rate; });
+}
+
+int apsis_set_timed_product(apsis_integrator* integrator, apsis_timed_product_function* product) {
+  return set(integrator, [=](auto& s) { s.of.timed_product = product; });
+}
+
+int apsis_set_sparsity(apsis_integrator* integrator, size_t count, const size_t* rows,
+                       const size_t* columns) {
+  return set(integrator, [=](auto& s) {
+    if (count == 0) return s.of.pattern.reset();
+    const size_t *of_rows = &require(rows, "the list of rows"),
+                 *of_columns = &require(columns, "the list of columns");
+    std::vector<apsis::sparsity_pattern::place> places;
+    for (size_t k = 0; k < count; ++k) places.emplace_back(of_rows[k], of_columns[k]);
+    s.of.pattern.emplace(s.of.block_size, places);
+  });
+}
+
+int apsis_set_mass(apsis_integrator* integrator, size_t count, const size_t* rows, const size_t* columns,
+                   const double* values) {
+  return set(integrator, [=](auto& s) {
+    if (count == 0) return s.of.mass.reset();
+    const size_t *of_rows = &require(rows, "the list of rows"),
+                 *of_columns = &require(columns, "the list of columns");
+    const double* of_values = &require(values, "the list of values");
+    std::vector<apsis::mass_matrix<double>::entry> entries;
+    for (size_t k = 0; k < count; ++k) entries.push_back({of_rows[k], of_columns[k], of_values[k]});
+    s.of.mass.emplace(s.of.block_size, entries);
+  });
+}
+
 int apsis_set_curvature(apsis_integrator* integrator, apsis_curvature_function* curvature) {
   return set(integrator, [=](auto& s) { s.of.curvature = curvature; });
 }

@@ -12,6 +12,7 @@ namespace apsis::c {
 struct stage_position {
   std::size_t block = 0;  ///< number of its block
   long long solve = 0;    ///< number of the solve
+  double step = 1.0;      ///< a part of the step, about as long as the stage
 };
 
 /// A Jacobian matrix and the state at which it was evaluated, because a dense linear system uses it column by
@@ -27,15 +28,21 @@ class known_jacobian {
   long long solve_ = -1;
 };
 
-/// Q and its derivatives on one block (`differentiated` of integrate/autodiff.hpp).
+/// Q and its derivatives on one block (`differentiated_in_time` of integrate/autodiff.hpp).
 class block_field {
  public:
   /// Stores references.
   block_field(callbacks& of, const stage_position& now) : of_(&of), now_(&now) {}
 
-  /// out ← Q(u).
-  void value(std::span<const double> u, std::span<double> out) { of_->evaluate_block(now_->block, u, out); }
-  /// jx ← Q'(u) x.
+  /// Sets the time of all evaluations that follow.
+  void set_time(double t) { t_ = t; }
+  /// out ← Q(t, u).
+  void value(std::span<const double> u, std::span<double> out) {
+    of_->evaluate_block(t_, now_->block, u, out);
+  }
+  /// out ← ∂Q/∂t by a central difference over a small part of the step; 0 for Q(u).
+  void time_derivative(std::span<const double> u, std::span<double> out);
+  /// jx ← ∂Q/∂u x.
   void jacobian_product(std::span<const double> u, std::span<const double> x, std::span<double> jx) {
     product(middle_, u, x, jx);
   }
@@ -49,6 +56,7 @@ class block_field {
 
   callbacks* of_;
   const stage_position* now_;
+  double t_ = 0.0;
   known_jacobian before_, middle_, after_;
   std::vector<double> moved_, other_;
 };

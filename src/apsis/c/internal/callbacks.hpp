@@ -5,6 +5,8 @@
 #include <apsis/apsis.h>
 #include <apsis/core/errors.hpp>
 #include <apsis/integrate/array_state.hpp>
+#include <apsis/integrate/mass_matrix.hpp>
+#include <apsis/integrate/sparsity_pattern.hpp>
 
 #include <array>
 #include <cstddef>
@@ -22,8 +24,10 @@ struct callbacks {
   apsis_stage_function* stage = nullptr;
   apsis_flow_function* flow = nullptr;
   apsis_rate_function* rate = nullptr;
+  apsis_timed_rate_function* timed_rate = nullptr;
   apsis_jacobian_function* jacobian = nullptr;
   apsis_product_function* product = nullptr;
+  apsis_timed_product_function* timed_product = nullptr;
   apsis_curvature_function* curvature = nullptr;
   apsis_time_function* forward_euler_step = nullptr;
   apsis_time_function* relaxation_time = nullptr;
@@ -31,17 +35,21 @@ struct callbacks {
   apsis_observer_function* observer = nullptr;
   apsis_event_function* events = nullptr;
   apsis_event_observer_function* event_observer = nullptr;
-  bool observing = false;  ///< whether an observer is running
+  std::optional<sparsity_pattern> pattern{};  ///< of the Jacobian of a block
+  std::optional<mass_matrix<double>> mass{};  ///< of a block
+  bool observing = false;                     ///< whether an observer is running
   std::array<long long, APSIS_FLOW_EVALUATIONS + 1> counts{};
 
   void count(apsis_counter which, long long more = 1) { counts[static_cast<std::size_t>(which)] += more; }
 
   /// out ← T(t, u); 0 without transport. Throws numerical_error if T is not finite.
   void evaluate_transport(double t, const std::vector<double>& u, std::vector<double>& out);
-  /// out ← Q(u), block by block; 0 without a rate. Throws numerical_error if Q is not finite.
-  void evaluate_rate(const std::vector<double>& u, std::vector<double>& out);
-  /// Sets q ← Q(u) of one block. Newton's method may only try this state and abandon it.
-  void evaluate_block(std::size_t block, std::span<const double> u, std::span<double> q);
+  /// out ← Q(t, u), block by block; 0 without a rate. Throws numerical_error if Q is not finite.
+  void evaluate_rate(double t, const std::vector<double>& u, std::vector<double>& out);
+  /// Sets q ← Q(t, u) of one block; 0 without a rate. Newton's method may only try this state and abandon it.
+  void evaluate_block(double t, std::size_t block, std::span<const double> u, std::span<double> q);
+  /// Whether there is a rate, of u or of t and u.
+  bool has_rate() const { return rate != nullptr || timed_rate != nullptr; }
   /// Whether a block is admissible.
   bool is_admissible(std::size_t block, std::span<const double> u) const;
   /// Returns the first block that is not admissible; nothing if all are.

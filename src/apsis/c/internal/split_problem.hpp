@@ -27,16 +27,16 @@ class split_problem {
       return work_;
     });
   }
-  void add_collision(double, const state& u, targets to) {
+  void add_collision(double t, const state& u, targets to) {
     accumulate<state>(to, u, [&]() -> const state& {
-      of_.evaluate_rate(u, work_);
+      of_.evaluate_rate(t, u, work_);
       return work_;
     });
   }
   void add_transport_and_collision(double t, const state& u, targets to) {
     accumulate<state>(to, u, [&]() -> const state& {
       of_.evaluate_transport(t, u, work_);
-      of_.evaluate_rate(u, rate_);
+      of_.evaluate_rate(t, u, rate_);
       for (std::size_t i = 0; i < work_.size(); ++i) work_[i] += rate_[i];
       return work_;
     });

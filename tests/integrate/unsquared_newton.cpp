@@ -1,11 +1,13 @@
 // Stages with fast directions 1e6 to 1e16 times as fast as the step. The rounding errors of (Δt λ)² must not
 // hide the slow directions. Where they do, the stage must be refused.
 #include <apsis/core/errors.hpp>
+#include <apsis/integrate/difference_derivatives.hpp>
 #include <apsis/integrate/error_control.hpp>
 #include <apsis/integrate/newton_problem.hpp>
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -242,6 +244,24 @@ TEST(unsquared_newton, ends_where_a_rate_vanishes) {
         EXPECT_NEAR(u[0], expected[0], 1e-12) << method << ", epsilon " << epsilon << ", " << k;
         EXPECT_NEAR(u[1], expected[1], 1e-12) << method << ", epsilon " << epsilon << ", " << k;
       }
+}
+
+// Once, iterations whose corrections were errors of differences in time did not end: 200 of them failed.
+TEST(unsquared_newton, ends_where_differences_have_more_than_rounding_errors) {
+  const auto g = [](double t, std::span<const double> u, std::span<double> out) {
+    for (std::size_t i = 0; i < u.size(); ++i) out[i] = static_cast<double>(1 + i) * (t - u[i]) + 1.0;
+  };
+  for (int k = 1; k <= 40; ++k) {
+    newton_problem problem(no_transport{},
+                           apsis::difference_derivatives<decltype(g)>(g, 1e-2 / static_cast<double>(k)));
+    problem.with_sparsity(apsis::sparsity_pattern::banded(2, 0, 0));
+    apsis::stepper march(apsis::find_method("imdrk-3-3"), problem);
+    row u{0, 0};
+    apsis::integrate(march, u, 0.0, 1.0, apsis::step_rule<double>::fixed(0.125));
+    // The solution is t, without errors of the method. Differences over 6e-6 of the time scale have errors
+    // up to 1e-16/(6e-6 2.5e-4), which eight steps multiply by Δt².
+    for (const double one : u) EXPECT_NEAR(one, 1.0, 1e-8) << k;
+  }
 }
 
 TEST(newton_problem, accepts_derivatives_by_hand) {

@@ -104,6 +104,8 @@ struct sweep {
       if (cell >= 0 && cell < segment.cells) return of.u[offset(cell)];
       const bool upper = cell >= 0;
       const int distance = upper ? cell - segment.cells : -1 - cell;
+      // A window is wider than the stencil of a scheme with fewer ghost cells, whose edge ignores this value.
+      if (distance >= of.ghosts) return 0.0;
       const int row = beyond[(upper ? of.ghosts : 0) + distance];
       if (row >= 0) return of.u[row * of.stride + k];
       return row == row_beyond::nothing ? 0.0 : of.sent[(-1l - row) * of.stride + k];

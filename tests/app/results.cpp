@@ -133,7 +133,7 @@ TEST(results, warnings_are_printed_and_listed) {
   for (const json& one : listed)
     EXPECT_THAT(printed.err, HasSubstr("warning: " + one.get<std::string>() + "\n"));
   EXPECT_EQ(stored.code, 0) << stored.err;
-  EXPECT_EQ(json::parse(read(folder.path() / "o/manifest.json"))["warnings"], json({listed[0]}));
+  EXPECT_EQ(json::parse(read(folder.path() / "o/manifest.json"))["warnings"], json::array({listed[0]}));
   EXPECT_EQ(json::parse(silent.out)["warnings"], json::array());
 }
 

@@ -87,8 +87,9 @@ std::string summary_text(const simulation& run, run_end end, const run_records& 
                                     run.last().flux[f * names.size() + k] * units.factor(flux),
                                     units.suffix_of_amount(flux, lacking_directions(run.mesh()))));
     }
-    line(faces[f] == "force" || faces[f] == "source" ? fmt::format("given by the {}", faces[f])
-                                                     : fmt::format("flux through {}", faces[f]),
+    const bool is_term =
+        std::find(balance_terms.begin(), balance_terms.end(), faces[f]) != balance_terms.end();
+    line(fmt::format("{} {}", is_term ? "given by the" : "flux through", faces[f]),
          fmt::format("{}", fmt::join(amounts, ", ")));
   }
   if (const auto& reference = c.output.reference)

@@ -22,7 +22,8 @@ bool is_surface_name(const std::string& text) {
 void check_surface_name(const case_config& config, const std::string& path, const std::string& name,
                         const std::vector<std::string>& earlier) {
   std::vector<std::string> taken(face_names.begin(), face_names.end());
-  taken.insert(taken.end(), {"force", "source", all_surfaces});
+  taken.insert(taken.end(), balance_terms.begin(), balance_terms.end());
+  taken.emplace_back(all_surfaces);
   taken.insert(taken.end(), earlier.begin(), earlier.end());
   if (is_surface_name(name) && std::find(taken.begin(), taken.end(), name) == taken.end()) return;
   throw input_error(

@@ -2,6 +2,7 @@
 
 #include <apsis/config/initial_table.hpp>
 
+#include <array>
 #include <map>
 #include <optional>
 #include <string>
@@ -12,6 +13,13 @@ namespace apsis {
 
 /// Stands for every surface in output.surfaces.
 inline constexpr const char* all_surfaces = "all";
+
+/// Names of the balances of terms that are not surfaces.
+inline constexpr const char* force_balance = "force";
+inline constexpr const char* rotation_balance = "rotation";  ///< of axisymmetric flow
+inline constexpr const char* source_balance = "source";
+/// All of them. No solid box or body can have one of these names.
+inline constexpr std::array<const char*, 3> balance_terms = {force_balance, rotation_balance, source_balance};
 
 /// A table [boundary.left], [boundary.right], …: the boundary condition of a face.
 struct face_table {

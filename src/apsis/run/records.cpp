@@ -60,7 +60,7 @@ struct column_writer {
     }
     if (head == "conservation" || head == "total") return add(head);
     if (head == "lost") {
-      const auto force = std::find(faces.begin(), faces.end(), "force");
+      const auto force = std::find(faces.begin(), faces.end(), force_balance);
       for (std::size_t k = 1; k < invariants.size() && force != faces.end(); ++k)
         columns.push_back("lost_force_" + invariants[k]);
       return;

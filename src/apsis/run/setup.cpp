@@ -243,9 +243,9 @@ std::vector<std::string> run_setup::open_faces() const {
   const domain& space = builder_.space();
   for (const budget_surface& one : space.budget_surfaces())
     open.push_back(one.solid < 0 ? face_names[one.where.index()] : solid_name(one.solid));
-  if (config_.force.acceleration) open.emplace_back("force");
-  if (builder_.axis()) open.emplace_back("rotation");
-  if (!config_.source_term.empty()) open.emplace_back("source");
+  if (config_.force.acceleration) open.emplace_back(force_balance);
+  if (builder_.axis()) open.emplace_back(rotation_balance);
+  if (!config_.source_term.empty()) open.emplace_back(source_balance);
   return open;
 }
 

@@ -93,8 +93,7 @@ class run_setup : public construction_count<run_setup> {
   /// Returns whether both ends along a direction are periodic.
   bool periodic(int direction) const { return builder_.space().periodic(direction); }
   /// Returns the names of the surfaces with a budget: faces that are not periodic, such as "left",
-  /// solid boxes and bodies. The names "force", "rotation" of axisymmetric flow and "source"
-  /// follow, if there are any.
+  /// solid boxes and bodies. The `balance_terms` that the case has follow.
   std::vector<std::string> open_faces() const;
   /// Returns the number of ends of segments at each of open_faces(), the layout of a boundary_budget. It is 1
   /// for the force, the rotation and the source.

@@ -2,6 +2,7 @@
 #include <apsis/study/compare.hpp>
 
 #include <apsis/core/errors.hpp>
+#include <apsis/mesh/cut_cells.hpp>
 
 #include <cmath>
 #include <functional>
@@ -159,7 +160,9 @@ TEST(meshes, that_cannot_be_compared_are_refused) {
   const auto compare = [](const outcome& run, const outcome& reference) { on_mesh_of(run, reference); };
   const auto one = [](double) { return 1.0; };
   bad_input::expect_refused({
-      {[&] { compare(averages(20), averages(30)); }, {"multiples"}},
+      {[&] { compare(averages(20), averages(30)); },
+       {"a reference with 30 cells along x cannot be compared with a run of 20 (averages need whole cells); "
+        "choose a multiple of 20 along x"}},
       {[&] { compare(averages(20), averages(10)); }, {"coarser"}},
       {[&] { compare(points(20, one), points(10, one)); }, {"coarser"}},
   });
@@ -171,6 +174,78 @@ TEST(meshes, that_cannot_be_compared_are_refused) {
   elsewhere.config.space.domain = {{0.0, 1.0}};
   bad_input::expect_refused({
       {[&] { compare(averages(10), elsewhere); }, {"space.domain"}},
+  });
+}
+
+namespace {
+
+/// A result on the mesh of a gas with one component, `value` in cells with an unknown and NaN in all others.
+outcome constant_on(const case_config& config, double value) {
+  outcome o;
+  o.config = config;
+  const grid mesh = make_mesh(config);
+  o.cells = mesh.size();
+  o.components = 1;
+  o.cell_volume = mesh.cell_volume();
+  for (int cell = 0; cell < mesh.size(); ++cell)
+    o.state.push_back(has_unknown(mesh, cell) ? value : std::nan(""));
+  return o;
+}
+
+case_config gas_in(const std::string& space, const std::vector<std::string>& overrides = {}) {
+  return parse_case(
+      "[model]\nname = \"bgk\"\n[initial]\nrho = 1\nT = 1\n[space]\nboundary = \"diffuse\"\n" + space +
+          "[velocity]\nmax = 5\npoints = 12\n[time]\nmethod = \"md-imex-3-2\"\nend = 1\ndt = 0.1\n",
+      "gas", overrides);
+}
+
+const std::string rings = "geometry = \"axisymmetric\"\ncells = [4, 3]\ndomain = [[0, 2], [1, 4]]\n",
+                  beside_a_box =
+                      "cells = [8, 6]\ndomain = [[0, 4], [0, 3]]\n[[space.solid]]\nfrom = [1, 1]\n"
+                      "to = [2, 3]\n",
+                  past_a_disc =
+                      "cells = [20, 20]\ndomain = [[-2, 2], [-2, 2]]\n[[space.body]]\n"
+                      "shape = \"circle\"\ncentre = [0.03, 0.01]\nradius = 1\n";
+
+double l1_of_one(const case_config& config) {
+  const outcome one = constant_on(config, 1.0), two = constant_on(config, 2.0);
+  EXPECT_EQ(difference_norm(one, two, error_norm::linf), 1.0);
+  EXPECT_DOUBLE_EQ(std::pow(difference_norm(one, two, error_norm::l2), 2),
+                   difference_norm(one, two, error_norm::l1));
+  return difference_norm(one, two, error_norm::l1);
+}
+
+}  // namespace
+
+TEST(norms, weigh_rings_and_the_gas_beside_boxes_and_bodies_with_their_volumes) {
+  EXPECT_NEAR(l1_of_one(gas_in(rings)), pi * (16.0 - 1.0) * 2.0, 1e-12);
+  EXPECT_NEAR(l1_of_one(gas_in(beside_a_box)), 12.0 - 2.0, 1e-12);
+  // Walls are chords of lengths L up to 0.2 √2. Between each chord and the circle lies an area of L³/12.
+  EXPECT_NEAR(l1_of_one(gas_in(past_a_disc)), 16.0 - pi, 2.0 * pi * 0.08 / 12.0);
+}
+
+TEST(meshes, with_solid_boxes_are_restricted_beside_them) {
+  const case_config coarse = gas_in(beside_a_box), fine = gas_in(beside_a_box, {"space.cells=[16,18]"});
+  EXPECT_NEAR(difference_norm(constant_on(coarse, 1.0), constant_on(fine, 2.0), error_norm::l1), 10.0, 1e-12);
+}
+
+TEST(meshes, with_other_obstacles_or_other_cells_past_a_body_are_refused) {
+  const auto compare = [](const case_config& run, const case_config& reference) {
+    return [run, reference] { on_mesh_of(constant_on(run, 1.0), constant_on(reference, 1.0)); };
+  };
+  const std::string plane = rings.substr(rings.find("cells"));
+  bad_input::expect_refused({
+      {compare(gas_in(past_a_disc), gas_in(past_a_disc, {"space.cells=[40,40]"})),
+       {"a run and its reference differ in 'space.cells' (meshes past a body have different cut cells); "
+        "leave "
+        "it the same in both"}},
+      {compare(gas_in(past_a_disc), gas_in(past_a_disc, {"space.body.1.radius=1.1"})),
+       {"a run and its reference differ in 'space.body' (they have no common mesh)"}},
+      {compare(gas_in(beside_a_box), gas_in(beside_a_box, {"space.solid.1.to=[2,2]"})),
+       {"a run and its reference differ in 'space.solid' (they have no common mesh)"}},
+      {compare(gas_in(rings), gas_in(plane)), {"'space.geometry' (one is axisymmetric)"}},
+      {compare(gas_in(rings), gas_in(rings, {"space.cells=[8,2]"})),
+       {"a reference with 2 cells along r cannot be compared with a run of 3 (it is coarser)"}},
   });
 }
 

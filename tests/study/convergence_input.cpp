@@ -190,7 +190,7 @@ const std::vector<bad_study> all = {
     {"reference_coarser", bgk, {}, {"space.cells=20,40"}, "space.cells=20", "", "coarser"},
     {"next_without_refinement", ode, {}, {"model.epsilon=1,2"}, "next", "", "needs a finer run"},
     {"no_reference", ode, {}, {"model.epsilon=1,2"}, "", "", "give --reference"},
-    {"meshes_not_nested", bgk, {}, {"space.cells=20,30"}, "", "", "multiples"},
+    {"meshes_not_nested", bgk, {}, {"space.cells=20,30"}, "", "", "choose a multiple of 20 along x"},
     {"velocity_of_states", bgk, {}, {"velocity.points=100,150"}, "velocity.points=200", "", "velocities"},
     {"unknown_quantity", bgk, {}, {"space.cells=20,40"}, "", "rhoo", "did you mean 'rho'?"},
     {"unknown_quantity_exact", "paper/decay", {}, {"time.dt=1/8,1/16"}, "", "v", "valid: u"},

@@ -1,11 +1,13 @@
 #include <apsis/semidiscrete/cell_unknown.hpp>
 
+#include <apsis/core/index.hpp>
 #include <apsis/scheme/quartic.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <iterator>
+#include <utility>
 
 #include <boost/math/quadrature/gauss.hpp>
 
@@ -144,10 +146,107 @@ class values_at_centres final : public cell_unknown {
   }
 };
 
+/// Values on a mesh that is partly restricted.
+class partly_restricted {
+ public:
+  partly_restricted(std::vector<double> values, int components, const grid& mesh)
+      : values_(std::move(values)), components_(at(components)) {
+    for (int k = 0; k < 3; ++k) cells_[at(k)] = mesh.cells(k);
+    for (int cell = 0; cell < mesh.size(); ++cell) is_gas_.push_back(mesh.solid(cell) < 0 ? 1 : 0);
+  }
+
+  void restrict_along(std::size_t direction, int cells, const cell_unknown& unknown, bool periodic) {
+    if (cells == cells_[direction]) return;
+    partly_restricted coarse = *this;
+    coarse.cells_[direction] = cells;
+    const std::size_t size = at(coarse.cells_[0]) * at(coarse.cells_[1]) * at(coarse.cells_[2]);
+    coarse.values_.assign(size * components_, 0.0);
+    coarse.is_gas_.assign(size, 0);
+    const std::size_t stride = stride_of(direction), count = at(cells_[direction]);
+    for (std::size_t outer = 0; outer < is_gas_.size() / (stride * count); ++outer)
+      for (std::size_t inner = 0; inner < stride; ++inner) {
+        const pencil from{outer * stride * count + inner, stride, count},
+            to{outer * stride * at(cells) + inner, stride, at(cells)};
+        for (const run& part : runs_of(from, periodic))
+          restrict_run(part, from, unknown, periodic, to, coarse);
+      }
+    *this = std::move(coarse);
+  }
+
+  std::vector<double> values() && { return std::move(values_); }
+
+ private:
+  /// Cells first, first + stride, … of a line.
+  struct pencil {
+    std::size_t first, stride, cells;
+    /// Returns the number of a cell. It is counted periodically.
+    std::size_t operator[](std::size_t i) const { return first + i % cells * stride; }
+  };
+  /// Neighbouring cells of gas of a pencil. Those across a periodic face have numbers above that of the last.
+  struct run {
+    std::size_t begin, end;
+  };
+
+  std::size_t stride_of(std::size_t direction) const {
+    std::size_t stride = 1;
+    for (std::size_t k = 2; k > direction; --k) stride *= at(cells_[k]);
+    return stride;
+  }
+
+  std::vector<run> runs_of(const pencil& line, bool periodic) const {
+    std::size_t start = 0;  // a cell after a solid one, if gas crosses the periodic face
+    while (periodic && start < line.cells && is_gas_[line[start + line.cells - 1]] != 0) ++start;
+    if (start == line.cells) return {{0, line.cells}};
+    std::vector<run> runs;
+    bool inside = false;
+    for (std::size_t i = start; i < start + line.cells; ++i) {
+      const bool gas = is_gas_[line[i]] != 0;
+      if (gas && !inside) runs.push_back({i, i});
+      if (gas) ++runs.back().end;
+      inside = gas;
+    }
+    return runs;
+  }
+
+  void restrict_run(const run& part, const pencil& from, const cell_unknown& unknown, bool periodic,
+                    const pencil& to, partly_restricted& coarse) const {
+    std::vector<double> line;
+    line.reserve((part.end - part.begin) * components_);
+    for (std::size_t i = part.begin; i < part.end; ++i) {
+      const double* row = values_.data() + from[i] * components_;
+      line.insert(line.end(), row, row + components_);
+    }
+    // Boxes end at edges of both meshes, so that these divisions have no remainder.
+    const std::size_t begin = part.begin * to.cells / from.cells, end = part.end * to.cells / from.cells;
+    const bool whole = part.end - part.begin == from.cells;
+    line = unknown.restricted(line, static_cast<int>(components_), static_cast<int>(end - begin),
+                              periodic && whole);
+    for (std::size_t i = begin; i < end; ++i) {
+      const auto row = line.begin() + static_cast<std::ptrdiff_t>((i - begin) * components_);
+      std::copy_n(row, components_, coarse.values_.data() + to[i] * components_);
+      coarse.is_gas_[to[i]] = 1;
+    }
+  }
+
+  std::vector<double> values_;
+  std::size_t components_;
+  std::array<int, 3> cells_ = {1, 1, 1};
+  std::vector<char> is_gas_;
+};
+
 }  // namespace
 
 std::string cell_unknown::why_not_restricted(int finer, int cells) const {
   return finer < cells ? "it is coarser" : "";
+}
+
+std::vector<double> cell_unknown::restricted_to_mesh(std::vector<double> finer, int components,
+                                                     const grid& fine, const grid& coarse,
+                                                     const std::array<bool, 3>& periodic) const {
+  partly_restricted state(std::move(finer), components, fine);
+  for (int k = 0; k < fine.dimensions(); ++k)
+    state.restrict_along(at(k), coarse.cells(k), *this, periodic[at(k)]);
+  return std::move(state).values();
 }
 
 const cell_unknown& cell_averages() {

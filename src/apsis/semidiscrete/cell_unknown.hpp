@@ -1,7 +1,9 @@
 #pragma once
 
+#include <apsis/mesh/grid.hpp>
 #include <apsis/velocity/position.hpp>
 
+#include <array>
 #include <functional>
 #include <span>
 #include <string>
@@ -45,6 +47,14 @@ class cell_unknown {
   /// why_not_restricted() to be "".
   virtual std::vector<double> restricted(const std::vector<double>& finer, int components, int cells,
                                          bool periodic) const = 0;
+  /// Returns unknowns of a finer mesh, [cells][components], on a coarser mesh of the same box. Directions are
+  /// restricted one after the other. Solid boxes divide lines of cells: no value depends on gas beyond a box.
+  /// Cells inside boxes become 0. `periodic` has a flag for each direction.
+  ///
+  /// Requires why_not_restricted() to be "" for the numbers of cells in every direction. Both meshes have the
+  /// same solid boxes and no cut cells.
+  std::vector<double> restricted_to_mesh(std::vector<double> finer, int components, const grid& fine,
+                                         const grid& coarse, const std::array<bool, 3>& periodic) const;
 };
 
 /// Cell averages on a line. They are restricted exactly, as averages of averages. The finer number of cells

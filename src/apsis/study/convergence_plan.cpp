@@ -143,7 +143,17 @@ class planner {
       if (all_numbers(plan_.keys[k])) plan_.refined = static_cast<int>(k);
     if (plan_.refined < 0) return;
     plan_.h_name = resolution_name(refined_key());
+    direction_ = refined_direction();
     plan_.refined_in_time = is_step_key(refined_key());
+  }
+
+  /// Returns the first direction in which meshes of the study have different numbers of cells; otherwise 0.
+  std::size_t refined_direction() const {
+    const std::vector<int>& first = config(grid_.front()).space.cells;
+    for (std::size_t k = 0; k < first.size() && refined_key() == "space.cells"; ++k)
+      for (const point& p : grid_)
+        if (const auto& cells = config(p).space.cells; k < cells.size() && cells[k] != first[k]) return k;
+    return 0;
   }
 
   const std::string& refined_key() const { return plan_.keys[static_cast<std::size_t>(plan_.refined)]; }
@@ -163,8 +173,8 @@ class planner {
       if (is_new) {
         plan_.blocks.push_back({outer, fmt::format("{}", fmt::join(named, ", ")), {}});
       }
-      const double h =
-          plan_.refined < 0 ? std::numeric_limits<double>::quiet_NaN() : resolution(config(p), refined_key());
+      const double h = plan_.refined < 0 ? std::numeric_limits<double>::quiet_NaN()
+                                         : resolution(config(p), refined_key(), direction_);
       plan_.blocks[place->second].rows.push_back({p.values, p.run, -1, h});
       settings_of_[p.run] = p.settings;
     }
@@ -251,22 +261,36 @@ class planner {
         if (const double value = number_of(from, key); value > 0.0)
           changes.push_back(fmt::format("{}={:.17g}", key, value / 8.0));
     } else {
-      changes.push_back(fmt::format("space.cells={}", 3L * from.space.cells.front()));
+      std::vector<double> cells;
+      for (const int n : from.space.cells) cells.push_back(3.0 * n);
+      changes.push_back(setting_of_cells(cells));
       if (from.time.dt) changes.push_back(fmt::format("time.dt={:.17g}", *from.time.dt / 3.0));
     }
     return layered(settings_of_.at(base), changes);
   }
 
+  static std::string setting_of_cells(const std::vector<double>& cells) {
+    return cells.size() == 1 ? fmt::format("space.cells={:.0f}", cells.front())
+                             : fmt::format("space.cells=[{:.0f}]", fmt::join(cells, ","));
+  }
+
   /// Returns the refined key one refinement beyond the finest run, by the last ratio (a factor 2 if
   /// there is only one run).
   std::string beyond(const convergence_plan::block& block) const {
-    const auto value = [&](std::size_t from_end) {
-      return number_of(plan_.runs[block.rows[block.rows.size() - from_end].run], refined_key());
+    const auto run = [&](std::size_t from_end) -> const case_config& {
+      return plan_.runs[block.rows[block.rows.size() - from_end].run];
     };
-    const bool whole = refined_key() == "space.cells";
-    const double ratio = block.rows.size() > 1 ? value(1) / value(2) : (whole ? 2.0 : 0.5);
-    if (whole) return fmt::format("space.cells={:.0f}", std::round(value(1) * ratio));
-    return fmt::format("{}={:.17g}", refined_key(), value(1) * ratio);
+    const bool single = block.rows.size() < 2;
+    if (refined_key() == "space.cells") {
+      std::vector<double> cells;
+      for (std::size_t k = 0; k < run(1).space.cells.size(); ++k) {
+        const double finest = run(1).space.cells[k];
+        cells.push_back(std::round(finest * (single ? 2.0 : finest / run(2).space.cells.at(k))));
+      }
+      return setting_of_cells(cells);
+    }
+    const auto value = [&](std::size_t from_end) { return number_of(run(from_end), refined_key()); };
+    return fmt::format("{}={:.17g}", refined_key(), value(1) * (single ? 0.5 : value(1) / value(2)));
   }
 
   const convergence_study& study_;
@@ -275,6 +299,7 @@ class planner {
   std::map<std::string, std::size_t> known_;  ///< numerical identity of a run → its index
   std::map<std::size_t, texts> settings_of_;  ///< settings of the runs of the grid
   std::vector<point> grid_;
+  std::size_t direction_ = 0;  ///< direction of the refined length
   kind reference_type_ = kind::automatic;
   bool resolves_ = false;  ///< whether the refined key is a mesh or a step
 };

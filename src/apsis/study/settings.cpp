@@ -69,9 +69,12 @@ double number_of(const case_config& config, const std::string& key) {
   return not_a_number;
 }
 
-double resolution(const case_config& config, const std::string& key) {
+double resolution(const case_config& config, const std::string& key, std::size_t direction) {
+  if (key == "space.cells") {
+    const auto& ends = config.space.domain.at(direction);
+    return (ends[1] - ends[0]) / config.space.cells.at(direction);
+  }
   const double value = number_of(config, key);
-  if (key == "space.cells") return (config.space.domain.front()[1] - config.space.domain.front()[0]) / value;
   if (key == "velocity.points") return 2.0 * config.velocity.max / value;
   return value;
 }

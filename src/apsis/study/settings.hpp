@@ -28,8 +28,9 @@ std::string numerical_identity(case_config config);
 /// in x, an unset key).
 double number_of(const case_config& config, const std::string& key);
 
-/// Returns the refined length: Δx for space.cells, Δv for velocity.points; otherwise the value itself.
-double resolution(const case_config& config, const std::string& key);
+/// Returns the refined length: Δx for space.cells, Δv for velocity.points; otherwise the value itself. Δx and
+/// Δv are those along a direction.
+double resolution(const case_config& config, const std::string& key, std::size_t direction = 0);
 /// Returns the name of the refined length: "Δx" for space.cells, "Δv" for velocity.points, "Δt" for step
 /// keys; otherwise the key.
 std::string resolution_name(const std::string& key);

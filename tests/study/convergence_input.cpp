@@ -105,6 +105,63 @@ TEST(settings, have_numbers) {
 
 namespace {
 
+/// A gas on a line with Gauss–Hermite points, which need no velocity.max.
+const char* const of_gauss_points = R"case([model]
+name = "bgk"
+[initial]
+rho = "1 + 0.1*sin(2*pi*x)"
+T = 1
+[space]
+cells = 12
+[velocity]
+set = "gauss-hermite"
+points = 4
+[time]
+method = "md-imex-6-3"
+end = 0.02
+dt = 0.01
+)case";
+
+}  // namespace
+
+TEST(settings, have_the_spacing_of_the_velocities_of_the_run) {
+  // The largest of the four points is the root of v⁴ − 6v² + 3.
+  const double end = std::sqrt(3.0 + std::sqrt(6.0));
+  EXPECT_NEAR(resolution(parse_case(of_gauss_points, "gauss"), "velocity.points"), 2.0 * end / 3.0, 1e-14);
+  // Scaled to end at max = 6.
+  EXPECT_NEAR(resolution(parse_case(of_gauss_points, "gauss", {"velocity.max=6"}), "velocity.points"), 4.0,
+              1e-14);
+  // Each direction of velocity has its own line.
+  const std::vector<std::string> plane = {"model.velocity_dimensions=2", "velocity.points=[4,10]",
+                                          "velocity.set=[\"gauss-hermite\",\"uniform\"]", "velocity.max=6"};
+  const auto lines = parse_case(of_gauss_points, "gauss", plane);
+  EXPECT_NEAR(resolution(lines, "velocity.points"), 4.0, 1e-14);
+  EXPECT_EQ(resolution(lines, "velocity.points", 1), 1.2);
+}
+
+TEST(settings, of_velocities_that_choose_their_maximum_have_rates) {
+  const convergence_study study{.case_name = "gauss",
+                                .case_text = of_gauss_points,
+                                .vary = {parse_vary("velocity.points=12,4,8")},
+                                .reference = parse_reference("velocity.points=20"),
+                                .quantity = "rho"};
+  const auto table = converge(study);
+  EXPECT_EQ(table.h_name, "Δv");
+  const auto& rows = table.blocks.at(0).rows;
+  ASSERT_EQ(rows.size(), 3U);
+  EXPECT_THAT(rows[0].values, ElementsAre("4"));
+  EXPECT_THAT(rows[2].values, ElementsAre("12"));
+  EXPECT_NEAR(rows[0].h, 2.0 * std::sqrt(3.0 + std::sqrt(6.0)) / 3.0, 1e-14);
+  for (const std::size_t k : {1U, 2U}) {
+    EXPECT_LT(rows[k].h, rows[k - 1].h);
+    EXPECT_EQ(rows[k].rate,
+              std::log(rows[k - 1].error / rows[k].error) / std::log(rows[k - 1].h / rows[k].h));
+    EXPECT_GT(rows[k].rate, 1.0);
+  }
+}
+
+namespace {
+
 struct bad_study {
   std::string name, case_name;
   std::vector<std::string> overrides, vary;
@@ -192,6 +249,13 @@ const std::vector<bad_study> all = {
     {"no_reference", ode, {}, {"model.epsilon=1,2"}, "", "", "give --reference"},
     {"meshes_not_nested", bgk, {}, {"space.cells=20,30"}, "", "", "choose a multiple of 20 along x"},
     {"velocity_of_states", bgk, {}, {"velocity.points=100,150"}, "velocity.points=200", "", "velocities"},
+    {"velocity_set_of_states",
+     bgk,
+     {"time.dt=1e-3", "space.cells=8"},
+     {"model.epsilon=1,2"},
+     "velocity.set=gauss-hermite",
+     "",
+     "a run and its reference differ in 'velocity'"},
     {"unknown_quantity", bgk, {}, {"space.cells=20,40"}, "", "rhoo", "did you mean 'rho'?"},
     {"unknown_quantity_exact", "paper/decay", {}, {"time.dt=1/8,1/16"}, "", "v", "valid: u"},
 };

@@ -120,6 +120,15 @@ void check_obstacles(const case_config& run, const case_config& reference) {
     not_comparable("space.body", "they have no common mesh");
 }
 
+bool have_equal_velocities(const case_config& a, const case_config& b) {
+  velocity_config one = velocities_of(a), other = velocities_of(b);
+  for (velocity_config* of : {&one, &other}) {
+    of->equilibrium = equilibrium_choice::automatic;  // it has no part in the velocities
+    if (of->set.empty()) of->set = {"uniform"};
+  }
+  return one == other;
+}
+
 void check_meshes(const case_config& run, const case_config& reference) {
   if (!is_in_space(run)) return;
   if (run.space.domain != reference.space.domain) not_comparable("space.domain", "they have no common mesh");
@@ -163,7 +172,7 @@ void check_comparable(const case_config& run, const case_config& reference, cons
   if (run.time.end != reference.time.end) not_comparable("time.end", "they end at different times");
   if (!quantity.empty())
     field_of(run, {}, {}, quantity);
-  else if (run.velocity.points != reference.velocity.points || run.velocity.max != reference.velocity.max)
+  else if (!have_equal_velocities(run, reference))
     not_comparable("velocity", "they have other velocities, so only macroscopic fields can be compared");
   check_meshes(run, reference);
 }

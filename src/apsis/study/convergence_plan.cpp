@@ -147,12 +147,18 @@ class planner {
     plan_.refined_in_time = is_step_key(refined_key());
   }
 
-  /// Returns the first direction in which meshes of the study have different numbers of cells; otherwise 0.
+  /// Returns the first direction in which runs have different numbers of the refined cells or velocities;
+  /// otherwise 0.
   std::size_t refined_direction() const {
-    const std::vector<int>& first = config(grid_.front()).space.cells;
-    for (std::size_t k = 0; k < first.size() && refined_key() == "space.cells"; ++k)
+    const auto counts = [this](const point& p) -> std::vector<int> {
+      if (refined_key() == "space.cells") return config(p).space.cells;
+      if (refined_key() == "velocity.points") return config(p).velocity.points.each();
+      return {};
+    };
+    const std::vector<int> first = counts(grid_.front());
+    for (std::size_t k = 0; k < first.size(); ++k)
       for (const point& p : grid_)
-        if (const auto& cells = config(p).space.cells; k < cells.size() && cells[k] != first[k]) return k;
+        if (const std::vector<int> n = counts(p); n.size() == first.size() && n[k] != first[k]) return k;
     return 0;
   }
 

@@ -16,6 +16,23 @@ using texts = std::vector<std::string>;
 
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
+/// Returns the distance between neighbouring velocities along a direction, in the mean if it varies.
+double velocity_spacing(const case_config& config, std::size_t direction) {
+  const auto item = [direction](const auto& list) {
+    return list.size() == 1 ? list.front() : list.at(direction);
+  };
+  const auto& given = config.velocity;
+  if (given.set.empty() || item(given.set) == "uniform") return 2.0 * given.max / item(given.points.each());
+  // Velocities of rings are given along the axis, which is the last component of a gas on a line r.
+  const bool on_radius = config.is_axisymmetric() && config.space.cells.size() == 1;
+  const auto equation = make_model(config);
+  const auto speeds = equation->speeds(on_radius ? 2 : static_cast<int>(direction));
+  std::vector<double> v(speeds.begin(), speeds.end());
+  std::sort(v.begin(), v.end());
+  v.erase(std::unique(v.begin(), v.end()), v.end());
+  return v.size() < 2 ? not_a_number : (v.back() - v.front()) / static_cast<double>(v.size() - 1);
+}
+
 }  // namespace
 
 bool is_resolution_key(const std::string& key) {
@@ -74,9 +91,7 @@ double resolution(const case_config& config, const std::string& key, std::size_t
     const auto& ends = config.space.domain.at(direction);
     return (ends[1] - ends[0]) / config.space.cells.at(direction);
   }
-  const double value = number_of(config, key);
-  if (key == "velocity.points") return 2.0 * config.velocity.max / value;
-  return value;
+  return key == "velocity.points" ? velocity_spacing(config, direction) : number_of(config, key);
 }
 
 std::string resolution_name(const std::string& key) {

@@ -29,7 +29,7 @@ std::string numerical_identity(case_config config);
 double number_of(const case_config& config, const std::string& key);
 
 /// Returns the refined length: Δx for space.cells, Δv for velocity.points; otherwise the value itself. Δx and
-/// Δv are those along a direction.
+/// Δv are those along a direction. Δv is the mean distance between neighbours of the velocities of the run.
 double resolution(const case_config& config, const std::string& key, std::size_t direction = 0);
 /// Returns the name of the refined length: "Δx" for space.cells, "Δv" for velocity.points, "Δt" for step
 /// keys; otherwise the key.

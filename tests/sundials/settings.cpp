@@ -210,4 +210,29 @@ TEST(sundials_settings, integrate_collisions_that_depend_on_time) {
   EXPECT_GT(std::log2(error_of("md-imex-6-3", 160) / error_of("md-imex-6-3", 320)), 2.7);
 }
 
+TEST(sundials_settings, integrate_collisions_of_any_time_scale) {
+  // u' = −5ω (u − cos ωt) − ω sin ωt with a unit of time of 2^−30 or 2^30, about 1e-9 or 1e9. Powers of two
+  // leave the rounding errors of all products unchanged, so that results are equal apart from sums in
+  // another order.
+  const auto result_of = [](const std::string& name, double omega) {
+    const auto rate = [](double t, N_Vector y, N_Vector out, void* of) {
+      const double frequency = *static_cast<double*>(of), phase = frequency * t;
+      const double* u = N_VGetArrayPointer(y);
+      N_VGetArrayPointer(out)[0] = frequency * (-(u[0] - std::cos(phase)) * 5.0 - std::sin(phase));
+      return 0;
+    };
+    const auto y = serial({1});
+    auto s = make(name, nullptr, rate, 0.0, y.get(), &omega);
+    expect_ok(apsis_sundials_set_step(s.get(), 2.0 / 40 / omega));
+    expect_ok(apsis_sundials_evolve(s.get(), 2.0 / omega, y.get(), nullptr));
+    return values(y.get())[0];
+  };
+  for (const std::string name : {"imdrk-3-3", "imdrk-9-5-accurate", "md-imex-6-3"}) {
+    const double usual = result_of(name, 1.0);
+    EXPECT_NEAR(usual, std::cos(2.0), 1e-3) << name;  // 2.5e-4 with md-imex-6-3
+    for (const double omega : {0x1p30, 0x1p-30})
+      EXPECT_NEAR(result_of(name, omega), usual, 1e-12) << name << " " << omega;
+  }
+}
+
 }  // namespace sundials_settings_test

@@ -5,6 +5,7 @@
 #include <apsis/core/errors.hpp>
 
 #include <string>
+#include <utility>
 
 #ifdef APSIS_SUNDIALS_HAS_STEPPERS
 
@@ -62,6 +63,22 @@ void require_success(SUNErrCode returned) {
                       "); check its context");
 }
 
+/// Destroys a stepper that is not released.
+class owned_stepper {
+ public:
+  explicit owned_stepper(SUNContext context) { require_success(SUNStepper_Create(context, &stepper_)); }
+  ~owned_stepper() {
+    if (stepper_ != nullptr) SUNStepper_Destroy(&stepper_);
+  }
+  owned_stepper(const owned_stepper&) = delete;
+  owned_stepper& operator=(const owned_stepper&) = delete;
+  SUNStepper get() const { return stepper_; }
+  SUNStepper release() { return std::exchange(stepper_, nullptr); }
+
+ private:
+  SUNStepper stepper_ = nullptr;
+};
+
 }  // namespace
 }  // namespace apsis::sundials
 
@@ -69,15 +86,15 @@ int apsis_sundials_make_stepper(apsis_sundials* integrator, SUNStepper* stepper)
   using namespace apsis::sundials;
   return apsis::c::guarded([=] {
     apsis::c::require(stepper, "the place of the stepper") = nullptr;
-    SUNStepper made = nullptr;
-    require_success(SUNStepper_Create(idle(integrator).of.context, &made));
+    owned_stepper owned(idle(integrator).of.context);
+    SUNStepper made = owned.get();
     for (const SUNErrCode returned :
          {SUNStepper_SetContent(made, integrator), SUNStepper_SetEvolveFn(made, evolve),
           SUNStepper_SetOneStepFn(made, one_step), SUNStepper_SetFullRhsFn(made, full_rate),
           SUNStepper_SetReInitFn(made, reset), SUNStepper_SetResetFn(made, reset),
           SUNStepper_SetStopTimeFn(made, set_stop_time), SUNStepper_SetGetNumStepsFn(made, get_steps)})
       require_success(returned);
-    *stepper = made;
+    *stepper = owned.release();
     return APSIS_OK;
   });
 }

@@ -61,7 +61,6 @@ class surface_rows {
   void list_rows_of_others();
   void list_inside_rows();
   void list_entries();
-  void send(const std::vector<double>& from, const field& to) const;
 
   device& device_;
   const model& equation_;

@@ -177,7 +177,7 @@ action define(CLI::App& command) {
   command.add_option("--out", given->out, "folder for report.html, reproduce.json and pictures")
       ->capture_default_str();
   command.add_flag("--resume", given->resume,
-                   "retain the claims that an earlier run in the same folder has checked");
+                   "retain the claims that hold in an earlier run in the same folder, and check the others");
   add_threads(command, given->threads, "threads to use", "all processors");
   command.add_flag("--json", given->json, "print only reproduce.json on standard output");
   return [given] { return reproduce(*given); };

@@ -18,8 +18,7 @@ std::vector<int> mirrored_components(const velocity_set& velocities, int directi
     point v{};
     for (int k = 0; k < velocities.dimensions(); ++k) {
       const double value = velocities.speeds(k)[j];
-      // Adding 0.0 turns −0 into 0.
-      v[static_cast<std::size_t>(k)] = (k == direction ? sign * value : value) + 0.0;
+      v[static_cast<std::size_t>(k)] = k == direction ? sign * value : value;  // −0 compares equal to 0
     }
     return v;
   };

@@ -6,9 +6,11 @@
 #include <apsis/core/errors.hpp>
 #include <apsis/method/certificate.hpp>
 #include <apsis/method/export.hpp>
+#include <apsis/method/plateau.hpp>
 #include <apsis/method/polish.hpp>
 
 #include <cmath>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -153,6 +155,31 @@ std::vector<std::string> failures_with(const std::string& name, const std::strin
   change("[claims]\n", "[claims]\nintermediate = \"" + claim + "\"\n");
   if (!old.empty()) change(old, replacement);
   return certify(parse_method(text, "m.toml")).failures;
+}
+
+TEST(plateau_bounds, are_infinite_where_the_stage_equations_have_no_solution) {
+  // One stage with u = u^n − Δt Q(u): 1 + zA = 0 at z = 1/|A|, which is one of the samples.
+  const auto bounds_of = [](double diagonal) {
+    butcher_form<double> b{matrix<double>(1, 1), matrix<double>(1, 1), matrix<double>(1, 1)};
+    b.A(0, 0) = diagonal;
+    return compute_plateau_bounds(b);
+  };
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  // At z = 1 inside the range; elsewhere û = u^n without transport has flux = last = 0.
+  const auto inside = bounds_of(-1.0);
+  EXPECT_EQ(inside.last_band, infinity);
+  EXPECT_EQ(inside.flux_band, infinity);
+  EXPECT_EQ(inside.last, 1.0);
+  EXPECT_EQ(inside.flux, 1.0);
+  // At the end, z = 10⁵.
+  const auto at_end = bounds_of(-1e-5);
+  EXPECT_EQ(at_end.last, infinity);
+  EXPECT_EQ(at_end.flux, infinity);
+  EXPECT_EQ(at_end.last_band, infinity);
+  EXPECT_EQ(at_end.flux_band, infinity);
+  const auto solvable = bounds_of(1.0);
+  EXPECT_LT(solvable.last_band, infinity);
+  EXPECT_LT(solvable.flux_band, infinity);
 }
 
 TEST(intermediate_claims, that_do_not_hold_are_rejected) {

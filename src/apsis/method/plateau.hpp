@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace apsis {
 
@@ -21,18 +22,22 @@ struct plateau_bounds {
 /// The bounds are +infinity if the stage equations have no solution.
 template <class Real>
 plateau_bounds compute_plateau_bounds(const butcher_form<Real>& b) {
-  const auto defects = [&b](double z) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  const auto defect = [](const Real& x) {
+    const double found = std::abs(static_cast<double>(x) - 1.0);
+    return std::isnan(found) ? infinity : found;
+  };
+  const auto defects = [&](double z) {
     const auto at = at_finite_rate(b, Real(z));
-    return finite_rate<double>{std::abs(static_cast<double>(at.flux) - 1.0),
-                               std::abs(static_cast<double>(at.last) - 1.0)};
+    return finite_rate<double>{defect(at.flux), defect(at.last)};
   };
   const auto limit = defects(1e5);
   plateau_bounds bounds{limit.last, 0.0, limit.flux, 0.0};
   for (int k = 0; k <= 100; ++k) {
     const double z = std::pow(10.0, k / 20.0), share = std::pow(z / (1.0 + z), 3);
     const auto here = defects(z);
-    const auto rest = [&](double defect, double plateau) {
-      return std::max(defect / share - plateau, 0.0) * (1.0 + z);
+    const auto rest = [&](double of, double plateau) {
+      return of < infinity ? std::max(of / share - plateau, 0.0) * (1.0 + z) : infinity;
     };
     bounds.last_band = std::max(bounds.last_band, rest(here.last, limit.last));
     bounds.flux_band = std::max(bounds.flux_band, rest(here.flux, limit.flux));

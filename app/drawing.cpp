@@ -94,7 +94,14 @@ fs::path new_folder() {
 
 }  // namespace
 
-drawing::drawing() : python_(find_python()), folder_(new_folder()) {
+drawing::temporary_folder::temporary_folder() : path_(new_folder()) {}
+
+drawing::temporary_folder::~temporary_folder() {
+  std::error_code ignored;
+  fs::remove_all(path_, ignored);
+}
+
+drawing::drawing() : python_(find_python()) {
   add("apsis/__init__.py", "");
   // Only subpackages are copied, because they need no compiled module; the other modules belong to the
   // Python package.
@@ -103,13 +110,8 @@ drawing::drawing() : python_(find_python()), folder_(new_folder()) {
       add(fmt::format("apsis/{}.py", script.name), std::string(script.text));
 }
 
-drawing::~drawing() {
-  std::error_code ignored;
-  fs::remove_all(folder_, ignored);
-}
-
 std::string drawing::add(const std::string& name, const std::string& text) const {
-  const fs::path path = folder_ / name;
+  const fs::path path = folder_.path() / name;
   std::error_code problem;
   fs::create_directories(path.parent_path(), problem);
   write_text_file(path.string(), text, "set TMPDIR to a folder with space");

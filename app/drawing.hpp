@@ -13,9 +13,6 @@ class drawing {
   /// Throws io_error if no Python with matplotlib, numpy and h5py is found, or if the files cannot be
   /// written. The environment variable APSIS_PYTHON names a Python.
   drawing();
-  ~drawing();
-  drawing(const drawing&) = delete;
-  drawing& operator=(const drawing&) = delete;
 
   /// Writes one more file next to the modules and returns its path.
   std::string add(const std::string& name, const std::string& text) const;
@@ -25,8 +22,21 @@ class drawing {
   int run(const std::string& module, const std::vector<std::string>& arguments, bool quiet) const;
 
  private:
+  /// A new folder, removed with its contents at the end.
+  class temporary_folder {
+   public:
+    temporary_folder();
+    ~temporary_folder();
+    temporary_folder(const temporary_folder&) = delete;
+    temporary_folder& operator=(const temporary_folder&) = delete;
+    const std::filesystem::path& path() const { return path_; }
+
+   private:
+    std::filesystem::path path_;
+  };
+
   std::string python_;
-  std::filesystem::path folder_;
+  temporary_folder folder_;
 };
 
 /// Draws without output on standard output, for commands that print results there. Throws io_error if

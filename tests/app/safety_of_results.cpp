@@ -99,6 +99,17 @@ TEST(a_full_disk, ends_an_hdf5_file_without_a_crash_at_the_end_of_the_process) {
   EXPECT_EXIT(write_beyond_a_limit(path), testing::ExitedWithCode(41), "File too large");
 }
 
+TEST(a_full_disk, leaves_no_folder_of_a_drawing_behind) {
+  const work_folder folder, temporary;
+  folder.file("python", "#!/bin/sh\nexit 0\n");  // replaces Python, and finds all its modules
+  fs::permissions(folder.path() / "python", fs::perms::owner_all);
+  const outcome full = shell(folder, "export TMPDIR='" + temporary.path().string() +
+                                         "' APSIS_PYTHON=./python; ulimit -f 1; $APSIS plot imdrk-1-2");
+  EXPECT_EQ(full.code, 4) << full.err;
+  EXPECT_THAT(full.err, AllOf(HasSubstr("File too large"), HasSubstr("set TMPDIR to a folder with space")));
+  EXPECT_TRUE(fs::is_empty(temporary.path()));
+}
+
 TEST(unwritable_messages, do_not_change_how_the_program_ends) {
   const work_folder folder;
   ASSERT_TRUE(fs::exists("/dev/full")) << "every Linux has it";

@@ -57,8 +57,8 @@ struct device_backend_entry {
   bool is_real;             ///< false if the host plays the device, for tests
   /// Returns the names of all devices found; throws nothing.
   std::vector<std::string> (*names)();
-  /// Opens a device by its index in names(). Throws input_error if the device cannot run the kernels, and
-  /// io_error if it fails.
+  /// Opens a device by its index in names(). Throws input_error for other numbers and if the device cannot
+  /// run the kernels, and io_error if it fails.
   std::unique_ptr<device> (*open)(int number);
 };
 

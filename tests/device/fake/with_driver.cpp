@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <string>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <support/folder.hpp>
@@ -59,6 +60,17 @@ TEST(with_driver, a_device_is_found_and_opened_by_its_number_and_place) {
   EXPECT_THAT([] { open_device("1"); },
               testing::ThrowsMessage<input_error>(
                   HasSubstr("no device '1' (this machine has cuda:0 (fake processor)); give one of these")));
+}
+
+TEST(with_driver, a_number_without_a_device_is_refused) {
+  const failing now("three");
+  for (const device_backend_entry* kind : device_backend_entries()) {
+    if (kind->name != "cuda") continue;
+    for (const int number : {-1, 3})
+      EXPECT_THAT([&] { kind->open(number); },
+                  testing::ThrowsMessage<input_error>(
+                      HasSubstr(fmt::format("no device {} (devices have the numbers 0 to 2)", number))));
+  }
 }
 
 TEST(with_driver, processes_of_a_machine_take_its_devices_in_turn) {

@@ -1,6 +1,7 @@
 #include <apsis/device/teams.hpp>
 
 #include <apsis/core/errors.hpp>
+#include <apsis/device/internal/device_number.hpp>
 #include <apsis/device/internal/kernel_table.hpp>
 #include <apsis/exec/memory.hpp>
 
@@ -80,6 +81,10 @@ const device_backend_entry device_backend_teams = {
     .description = "lanes on the host, one after the other, for tests",
     .is_real = false,
     .names = [] { return std::vector<std::string>{"lanes on the host"}; },
-    .open = [](int) { return make_team_device(lane_order::forward); }};
+    .open =
+        [](int number) {
+          require_device_number(number, 1);
+          return make_team_device(lane_order::forward);
+        }};
 
 }  // namespace apsis

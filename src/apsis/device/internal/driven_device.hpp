@@ -1,9 +1,11 @@
 #pragma once
 
 #include <apsis/device/device.hpp>
+#include <apsis/device/internal/device_number.hpp>
 
 #include <cstddef>
 #include <map>
+#include <memory>
 #include <new>
 #include <string>
 #include <utility>
@@ -81,9 +83,11 @@ class driven_device final : public device {
     for (int k = 0; driver != nullptr && k < driver->count(); ++k) all.push_back(driver->name_of(k));
     return all;
   }
-  /// Opens the device with this index in names().
+  /// Opens the device with this index in names(). Throws input_error for other numbers.
   static std::unique_ptr<device> open(int number) {
-    return std::make_unique<driven_device>(*Driver::find(), number);
+    const Driver* driver = Driver::find();
+    require_device_number(number, driver == nullptr ? 0 : driver->count());
+    return std::make_unique<driven_device>(*driver, number);
   }
 
  private:

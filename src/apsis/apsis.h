@@ -285,10 +285,10 @@ double apsis_time(const apsis_integrator* integrator);
 const double* apsis_state(const apsis_integrator* integrator);
 
 /// Writes the n numbers of the solution at a time t of the last step to `u`: dense output, also for
-/// observers. It takes a step from the beginning of the last step to t, and costs as much as a step. The
-/// result therefore has the order of the method, its positivity, its bounds and its limit ε → 0. Methods that
-/// need equal steps use their starter. After a change of settings only t = apsis_time() is valid. Errors:
-/// APSIS_INPUT_ERROR for other times, and those of a step.
+/// observers in the thread that runs them. It takes a step from the beginning of the last step to t, and
+/// costs as much as a step. The result therefore has the order of the method, its positivity, its bounds and
+/// its limit ε → 0. Methods that need equal steps use their starter. After a change of settings only t =
+/// apsis_time() is valid. Errors: APSIS_INPUT_ERROR for other times, and those of a step.
 int apsis_state_at(apsis_integrator* integrator, double t, double* u);
 /// Sets *k and *t to the function and the time of an event since apsis_start(); `index` counts events from 0
 /// in the order of time. Error: APSIS_INPUT_ERROR unless index < apsis_count(integrator, APSIS_EVENTS).

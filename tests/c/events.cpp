@@ -4,6 +4,8 @@
 
 #include <cmath>
 #include <limits>
+#include <string>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -169,6 +171,36 @@ TEST(c_events, dense_output_is_for_observers_and_not_for_other_callbacks) {
   double numbers[2];
   EXPECT_EQ(apsis_state_at(s.get(), 0.3, numbers), APSIS_OK);
   EXPECT_EQ(data.status, APSIS_INPUT_ERROR);
+}
+
+TEST(c_events, dense_output_is_for_the_thread_of_the_observer) {
+  struct asking {
+    apsis_integrator* called = nullptr;
+    std::vector<int> own, others;
+    std::string message;
+  } data;
+  auto s = make("md-imex-6-3", 2);
+  data.called = s.get();
+  apsis_set_data(s.get(), &data);
+  apsis_set_transport(s.get(), transport);
+  apsis_set_observer(s.get(), [](long long, double t, double, size_t, const double*, void* of) {
+    auto& now = *static_cast<asking*>(of);
+    std::thread([&now, t] {
+      double numbers[2];
+      now.others.push_back(apsis_state_at(now.called, t, numbers));
+      now.message = apsis_error_message();
+    }).join();
+    double numbers[2];
+    now.own.push_back(apsis_state_at(now.called, t, numbers));
+    return 0;
+  });
+  apsis_set_step(s.get(), 0.25);
+  const double u0[] = {2, 0};
+  apsis_start(s.get(), 0, u0);
+  EXPECT_EQ(apsis_integrate(s.get(), 0.5), APSIS_OK);
+  EXPECT_EQ(data.own, (std::vector<int>{APSIS_OK, APSIS_OK}));
+  EXPECT_EQ(data.others, (std::vector<int>{APSIS_INPUT_ERROR, APSIS_INPUT_ERROR}));
+  EXPECT_THAT(data.message, HasSubstr("the integrator is in use"));
 }
 
 TEST(c_events, refuse_bad_settings) {

@@ -55,7 +55,7 @@ void require_finite_state(std::span<const double> u) {
 bool observe(apsis_integrator& s, long long step, double t, double dt, const numbers& u) {
   if (s.of.observer == nullptr) return true;
   const int returned =
-      s.of.observe([&] { return s.of.observer(step, t, dt, u.size(), u.data(), s.of.data); });
+      s.of.observing.during([&] { return s.of.observer(step, t, dt, u.size(), u.data(), s.of.data); });
   if (returned < 0) require_success("observer", returned);
   return returned == 0;
 }
@@ -146,13 +146,9 @@ int apsis_integrate(apsis_integrator* integrator, double t1) {
 int apsis_state_at(apsis_integrator* integrator, double t, double* u) {
   return guarded([=] {
     double* out = &require(u, "the place of the state");
-    if (require(integrator, handle).of.observing) {
-      // The observer runs between two steps. Callbacks of this dense output must not ask for more.
-      integrator->of.observing = false;
-      const int status = guarded([=] { return write_state(*integrator, t, out); });
-      integrator->of.observing = true;
-      return status;
-    }
+    // The observer runs between two steps. Callbacks of this dense output must not ask for more.
+    if (auto& observing = require(integrator, handle).of.observing; observing.is_this_one())
+      return observing.pausing([=] { return write_state(*integrator, t, out); });
     const in_use kept(integrator);
     return write_state(*kept, t, out);
   });

@@ -50,8 +50,9 @@ class run_of final : public any_run {
     evolution_.set_stops(events.stops);
     evolution_.set_events(functions_of(of, events), [&of](std::size_t k, double at, const numbers& now) {
       if (of.event_observer == nullptr) return;
-      require_success("event_observer",
-                      of.observe([&] { return of.event_observer(k, at, now.size(), now.data(), of.data); }));
+      require_success("event_observer", of.observing.during([&] {
+        return of.event_observer(k, at, now.size(), now.data(), of.data);
+      }));
     });
     evolution_.start(t, u);
   }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "guarded.hpp"
+#include "observing_thread.hpp"
 
 #include <apsis/apsis.h>
 #include <apsis/core/errors.hpp>
@@ -37,7 +38,7 @@ struct callbacks {
   apsis_event_observer_function* event_observer = nullptr;
   std::optional<sparsity_pattern> pattern{};  ///< of the Jacobian of a block
   std::optional<mass_matrix<double>> mass{};  ///< of a block
-  bool observing = false;                     ///< whether an observer is running
+  observing_thread observing{};
   std::array<long long, APSIS_FLOW_EVALUATIONS + 1> counts{};
 
   void count(apsis_counter which, long long more = 1) { counts[static_cast<std::size_t>(which)] += more; }
@@ -59,17 +60,6 @@ struct callbacks {
   /// Returns the result of a time_function; +infinity without one.
   double time_of(apsis_time_function* function, const char* name, double t,
                  const std::vector<double>& u) const;
-  /// Calls an observer, with `observing` set, and returns its result.
-  template <class Call>
-  int observe(const Call& call) {
-    struct for_the_time_of_a_call {
-      bool& set;
-      ~for_the_time_of_a_call() { set = false; }
-    };
-    observing = true;
-    const for_the_time_of_a_call scope{observing};
-    return call();
-  }
 };
 
 }  // namespace apsis::c

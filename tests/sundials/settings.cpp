@@ -1,7 +1,9 @@
 // Events, dense output, stops, observers, and callbacks that fail.
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -78,6 +80,50 @@ TEST(sundials_settings, call_the_observer_which_may_look_back_and_end) {
   EXPECT_EQ(data.seen.back(), values(y.get())[0]);
   for (std::size_t i = 0; i < data.statuses.size(); ++i)
     EXPECT_EQ(data.statuses[i], i % 3 == 0 ? APSIS_OK : APSIS_INPUT_ERROR);
+}
+
+TEST(sundials_settings, give_dense_output_to_the_thread_of_the_observer_alone) {
+  script data;
+  auto s = of_script("md-imex-6-3", data);
+  data.called = s.get();
+  expect_ok(apsis_sundials_set_observer(s.get(), [](long long, double t, double, N_Vector, void* of) {
+    auto& now = *static_cast<script*>(of);
+    const auto at = serial({0, 0});
+    std::thread([&] {
+      now.statuses.push_back(apsis_sundials_state_at(now.called, t, at.get()));
+      EXPECT_EQ(std::string(apsis_error_message()).find("the integrator is in use"), 0U)
+          << apsis_error_message();
+    }).join();
+    now.statuses.push_back(apsis_sundials_state_at(now.called, t, at.get()));
+    return 0;
+  }));
+  expect_ok(apsis_sundials_evolve(s.get(), 1.0 / 32, nullptr, nullptr));
+  EXPECT_EQ(data.statuses, (std::vector<int>{APSIS_INPUT_ERROR, APSIS_OK, APSIS_INPUT_ERROR, APSIS_OK}));
+}
+
+TEST(sundials_settings, refuse_callbacks_after_an_observer_that_throws) {
+  struct asking : script {
+    bool throws = true;
+  } data;
+  const auto asking_transport = [](double t, N_Vector y, N_Vector out, void* of) {
+    auto& now = *static_cast<asking*>(of);
+    const auto at = serial({0, 0});
+    if (!now.throws) now.statuses.push_back(apsis_sundials_state_at(now.called, t, at.get()));
+    return transport(t, y, out, static_cast<script*>(&now));
+  };
+  auto s = make("md-imex-6-3", asking_transport, nullptr, 0.0, serial({1, 0}).get(), &data);
+  data.called = s.get();
+  expect_ok(apsis_sundials_set_step(s.get(), 1.0 / 64));
+  expect_ok(apsis_sundials_set_observer(s.get(), [](long long, double, double, N_Vector, void* of) {
+    if (static_cast<asking*>(of)->throws) throw std::runtime_error("the observer throws");
+    return 0;
+  }));
+  EXPECT_EQ(apsis_sundials_evolve(s.get(), 1.0 / 32, nullptr, nullptr), APSIS_INTERNAL_ERROR);
+  EXPECT_EQ(std::string(apsis_error_message()), "the observer throws");
+  data.throws = false;
+  expect_ok(apsis_sundials_evolve(s.get(), 1.0 / 16, nullptr, nullptr));
+  ASSERT_FALSE(data.statuses.empty());
+  for (const int status : data.statuses) EXPECT_EQ(status, APSIS_INPUT_ERROR);
 }
 
 TEST(sundials_settings, end_steps_at_stop_times_and_continue_with_other_settings) {

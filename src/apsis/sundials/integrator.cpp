@@ -69,9 +69,7 @@ void require_finite_start(double t, N_Vector y) {
 /// Calls the observer of the program. Returns whether the integration continues.
 bool observe(apsis_sundials& s, long long step, double t, double dt, const nvector& u) {
   if (s.of.observer == nullptr) return true;
-  s.of.observing = true;
-  const int returned = s.of.observer(step, t, dt, u.get(), s.of.data);
-  s.of.observing = false;
+  const int returned = s.of.observing.during([&] { return s.of.observer(step, t, dt, u.get(), s.of.data); });
   if (returned < 0) c::require_success("observer", returned);
   return returned == 0;
 }
@@ -212,13 +210,9 @@ int apsis_sundials_one_step(apsis_sundials* integrator, sunrealtype tout, N_Vect
 int apsis_sundials_state_at(apsis_sundials* integrator, sunrealtype t, N_Vector y) {
   return guarded([=] {
     require(y, "the place of the state");
-    if (require(integrator, handle).of.observing) {
-      // The observer runs between two steps. Callbacks of this dense output must not ask for more.
-      integrator->of.observing = false;
-      const int status = guarded([=] { return write_state(*integrator, t, y); });
-      integrator->of.observing = true;
-      return status;
-    }
+    // The observer runs between two steps. Callbacks of this dense output must not ask for more.
+    if (auto& observing = require(integrator, handle).of.observing; observing.is_this_one())
+      return observing.pausing([=] { return write_state(*integrator, t, y); });
     const in_use kept(integrator);
     return write_state(*kept, t, y);
   });

@@ -3,6 +3,7 @@
 #include "nvector.hpp"
 
 #include <apsis/apsis_sundials.h>
+#include <apsis/c/internal/observing_thread.hpp>
 
 #include <array>
 #include <cstddef>
@@ -25,7 +26,7 @@ struct functions {
   SUNLinearSolver solver = nullptr;  ///< of the program; NULL for one of the integrator
   SUNMatrix matrix = nullptr;
   SUNContext context = nullptr;
-  bool observing = false;  ///< whether an observer is running
+  c::observing_thread observing{};
   std::array<long long, APSIS_SUNDIALS_EVENTS + 1> counts{};
 
   void count(apsis_sundials_counter which, long long more = 1) {

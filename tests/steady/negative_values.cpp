@@ -5,11 +5,13 @@
 
 #include <apsis/core/errors.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
+#include <support/processes.hpp>
 #include <support/property.hpp>
 
 namespace negative_values_test {
@@ -27,6 +29,15 @@ std::vector<double> moments_of(const apsis::relaxation_model& equation, const fi
   std::vector<double> omega(static_cast<std::size_t>(equation.moment_count()));
   equation.moments(f.row(0), omega.data());
   return omega;
+}
+
+/// Returns the space of a model, with more cells than the tests have rows.
+std::shared_ptr<const apsis::problem_builder> space_of(const apsis::relaxation_model& equation) {
+  auto made = std::make_shared<apsis::problem_builder>(equation);
+  made->on({1, {8, 1, 1}, {0, 0, 0}, {1, 1, 1}})
+      .with_discretization("finite-difference")
+      .with_reconstruction(apsis::find_reconstruction("upwind1").make());
+  return made;
 }
 
 /// Returns a moving gas of one cell.
@@ -61,7 +72,8 @@ TEST(negative_values, of_a_gas_are_removed_with_its_moments_kept) {
         const std::vector<double> before = moments_of(*equation, f);
         // Bumps of another kind may leave no temperature and are discarded.
         RC_PRE(equation->as_gas()->molecules().state(before.data()).admissible());
-        const apsis::removed_values removed = remove_negative_values(*equation, {0}, f);
+        const apsis::removed_values removed =
+            remove_negative_values(*equation, space_of(*equation)->space(), {0}, f);
         RC_ASSERT(removed.count == negative);
         const std::vector<double> after = moments_of(*equation, f);
         for (std::size_t i = 0; i < after.size(); ++i)
@@ -76,7 +88,8 @@ TEST(negative_values, change_a_gas_by_their_size_alone) {
   const field gas = moving_gas(*equation);
   field f = gas;
   f.row(0)[0] = -1e-9;  // a corner, where f is below 1e-13
-  const apsis::removed_values removed = remove_negative_values(*equation, {0}, f);
+  const apsis::removed_values removed =
+      remove_negative_values(*equation, space_of(*equation)->space(), {0}, f);
   EXPECT_EQ(removed.count, 1);
   EXPECT_EQ(removed.lowest, -1e-9);
   for (int k = 0; k < f.components(); ++k) EXPECT_NEAR(f.row(0)[k], gas.row(0)[k], 1e-7);
@@ -88,7 +101,7 @@ TEST(negative_values, of_discrete_velocities_are_mixed_with_the_equilibrium) {
   for (int k = 0; k < f.components(); ++k) f.row(0)[k] = 1.0 + k;
   f.row(0)[0] = -1e-3;
   const std::vector<double> before = moments_of(*equation, f);
-  EXPECT_EQ(remove_negative_values(*equation, {0}, f).count, 1);
+  EXPECT_EQ(remove_negative_values(*equation, space_of(*equation)->space(), {0}, f).count, 1);
   const std::vector<double> after = moments_of(*equation, f);
   for (std::size_t i = 0; i < after.size(); ++i)
     EXPECT_NEAR(after[i], before[i], 1e-14 * std::abs(before[i]));
@@ -103,7 +116,7 @@ TEST(negative_values, leave_other_rows_and_cells_as_they_are) {
     for (int k = 0; k < f.components(); ++k) f.row(cell)[k] = moving_gas(*equation).row(0)[k];
   f.row(2)[3] = -1e-5;
   const field before = f;
-  EXPECT_EQ(remove_negative_values(*equation, {0, 1}, f).count, 0);
+  EXPECT_EQ(remove_negative_values(*equation, space_of(*equation)->space(), {0, 1}, f).count, 0);
   for (int cell = 0; cell < 3; ++cell)
     for (int k = 0; k < f.components(); ++k) EXPECT_EQ(f.row(cell)[k], before.row(cell)[k]);
 }
@@ -112,7 +125,29 @@ TEST(negative_values, refuse_a_row_without_equilibrium) {
   const auto equation = make_gas("bgk", 1, {6.0, 16}, 1);
   field f(1, equation->components());
   for (int k = 0; k < f.components(); ++k) f.row(0)[k] = -1.0;
-  EXPECT_THROW(remove_negative_values(*equation, {0}, f), apsis::numerical_error);
+  EXPECT_THROW(remove_negative_values(*equation, space_of(*equation)->space(), {0}, f),
+               apsis::numerical_error);
+}
+
+TEST(negative_values, are_reported_with_the_cell_of_the_whole_mesh) {
+  threads_as_processes::run(2, [](const std::shared_ptr<apsis::communicator>& processes) {
+    const auto equation = make_gas("bgk", 1, {6.0, 16}, 1);
+    apsis::problem_builder part(*equation);
+    part.on({1, {8, 1, 1}, {0, 0, 0}, {1, 1, 1}})
+        .with_discretization("finite-difference")
+        .with_reconstruction(apsis::find_reconstruction("upwind1").make())
+        .shared_by(processes);
+    field f(part.mesh().size(), equation->components());
+    const field gas = moving_gas(*equation);
+    for (int cell = 0; cell < f.cells(); ++cell) std::copy_n(gas.row(0), f.components(), f.row(cell));
+    std::fill_n(f.row(1), f.components(), -1.0);  // the second cell of each block of four
+    try {
+      remove_negative_values(*equation, part.space(), {0, 1, 2, 3}, f);
+      ADD_FAILURE() << "accepted";
+    } catch (const apsis::numerical_error& failure) {
+      EXPECT_EQ(failure.site().cell, processes->rank() == 0 ? 1 : 5);
+    }
+  });
 }
 
 }  // namespace negative_values_test

@@ -61,8 +61,8 @@ class row_projection {
 
 }  // namespace
 
-removed_values remove_negative_values(const relaxation_model& equation, const std::vector<int>& cells,
-                                      field& f) {
+removed_values remove_negative_values(const relaxation_model& equation, const domain& space,
+                                      const std::vector<int>& cells, field& f) {
   removed_values removed;
   row_projection project(equation);
   for (const int cell : cells) {
@@ -75,7 +75,7 @@ removed_values remove_negative_values(const relaxation_model& equation, const st
       }
     if (removed.count > before && !project.apply(row))
       throw numerical_error(equation.why_inadmissible(project.moments()),
-                            {.cell = cell, .value = project.moments()[0]});
+                            {.cell = space.number_in_whole_mesh(cell), .value = project.moments()[0]});
   }
   return removed;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <apsis/boundary/domain.hpp>
 #include <apsis/mesh/field.hpp>
 #include <apsis/model/model.hpp>
 
@@ -17,8 +18,8 @@ struct removed_values {
 /// Makes all rows of `cells` nonnegative. Their moments ω = ℛf change only by rounding. A row of a gas
 /// becomes max(f, 0)(1 + α + β·c + γ|c|²) with the ω of f. If this is negative too, and for other models, the
 /// row becomes f + θ(E(ω) − f) with the smallest θ ∈ [0, 1]. Throws numerical_error with the number of the
-/// cell on this process if ω has no equilibrium. Dimensionless.
-removed_values remove_negative_values(const relaxation_model& equation, const std::vector<int>& cells,
-                                      field& f);
+/// cell in the whole mesh of `space` if ω has no equilibrium. Dimensionless.
+removed_values remove_negative_values(const relaxation_model& equation, const domain& space,
+                                      const std::vector<int>& cells, field& f);
 
 }  // namespace apsis

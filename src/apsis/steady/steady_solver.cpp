@@ -102,7 +102,8 @@ struct steady_solver::impl {
   void remove_negatives(field& f, steady_iteration& now) {
     if (!is_nonnegative(equation, builder)) return;
     removed_values& removed = now.removed;
-    run_collectively(processes, [&] { removed = remove_negative_values(equation, links.cells(), f); });
+    run_collectively(processes,
+                     [&] { removed = remove_negative_values(equation, builder.space(), links.cells(), f); });
     removed.count = global_count(processes, removed.count);
     removed.lowest = global_lowest(processes, removed.lowest);
     if (removed.count == 0) return;

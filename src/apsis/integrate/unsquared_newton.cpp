@@ -79,8 +79,8 @@ class unsquared {
     const Real needed = size_of(delta);
     if (needed <= Real(1)) return end_with(delta);
     for (Real t(1); t >= Real(0x1p-40); t /= Real(2)) {
-      // Near a root a full step gains digits. Where it does not, the rest is the error of G or of its
-      // derivatives, of which differences have more than rounding; parts of a step would not end.
+      // Near a root a full step gains digits. If it does not, the rest consists of errors of G and of its
+      // derivatives, and those of differences are larger than rounding. Parts of a step would never end.
       if (t < Real(1) && is_small(delta)) return false;
       trial_ = x_ + t * delta;
       const bool inside = admissible(trial_);

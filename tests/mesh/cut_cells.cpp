@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <numbers>
 #include <random>
 #include <string>
@@ -287,6 +288,34 @@ TEST(cut_cells, refuse_functions_that_are_no_bodies) {
   bad_input::expect_refused({
       {[] { const cut_cells cut(grid::line(8, 0.0, 1.0), {disc(0, 0, 1)}, closed); }, {"a body on a line"}},
   });
+}
+
+TEST(cut_cells, belong_to_the_whole_mesh_that_they_were_made_for) {
+  const auto cut_of = [](const grid& mesh) {
+    return std::make_shared<const cut_cells>(mesh, std::vector{disc(0.03, 0.01, 1.0)}, closed);
+  };
+  const grid mesh = plane(16), boxed = mesh.with_solids({{{0, 0, 0}, {2, 2, 1}}});
+  const auto cut = [&](const grid& of, const grid& made_for) {
+    return [=] { static_cast<void>(of.with_cut_cells(cut_of(made_for))); };
+  };
+  const std::vector<std::string> block = {
+      "a block of a larger mesh cannot be cut (groups of cut cells may reach beyond it); cut the larger "
+      "mesh"};
+  const std::vector<std::string> other = {
+      "the cut cells belong to another mesh (it has other cells or solid boxes); make them for this mesh"};
+  bad_input::expect_refused({
+      {cut(mesh.block({0, 0, 0}, {16, 8, 1}), mesh), block},
+      {cut(mesh.block({4, 0, 0}, {12, 16, 1}), mesh.block({4, 0, 0}, {12, 16, 1})), block},
+      {cut(mesh, plane(20)), other},
+      {cut(mesh, plane(16, -2.0, 2.5)), other},
+      {cut(mesh, boxed), other},
+      {cut(boxed, mesh), other},
+  });
+  // The axis has no part in the cells, and a block with all cells is the mesh itself.
+  EXPECT_NO_THROW(cut(boxed, boxed)());
+  EXPECT_NO_THROW(cut(mesh.block({0, 0, 0}, {16, 16, 1}), mesh)());
+  const grid half(2, {16, 8, 1}, {-2, 0, 0}, {2, 2, 1});
+  EXPECT_NO_THROW(cut(half.about_axis(), half)());
 }
 
 TEST(cut_cells, have_walls_of_solid_boxes_next_to_them) {

@@ -6,7 +6,7 @@ namespace apsis {
 
 cut_cells::cut_cells(const grid& mesh, const std::vector<outside_function>& bodies,
                      const std::array<bool, 3>& periodic)
-    : bodies_(static_cast<int>(bodies.size())) {
+    : mesh_(mesh), bodies_(static_cast<int>(bodies.size())) {
   mesh_cutter(mesh, bodies, periodic, *this).cut();
 }
 

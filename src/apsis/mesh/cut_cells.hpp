@@ -81,6 +81,8 @@ class cut_cells {
   cut_cells(const grid& mesh, const std::vector<outside_function>& bodies,
             const std::array<bool, 3>& periodic);
 
+  /// Returns the mesh that is cut, without the bodies.
+  const grid& mesh() const { return mesh_; }
   /// Returns the number of the group of a cut cell; −1 for other cells.
   int group_of(int cell) const { return group_of_[at(cell)]; }
   /// Returns the number of the body that a solid cell belongs to; −1 for other cells. Solid boxes are
@@ -100,6 +102,7 @@ class cut_cells {
  private:
   friend class mesh_cutter;
 
+  grid mesh_;
   std::vector<int> group_of_, body_of_;
   std::vector<cut_group> groups_;
   std::vector<open_face> faces_;

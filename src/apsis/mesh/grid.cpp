@@ -11,7 +11,7 @@
 namespace apsis {
 
 grid::grid(int dimensions, std::array<int, 3> cells, std::array<double, 3> lower, std::array<double, 3> upper)
-    : dimensions_(dimensions), cells_{1, 1, 1}, first_{}, lower_{}, spacing_{1.0, 1.0, 1.0} {
+    : dimensions_(dimensions), cells_{1, 1, 1}, first_{}, whole_cells_{}, lower_{}, spacing_{1.0, 1.0, 1.0} {
   if (dimensions < 1 || dimensions > 3)
     throw input_error(fmt::format("{} space dimensions (not 1, 2 or 3); give 1, 2 or 3", dimensions));
   for (int k = 0; k < dimensions; ++k) {
@@ -26,8 +26,14 @@ grid::grid(int dimensions, std::array<int, 3> cells, std::array<double, 3> lower
     lower_[at(k)] = lower[at(k)];
     spacing_[at(k)] = length / cells[at(k)];
   }
+  whole_cells_ = cells_;
   check_size();
   find_fluid();
+}
+
+bool grid::has_cells_of(const grid& other) const {
+  return dimensions_ == other.dimensions_ && cells_ == other.cells_ && first_ == other.first_ &&
+         lower_ == other.lower_ && spacing_ == other.spacing_ && solids_ == other.solids_;
 }
 
 grid grid::block(std::array<int, 3> first, std::array<int, 3> cells) const {
@@ -108,6 +114,13 @@ void grid::set_solids(std::vector<cell_box> boxes) {
 
 grid grid::with_cut_cells(std::shared_ptr<const cut_cells> cut) const {
   if (cut_) throw input_error("a mesh with cut cells cannot be cut again; give all bodies together");
+  if (is_block())
+    throw input_error(
+        "a block of a larger mesh cannot be cut (groups of cut cells may reach beyond it); cut the larger "
+        "mesh, then take the block");
+  if (!has_cells_of(cut->mesh()))
+    throw input_error(
+        "the cut cells belong to another mesh (it has other cells or solid boxes); make them for this mesh");
   grid made = *this;
   made.whole_ = std::make_shared<const grid>(*this);
   made.bodies_ = cut->bodies();

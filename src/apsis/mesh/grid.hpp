@@ -18,8 +18,9 @@ class cut_cells;
 
 /// Cells first … first + cells − 1 of each direction.
 struct cell_box {
-  std::array<int, 3> first = {0, 0, 0},  ///< first cell of each direction
-      cells = {1, 1, 1};                 ///< numbers of cells
+  std::array<int, 3> first = {0, 0, 0},              ///< first cell of each direction
+      cells = {1, 1, 1};                             ///< numbers of cells
+  bool operator==(const cell_box&) const = default;  ///< equal cells
 };
 
 /// Cells begin … end−1.
@@ -62,9 +63,14 @@ class grid {
   /// lies inside, and some cell is not solid.
   grid with_solids(std::vector<cell_box> boxes) const;
 
-  /// Returns this grid with the cells that bodies cut. `cut` must have been made for this grid. Throws
-  /// input_error if this grid already has bodies.
+  /// Returns this grid with the cells that bodies cut. Throws input_error if this grid already has bodies or
+  /// is a block of a larger grid, and if `cut` was made for a grid with other cells or solid boxes.
   grid with_cut_cells(std::shared_ptr<const cut_cells> cut) const;
+
+  /// Returns whether this is a block() with some of the cells of a larger grid.
+  bool is_block() const { return cells_ != whole_cells_; }
+  /// Returns whether both grids have the same cells and solid boxes.
+  bool has_cells_of(const grid& other) const;
 
   /// Returns this grid for axisymmetric flow, in the half-plane (x, r) or on a line r with the axis r = 0.
   /// Unknowns are r f. Their integral over a cell, times 2π, is the integral of f over the ring of the cell.
@@ -138,7 +144,8 @@ class grid {
 
   int dimensions_;
   bool has_axis_ = false;
-  std::array<int, 3> cells_, first_;
+  std::array<int, 3> cells_, first_,
+      whole_cells_;  ///< numbers of cells of the larger grid, or of this one
   std::array<double, 3> lower_, spacing_;
   std::vector<cell_box> solids_;
   int bodies_ = 0;

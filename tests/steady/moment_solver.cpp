@@ -3,6 +3,7 @@
 
 #include "gas_problem.hpp"
 
+#include <apsis/core/errors.hpp>
 #include <apsis/core/index.hpp>
 
 #include <algorithm>
@@ -12,6 +13,7 @@
 #include <random>
 #include <vector>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 namespace moment_solver_test {
@@ -117,6 +119,23 @@ TEST_P(moment_solvers, solve_dense_and_rare_systems_with_and_without_conserved_s
 INSTANTIATE_TEST_SUITE_P(sizes, moment_solvers,
                          testing::Values(std::array{1, 50}, std::array{2, 20}, std::array{3, 6},
                                          std::array{3, 21}));
+
+TEST(moment_solver, does_not_factorize_large_equations_that_iterations_do_not_solve) {
+  // Negative viscosity makes J indefinite, and no step of a line is a part of its inverse.
+  const moment_mesh small = cube(3, 6, 1), large = cube(3, 30, 1);
+  const moment_equations few = flows(small, -0.1, 0), many = flows(large, -0.1, 0);
+  apsis::moment_solver by_factors(small), by_iterations(large);
+  by_factors.take(few, false);
+  EXPECT_LT(error_of(by_factors, small, few), 1e-6);
+  by_iterations.take(many, false);
+  EXPECT_THAT(
+      [&] { error_of(by_iterations, large, many); },
+      testing::ThrowsMessage<apsis::numerical_error>(testing::HasSubstr("27000 unknowns are too many")));
+  // The next equations are solved as usual.
+  const moment_equations usual = flows(large, 0.1, 0);
+  by_iterations.take(usual, false);
+  EXPECT_LT(error_of(by_iterations, large, usual), 1e-3);
+}
 
 TEST(moment_solver, factorizes_what_is_small) {
   EXPECT_TRUE(apsis::moment_solver::factorizes(1, 50000));

@@ -1,8 +1,11 @@
 #include <apsis/steady/internal/moment_solver.hpp>
 
+#include <apsis/core/errors.hpp>
+
 #include <algorithm>
 #include <cmath>
 
+#include <fmt/format.h>
 #include <unsupported/Eigen/IterativeSolvers>
 
 namespace apsis {
@@ -134,6 +137,7 @@ void moment_solver::renew_directions() {
 std::optional<Eigen::VectorXd> moment_solver::solve_with_directions(const Eigen::VectorXd& r) {
   const preconditioner steps = [this](const Eigen::VectorXd& of) { return directions_->solve(of); };
   const double tolerance = mesh_.first_order ? tolerance_of_first_order : tolerance_with_directions;
+  if (!directions_) renew_directions();
   const bool are_new = iterations_of_new_ == 0;
   const int most = are_new ? iterations_with_directions
                            : static_cast<int>(growth_with_earlier_directions * iterations_of_new_) + 1;
@@ -149,9 +153,15 @@ std::optional<Eigen::VectorXd> moment_solver::solve_with_directions(const Eigen:
 
 Eigen::VectorXd moment_solver::solve(Eigen::VectorXd r) {
   if (neutral_) neutral_->remove_from_right_side(r);
-  if (directions_) {
+  if (!factorizes_) {
     if (auto x = solve_with_directions(r)) return *x;
-  } else if (!are_those_of_matrix_ && iterations_ < iterations_with_earlier_factors) {
+    directions_.reset();  // a later J needs new ones
+    throw numerical_error(
+        fmt::format("the moment equations of the steady state are not solved ({} iterations do not suffice, "
+                    "and {} unknowns are too many to factorize); use a coarser mesh, or march in time",
+                    iterations_with_directions, matrix_.rows()));
+  }
+  if (!are_those_of_matrix_ && iterations_ < iterations_with_earlier_factors) {
     const preconditioner earlier = [this](const Eigen::VectorXd& of) { return factors_->solve(of); };
     if (auto x = iterate(r, earlier, tolerance_with_earlier_factors, iterations_with_earlier_factors))
       return *x;

@@ -27,7 +27,8 @@ class moment_solver {
   void take(moment_equations equations, bool holds_neutral);
   /// Returns true if solve() does not change a neutral mode.
   bool has_neutral_mode() const { return neutral_.has_value(); }
-  /// Returns x with J x = r and prescribed sums. Throws numerical_error if J is singular.
+  /// Returns x with J x = r and prescribed sums. Throws numerical_error if J is singular, or if it is too
+  /// large to factorize and GMRES does not converge.
   Eigen::VectorXd solve(Eigen::VectorXd r);
 
   /// Returns true if J is factorized for a mesh of this many directions and unknowns.

@@ -15,9 +15,9 @@ namespace apsis {
 inline constexpr const char* all_surfaces = "all";
 
 /// Names of the balances of terms that are not surfaces.
-inline constexpr const char* force_balance = "force";
+inline constexpr const char* force_balance = "force";        ///< of the force
 inline constexpr const char* rotation_balance = "rotation";  ///< of axisymmetric flow
-inline constexpr const char* source_balance = "source";
+inline constexpr const char* source_balance = "source";      ///< of the sources
 /// All of them. No solid box or body can have one of these names.
 inline constexpr std::array<const char*, 3> balance_terms = {force_balance, rotation_balance, source_balance};
 

@@ -15,10 +15,11 @@ namespace apsis {
 template <class Real>
 class mass_matrix {
  public:
-  /// An entry of M, with row and column counted from 0.
+  /// An entry of M.
   struct entry {
-    std::size_t row, column;
-    Real value;
+    std::size_t row,  ///< its row, from 0
+        column;       ///< its column, from 0
+    Real value;       ///< its value
   };
 
   /// The n × n matrix with these entries; values at the same place are added. Throws input_error for n = 0, a

@@ -6,8 +6,8 @@
 #include <apsis/integrate/autodiff.hpp>
 #include <apsis/integrate/component_tolerances.hpp>
 #include <apsis/integrate/guarded_newton.hpp>
-#include <apsis/integrate/internal/newton_stage.hpp>
 #include <apsis/integrate/mass_matrix.hpp>
+#include <apsis/integrate/newton_stage.hpp>
 #include <apsis/integrate/problem.hpp>
 #include <apsis/integrate/simplified_newton.hpp>
 #include <apsis/integrate/unsquared_newton.hpp>

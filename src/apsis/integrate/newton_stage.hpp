@@ -15,6 +15,7 @@
 
 namespace apsis {
 
+/// @cond
 /// The stage of a newton_problem for Newton's method, with exact derivatives of G. With a mass matrix M,
 /// g and its derivatives stay those of G, and rates are divided by M where they are needed.
 template <class Real, class G>
@@ -80,7 +81,7 @@ struct newton_stage final : timed_stage_equation<Real> {
     field.set_time(t, theta);
   }
 
-  /// y ← G'(v) x and z ← Ġ'(v) x = G''(v)[k, x] + G'(v) M⁻¹ G'(v) x, k = M⁻¹ G(v).
+  /// Sets y ← G'(v) x and z ← Ġ'(v) x = G''(v)[k, x] + G'(v) M⁻¹ G'(v) x, k = M⁻¹ G(v).
   void second_product(std::span<const Real> v, std::span<const Real> x, std::span<Real> y,
                       std::span<Real> z) {
     moved.resize(v.size());
@@ -103,5 +104,7 @@ struct newton_stage final : timed_stage_equation<Real> {
   Real a = Real(0), b = Real(0);
   std::vector<Real> explicit_part, g, g_dot, moved, bent;
 };
+
+/// @endcond
 
 }  // namespace apsis

@@ -15,14 +15,15 @@
 
 namespace apsis {
 
-/// @cond
 /// The stage of a newton_problem for Newton's method, with exact derivatives of G. With a mass matrix M,
 /// g and its derivatives stay those of G, and rates are divided by M where they are needed.
 template <class Real, class G>
 struct newton_stage final : timed_stage_equation<Real> {
+  /// Stores G.
   explicit newton_stage(G callable) : field(std::move(callable)) {}
 
   std::size_t size() const override { return explicit_part.size(); }
+  /// Returns true if v is admissible, or without an admissible set.
   bool admissible(std::span<const Real> v) override { return !admissible_set || admissible_set(v); }
   stage_terms<Real> terms() const override { return {a, b, explicit_part}; }
   const mass_matrix<Real>* mass() const override { return mass_of_rates ? &*mass_of_rates : nullptr; }
@@ -95,16 +96,16 @@ struct newton_stage final : timed_stage_equation<Real> {
     for (std::size_t i = 0; i < v.size(); ++i) z[i] += bent[i];
   }
 
-  field_of<Real, G> field;
-  Real t = Real(0), theta = Real(0);  ///< set_time() of the stage
-  std::function<bool(std::span<const Real>)> admissible_set;
-  std::optional<component_tolerances<Real>> tolerances;
-  std::optional<mass_matrix<Real>> mass_of_rates;
-  Real share = Real(0);
-  Real a = Real(0), b = Real(0);
-  std::vector<Real> explicit_part, g, g_dot, moved, bent;
+  field_of<Real, G> field;                                    ///< G and its derivatives
+  Real t = Real(0), theta = Real(0);                          ///< set_time() of the stage
+  std::function<bool(std::span<const Real>)> admissible_set;  ///< or none
+  std::optional<component_tolerances<Real>> tolerances;       ///< of the step; none: solve to rounding
+  std::optional<mass_matrix<Real>> mass_of_rates;             ///< M; none: 1
+  Real share = Real(0);                                       ///< part of the tolerances that a stage may use
+  Real a = Real(0), b = Real(0);                              ///< coefficients of the stage
+  std::vector<Real> explicit_part,                            ///< u_e
+      g, g_dot,                                               ///< work space for G and its derivative
+      moved, bent;                                            ///< work space for rates
 };
-
-/// @endcond
 
 }  // namespace apsis

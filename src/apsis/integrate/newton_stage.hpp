@@ -96,6 +96,7 @@ struct newton_stage final : timed_stage_equation<Real> {
     for (std::size_t i = 0; i < v.size(); ++i) z[i] += bent[i];
   }
 
+  /// @cond
   field_of<Real, G> field;                                    ///< G and its derivatives
   Real t = Real(0), theta = Real(0);                          ///< set_time() of the stage
   std::function<bool(std::span<const Real>)> admissible_set;  ///< or none
@@ -106,6 +107,7 @@ struct newton_stage final : timed_stage_equation<Real> {
   std::vector<Real> explicit_part,                            ///< u_e
       g, g_dot,                                               ///< work space for G and its derivative
       moved, bent;                                            ///< work space for rates
+  /// @endcond
 };
 
 }  // namespace apsis

@@ -23,7 +23,7 @@ struct plateau_bounds {
 template <class Real>
 plateau_bounds compute_plateau_bounds(const butcher_form<Real>& b) {
   constexpr double infinity = std::numeric_limits<double>::infinity();
-  const auto defect = [](const Real& x) {
+  const auto defect = [&](const Real& x) {
     const double found = std::abs(static_cast<double>(x) - 1.0);
     return std::isnan(found) ? infinity : found;
   };

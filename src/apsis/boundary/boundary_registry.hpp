@@ -94,7 +94,7 @@ std::vector<const boundary_entry*> boundary_entries();
 /// Returns the names of all kinds: "outflow", "periodic", …
 std::vector<std::string> boundary_names();
 
-/// Returns the kind called `name`. Throws input_error with the nearest name if there is none.
+/// Returns the kind called `name`. Throws input_error with the nearest name for others.
 const boundary_entry& find_boundary(const std::string& name);
 /// Returns a variable of a kind, or nothing if the kind has no such variable. Throws input_error if there is
 /// no such kind or the model does not allow it.

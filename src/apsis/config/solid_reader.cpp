@@ -32,7 +32,8 @@ std::vector<double> corner(const raw_value& raw, const std::string& path, const 
   return constant_numbers(raw, path, config.constants);
 }
 
-/// Returns the index of the cell edge at a coordinate along a direction. Throws input_error if there is none.
+/// Returns the index of the cell edge at a coordinate along a direction. Throws input_error without such an
+/// edge.
 int edge_at(const case_config& config, const grid& mesh, const std::string& path, int direction, double x) {
   const double from_start = (x - mesh.edge(direction, 0)) / mesh.spacing(direction);
   const int n = mesh.cells(direction);

@@ -20,7 +20,7 @@ class first_error {
   }
   /// Returns true if an exception is stored.
   explicit operator bool() const { return static_cast<bool>(kept_); }
-  /// Returns the stored exception and clears it; null if there is none.
+  /// Returns the stored exception and clears it; null without one.
   std::exception_ptr take() { return std::exchange(kept_, nullptr); }
   /// Throws the stored exception, if any, and clears it.
   void rethrow() {

@@ -7,7 +7,7 @@ namespace apsis {
 /// A number that counts operations. Kernels for packs (exec/simd-inl.hpp) are instantiated with it to
 /// obtain their operation count. An addition, multiplication, multiply–add, division, comparison, minimum,
 /// maximum or absolute value counts as one operation, because it is one instruction on a pack. Negations,
-/// selections and moves do not count. Branches that depend on data are assumed not taken: no number is
+/// selections and moves do not count. The count assumes that no branch on data is taken: no number is
 /// limited or exceptional.
 class counted {
  public:

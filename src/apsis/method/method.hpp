@@ -74,7 +74,7 @@ class method {
       title,                             ///< one line
       citation;                          ///< publication
   std::string origin;                    ///< how its coefficients were found; "" if the citation states it
-  std::string purpose;                   ///< its recommended use, in a few words; "" if there is none
+  std::string purpose;                   ///< its recommended use, in a few words, or ""
   method_kind kind = method_kind::imex;  ///< class of equations
   int steps = 1;                      ///< 2: the first row of `exact` stands for u^{n−1} (kinds/two_step.hpp)
   method_claims claims;               ///< verified by certify()

@@ -38,7 +38,7 @@ class block_matrix {
   const double* values(int k) const { return values_.data() + at(k) * square(); }
 
   int size_ = 1;
-  std::vector<int> newest_ = {};             ///< newest block of a row, -1 if there is none
+  std::vector<int> newest_ = {};             ///< newest block of a row, or -1
   std::vector<int> columns_ = {}, earlier_;  ///< column of a block, and the previous block of its row
   std::vector<double> values_ = {};
 };

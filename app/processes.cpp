@@ -23,7 +23,7 @@ bool joined = false;  // whether on_all_processes() has started, which shares al
 /// Reports an error that cannot reach the other processes, and ends all processes with its exit code.
 void abort_all(const communicator& processes, const std::exception_ptr& mine) {
   exit_code code = exit_code::internal;
-  std::string message = "an exception without a message";
+  std::string message;
   try {
     std::rethrow_exception(mine);
   } catch (const error& failure) {
@@ -35,6 +35,7 @@ void abort_all(const communicator& processes, const std::exception_ptr& mine) {
   } catch (const std::exception& failure) {
     message = failure.what();
   } catch (...) {
+    message = "an exception without a message";
   }
   std::fputs(fmt::format("error: process {}: {}\n", processes.rank(), printable(message)).c_str(), stderr);
   processes.abort(static_cast<int>(code));

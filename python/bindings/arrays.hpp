@@ -20,7 +20,7 @@ inline py::array_t<double> to_array(std::vector<double>&& numbers, std::vector<p
   auto owner = std::make_unique<std::vector<double>>(std::move(numbers));
   const double* data = owner->data();
   const py::capsule keeper(owner.get(), [](void* v) { delete static_cast<std::vector<double>*>(v); });
-  owner.release();
+  static_cast<void>(owner.release());  // NOLINT(bugprone-unused-return-value): the capsule owns it
   return py::array_t<double>(std::move(shape), data, keeper);
 }
 

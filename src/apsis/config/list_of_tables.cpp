@@ -6,8 +6,9 @@ namespace apsis {
 
 std::optional<std::size_t> table_number(std::string_view word) {
   int number = 0;
-  const char* end = word.data() + word.size();
-  const auto [stop, problem] = std::from_chars(word.data(), end, number);
+  const char* const begin = word.data();
+  const char* const end = begin + word.size();
+  const auto [stop, problem] = std::from_chars(begin, end, number);
   if (problem != std::errc() || stop != end || number < 1 || number > most_listed_tables) return std::nullopt;
   return static_cast<std::size_t>(number);
 }

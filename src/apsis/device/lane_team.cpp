@@ -75,6 +75,7 @@ void lane_team::order_lanes() {
 
 /// Runs the body of a lane. Contexts pass only numbers of type int, so that a pointer comes in two parts.
 void lane_team::enter(unsigned high, unsigned low) {
+  // NOLINTNEXTLINE(performance-no-int-to-ptr): makecontext() takes only int.
   auto* team = reinterpret_cast<lane_team*>((static_cast<std::uintptr_t>(high) << 32) | low);
   const int lane = team->running_;
   (*team->body_)(team->lanes_[static_cast<std::size_t>(lane)]);

@@ -104,6 +104,7 @@ class vector_field {
     out2_.resize(n);
     for (std::size_t i = 0; i < n; ++i) in2_[i] = component(i, s, t, st);
     const std::span<const nested_dual<Real>> in(in2_);
+    // NOLINTNEXTLINE(misc-const-correctness): functions may take a reference to a span that is not constant.
     std::span<nested_dual<Real>> out(out2_);
     if constexpr (timed)
       g_(nested_dual<Real>(t * theta_ + t_), in, out);
@@ -118,7 +119,7 @@ class vector_field {
     const dual<Real> s(Real(0), true);
     for (std::size_t i = 0; i < u.size(); ++i) in1_[i] = s * x[i] + u[i];
     const std::span<const dual<Real>> in(in1_);
-    std::span<dual<Real>> out(out1_);
+    std::span<dual<Real>> out(out1_);  // NOLINT(misc-const-correctness): as above
     if constexpr (timed)
       g_(dual<Real>(s * theta + t_), in, out);
     else

@@ -8,13 +8,6 @@
 namespace apsis {
 namespace {
 
-matrix<std::string> zeros(std::size_t s) {
-  matrix<std::string> m(s, s);
-  for (std::size_t i = 0; i < s; ++i)
-    for (std::size_t j = 0; j < s; ++j) m(i, j) = "0";
-  return m;
-}
-
 matrix<mp_real> values(const matrix<std::string>& texts) {
   matrix<mp_real> m(texts.rows(), texts.cols());
   for (std::size_t i = 0; i < texts.rows(); ++i)
@@ -59,7 +52,7 @@ std::string to_decimals(const mp_real& value, int digits) {
 shu_osher_form<std::string> to_decimals(const shu_osher_form<mp_real>& form, method_kind kind, int digits) {
   const std::size_t s = form.stages();
   shu_osher_form<std::string> e;
-  e.P = e.W = e.D = zeros(s);
+  e.P = e.W = e.D = zero_coefficients(s);
   e.r = to_decimals(form.r, digits);
   for (std::size_t i = 0; i < s; ++i) {
     e.ddot.push_back(to_decimals(form.ddot[i], digits));
@@ -76,9 +69,9 @@ shu_osher_form<std::string> to_decimals(const shu_osher_form<mp_real>& form, met
 std::optional<shu_osher_form<std::string>> increments(const butcher_form<std::string>& b, method_kind kind) {
   const std::size_t s = b.stages();
   shu_osher_form<std::string> e;
-  e.P = zeros(s);
+  e.P = zero_coefficients(s);
   e.W = b.A_hat;
-  e.D = kind == method_kind::explicit_only ? zeros(s) : b.A;
+  e.D = kind == method_kind::explicit_only ? zero_coefficients(s) : b.A;
   e.r = "1";
   for (std::size_t i = 0; i < s; ++i) {
     e.ddot.push_back(b.A_dot(i, i));
@@ -91,6 +84,13 @@ std::optional<shu_osher_form<std::string>> increments(const butcher_form<std::st
 }
 
 }  // namespace
+
+matrix<std::string> zero_coefficients(std::size_t s) {
+  matrix<std::string> m(s, s);
+  for (std::size_t i = 0; i < s; ++i)
+    for (std::size_t j = 0; j < s; ++j) m(i, j) = "0";
+  return m;
+}
 
 std::optional<shu_osher_form<std::string>> exact_shu_osher(const butcher_form<std::string>& b,
                                                            method_kind kind, std::string& reason) {

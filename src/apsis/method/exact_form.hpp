@@ -1,7 +1,9 @@
 #pragma once
 
+#include <apsis/core/matrix.hpp>
 #include <apsis/method/method.hpp>
 
+#include <cstddef>
 #include <optional>
 #include <string>
 
@@ -15,5 +17,8 @@ namespace apsis {
 /// nothing and sets `reason` to the entry that rules out the convex form.
 std::optional<shu_osher_form<std::string>> exact_shu_osher(const butcher_form<std::string>& b,
                                                            method_kind kind, std::string& reason);
+
+/// Returns the s × s matrix of coefficients "0".
+matrix<std::string> zero_coefficients(std::size_t s);
 
 }  // namespace apsis

@@ -65,13 +65,6 @@ method_claims read_claims(const toml::table& root, const std::string& file) {
 const std::vector<std::string> all_keys = {"name",  "title",  "citation",  "origin",  "purpose", "kind",
                                            "steps", "claims", "shu_osher", "butcher", "embedded"};
 
-matrix<std::string> zeros(std::size_t s) {
-  matrix<std::string> m(s, s);
-  for (std::size_t i = 0; i < s; ++i)
-    for (std::size_t j = 0; j < s; ++j) m(i, j) = "0";
-  return m;
-}
-
 void read_shu_osher(const toml::table& table, const std::string& file, method& m) {
   const bool is_explicit = m.kind == method_kind::explicit_only;
   std::vector<std::string> keys = {"P"};
@@ -81,7 +74,7 @@ void read_shu_osher(const toml::table& table, const std::string& file, method& m
   const toml_section form(table, file, "shu_osher", keys);
   const std::size_t s = form.row_count("P");
   auto& e = m.exact;
-  e.P = e.W = e.D = zeros(s);
+  e.P = e.W = e.D = zero_coefficients(s);
   e.ddot.assign(s, "0");
   e.r = "1";
   form.triangle("P", 0, e.P);
@@ -168,10 +161,10 @@ void read_embedded_weights(const toml::table& table, const std::string& file, me
 /// Reads the rows of `key` and, if u^{n+1} is not the last stage, appends the row `weights` of the update.
 matrix<std::string> read_tableau(const toml_section& form, const std::string& key, const std::string& weights,
                                  std::size_t diagonal, std::size_t s, bool update) {
-  auto stages = zeros(s);
+  auto stages = zero_coefficients(s);
   form.triangle(key, diagonal, stages);
   if (!update) return stages;
-  auto all = zeros(s + 1);
+  auto all = zero_coefficients(s + 1);
   for (std::size_t i = 0; i < s; ++i)
     for (std::size_t j = 0; j < s; ++j) all(i, j) = stages(i, j);
   const auto b = form.vector(weights);
@@ -206,7 +199,7 @@ void read_butcher(const toml::table& table, const std::string& file, method& m) 
     form.fail(first, fmt::format("{} stages and an update are too many (at most {} rows); give fewer stages",
                                  s, most_stages));
   const std::size_t rows = update ? s + 1 : s;
-  butcher_form<std::string> b{zeros(rows), zeros(rows), zeros(rows)};
+  butcher_form<std::string> b{zero_coefficients(rows), zero_coefficients(rows), zero_coefficients(rows)};
   if (m.kind != method_kind::implicit_only) b.A_hat = read_tableau(form, "A_hat", "b_hat", 0, s, update);
   if (!is_explicit) b.A = read_tableau(form, "A", "b", 1, s, update);
   if (form.has("A_dot") || form.has("b_dot")) b.A_dot = read_tableau(form, "A_dot", "b_dot", 1, s, update);

@@ -24,7 +24,7 @@ constexpr double no_mass = 1e-300;
 using ring_exponentials::components;
 using ring_exponentials::dual_sums;
 using ring_exponentials::factors;
-using ring_exponentials::parameters;
+using ring_parameters = ring_exponentials::parameters;
 
 /// Newton's method for the minimum of the dual. At the minimum the means of ψ are (0, 0, 0, (3/2)T).
 class dual_minimum {
@@ -35,12 +35,12 @@ class dual_minimum {
 
   /// Returns true if the iterates reach the moments to rounding.
   bool find() {
-    parameters at(0.0, 0.0, 0.0, -1.0 / width_);
+    ring_parameters at(0.0, 0.0, 0.0, -1.0 / width_);
     dual_sums here = of_.evaluate(at);
     double residual = defect(here);
     constexpr int most_iterations = 200;
     for (int iteration = 0; iteration < most_iterations && residual > rounding; ++iteration) {
-      parameters next = at;
+      ring_parameters next = at;
       dual_sums there = here;
       if (!improve(next, there) || (residual <= close && !(defect(there) < 0.5 * residual))) break;
       at = next;
@@ -58,14 +58,14 @@ class dual_minimum {
   /// Takes one step that reduces the dual or the residual; near the minimum the dual varies by less than its
   /// rounding. If nearly all mass is at few points, some directions change nothing. Steps are then damped by
   /// adding to the diagonal. Returns false if no such step exists.
-  bool improve(parameters& at, dual_sums& here) const {
+  bool improve(ring_parameters& at, dual_sums& here) const {
     const double residual = defect(here), before = value(here, at);
     const int halvings = residual <= close ? 1 : 12;
     const double most_damping = residual <= close ? 1e-14 : 1.0;
     for (double damping = 1e-15; damping < most_damping; damping *= 1e3) {
-      parameters step = newton_step(here, damping);
+      ring_parameters step = newton_step(here, damping);
       for (int k = 0; k < halvings && step.allFinite(); ++k, step *= 0.5) {
-        const parameters next = at + step;
+        const ring_parameters next = at + step;
         const dual_sums there = of_.evaluate(next);
         if (!(defect(there) < 0.9 * residual) && !(value(there, next) < before)) continue;
         at = next;
@@ -76,7 +76,9 @@ class dual_minimum {
     return false;
   }
 
-  double value(const dual_sums& of, const parameters& at) const { return of.log_of_sum - 1.5 * T_ * at[3]; }
+  double value(const dual_sums& of, const ring_parameters& at) const {
+    return of.log_of_sum - 1.5 * T_ * at[3];
+  }
 
   /// Returns the largest defect of momentum and energy. It is relative to sums over all molecules, because
   /// these set the rounding of the given moments.
@@ -89,14 +91,14 @@ class dual_minimum {
 
   /// Computes the step in units in which the diagonal of the Hessian is 1, because its entries differ by
   /// orders of magnitude.
-  parameters newton_step(const dual_sums& of, double damping) const {
-    parameters gradient = of.mean, unit;
+  ring_parameters newton_step(const dual_sums& of, double damping) const {
+    ring_parameters gradient = of.mean, unit;
     gradient[3] -= 1.5 * T_;
     for (int k = 0; k < 4; ++k) unit[k] = 1.0 / std::sqrt(std::max(of.covariance(k, k), no_mass));
     Eigen::Matrix4d scaled = unit.asDiagonal() * of.covariance * unit.asDiagonal();
     scaled.diagonal().array() += damping;
     const Eigen::LDLT<Eigen::Matrix4d> factored(scaled);
-    const parameters solution = factored.solve(-unit.cwiseProduct(gradient));
+    const ring_parameters solution = factored.solve(-unit.cwiseProduct(gradient));
     return unit.cwiseProduct(solution);
   }
 

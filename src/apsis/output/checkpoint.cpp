@@ -24,7 +24,7 @@ std::vector<std::string> split(const std::string& text) {
 }
 
 // HDF5 has no text datasets of zero bytes; the trailing newline keeps every list nonempty.
-std::string joined(const std::vector<std::string>& parts) {
+std::string joined_lines(const std::vector<std::string>& parts) {
   return fmt::format("{}\n", fmt::join(parts, "\n"));
 }
 
@@ -121,10 +121,10 @@ void write_contents(hdf5_file& file, const checkpoint& c) {
   write_state(file, c, "state", c.state);
   if (!c.budget.empty()) file.write("gains", c.budget, {c.budget.size()});
   write_earlier(file, c);
-  file.write("history/columns", joined(c.history.columns));
+  file.write("history/columns", joined_lines(c.history.columns));
   write_rows(file, "history/rows", c.history.rows, c.history.columns.size());
-  file.write("fields/names", joined(c.fields.names));
-  file.write("fields/labels", joined(c.fields.labels));
+  file.write("fields/names", joined_lines(c.fields.names));
+  file.write("fields/labels", joined_lines(c.fields.labels));
   for (const auto& axis : c.fields.axes)
     file.write("fields/" + axis.name, axis.centres, {axis.centres.size()});
   std::vector<std::vector<double>> snapshots;

@@ -35,7 +35,8 @@ std::vector<double> linear_edge(const reconstruction& scheme) {
 }
 
 std::complex<double> transport_symbol(const std::vector<double>& edge, double theta) {
-  const auto g = static_cast<double>(edge.size() / 2);
+  const std::size_t middle = edge.size() / 2;
+  const auto g = static_cast<double>(middle);
   std::complex<double> sum = 0.0;
   for (std::size_t k = 0; k < edge.size(); ++k)
     sum += edge[k] * std::polar(1.0, (static_cast<double>(k) - g) * theta);

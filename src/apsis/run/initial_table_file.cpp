@@ -23,7 +23,7 @@ namespace {
 const std::string none = "dimensionless";
 
 /// Largest number of rows of a table, so that a damaged file cannot exhaust memory.
-constexpr std::uint64_t most_rows = 1'000'000'000;
+constexpr std::uint64_t most_table_rows = 1'000'000'000;
 
 /// Datasets of a result that are not columns.
 const std::set<std::string> not_columns = {"f", "v", "v_weights", "v_x", "v_y", "v_z", "t"};
@@ -210,9 +210,9 @@ std::uint64_t initial_table_file::rows_of(const std::string& name) const {
   const auto shape = file_->extents(stored->second.dataset);
   std::uint64_t rows = 1;
   for (std::size_t k = stored->second.snapshot ? 1 : 0; k < shape.size(); ++k) {
-    if (shape[k] > most_rows || rows * shape[k] > most_rows)
+    if (shape[k] > most_table_rows || rows * shape[k] > most_table_rows)
       refuse(fmt::format("'{}' claims more than {} numbers (damaged file); give another file",
-                         stored->second.dataset, most_rows));
+                         stored->second.dataset, most_table_rows));
     rows *= shape[k];
   }
   return rows;
@@ -344,7 +344,7 @@ void initial_table_file::read_state(const hdf5_file& file) {
                     path_));
   const auto shape = file.extents("f");
   std::uint64_t cells = 1;
-  for (std::size_t k = 0; k + 1 < shape.size(); ++k) cells *= std::min(shape[k], most_rows);
+  for (std::size_t k = 0; k + 1 < shape.size(); ++k) cells *= std::min(shape[k], most_table_rows);
   if (const auto wanted = static_cast<std::uint64_t>(make_mesh(config_).size());
       mesh_rank() > 1 && cells != wanted)
     refuse_cells(cells, wanted);

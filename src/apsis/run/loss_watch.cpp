@@ -94,8 +94,8 @@ void loss_watch::warn(double t, const field& u, double dt, bool layer, const los
 }
 
 std::string loss_watch::remedy(double t, const field& u, double dt, bool layer) {
-  const std::string finer = fmt::format("give time.dt below {:.1g} to resolve the relaxation",
-                                        0.1 * problem_.relaxation_time(t, u));
+  std::string finer = fmt::format("give time.dt below {:.1g} to resolve the relaxation",
+                                  0.1 * problem_.relaxation_time(t, u));
   // On a mesh, given steps need a method with a step bound. The rows that preserve bounds have such methods.
   std::vector<std::string> names = {choose_method(request_of(setup_.config())).method};
   for (const choice_row& row : choice_table())

@@ -58,8 +58,7 @@ steady_estimate estimate_steady_state(const numeric_table& history) {
 }
 
 std::string to_text(const steady_estimate& estimate, double factor, const std::string& unit) {
-  const std::string change =
-      fmt::format("the state changes by {:.2g} per unit of time", estimate.change / factor);
+  std::string change = fmt::format("the state changes by {:.2g} per unit of time", estimate.change / factor);
   if (estimate.change == 0.0) return change;
   if (!estimate.has_distance())
     return change + ", and its distance from the steady state is unknown: the change does not decay";

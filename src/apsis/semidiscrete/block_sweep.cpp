@@ -63,13 +63,13 @@ void block_sweep::reserve(const context& of, int cells, int cells_of_box, int wi
   halo_ = of.edges.halo();
   reach_ = of.edges.reach();
   const int beyond = 2 * (halo_ + reach_);
-  rows_.reserve(static_cast<std::size_t>(cells + beyond));
+  rows_.reserve(static_cast<std::size_t>(cells) + static_cast<std::size_t>(beyond));
   targets_.reserve(targets);
   // A stretch has at least one cell.
   const auto most =
       static_cast<std::size_t>(of.space.mesh().dimensions()) * static_cast<std::size_t>(cells_of_box);
   visited_.reserve(most);
-  visited_rows_.reserve(most * static_cast<std::size_t>(1 + beyond));
+  visited_rows_.reserve(most * (1 + static_cast<std::size_t>(beyond)));
   if (cells_of_a_row(field::padded(of.equation.components())) > 1)
     visited_joined_.reserve(visited_rows_.capacity());
   make_room(cells, width);

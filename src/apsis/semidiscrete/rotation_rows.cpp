@@ -126,11 +126,13 @@ HWY_EXPORT(turn);
 namespace rotation_rows {
 
 std::size_t ring::continued() const {
-  return static_cast<std::size_t>(size() + 2 * halo * apart);
+  const int all = size() + 2 * halo * apart;
+  return static_cast<std::size_t>(all);
 }
 
 std::size_t ring::places() const {
-  return static_cast<std::size_t>(size() + 4 * apart);
+  const int all = size() + 4 * apart;
+  return static_cast<std::size_t>(all);
 }
 
 void continue_ring(const ring& of, const double* row, double* values) {

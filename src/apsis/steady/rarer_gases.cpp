@@ -8,7 +8,7 @@
 namespace apsis {
 namespace {
 
-constexpr double ratio = 4.0;
+constexpr double ratio_of_lengths = 4.0;
 /// The iteration converges from any start if the domain is at most this many mean free paths long.
 constexpr double short_length = 10.0;
 
@@ -16,7 +16,8 @@ constexpr double short_length = 10.0;
 
 std::vector<double> rarer_gases::factors(double optical_length) {
   std::vector<double> found;
-  for (double factor = ratio; optical_length * ratio > short_length * factor; factor *= ratio)
+  for (double factor = ratio_of_lengths; optical_length * ratio_of_lengths > short_length * factor;
+       factor *= ratio_of_lengths)
     found.insert(found.begin(), factor);
   return found;
 }

@@ -70,8 +70,8 @@ double norm_of(const std::vector<double>& a, const std::vector<double>& b, doubl
 }
 
 /// Returns one macroscopic field of a state [cells][components]; 0 in cells without a share of gas.
-std::vector<double> field_of(const case_config& config, const std::vector<double>& state,
-                             const std::vector<double>& shares, const std::string& name) {
+std::vector<double> compared_field(const case_config& config, const std::vector<double>& state,
+                                   const std::vector<double>& shares, const std::string& name) {
   const run_setup setup(config);
   std::vector<std::string> names;
   const field_group group = setup.equation->fields().front();
@@ -171,7 +171,7 @@ void check_comparable(const case_config& run, const case_config& reference, cons
   if (run.model.name != reference.model.name) not_comparable("model.name", "they have other unknowns");
   if (run.time.end != reference.time.end) not_comparable("time.end", "they end at different times");
   if (!quantity.empty())
-    field_of(run, {}, {}, quantity);
+    compared_field(run, {}, {}, quantity);
   else if (!have_equal_velocities(run, reference))
     not_comparable("velocity", "they have other velocities, so only macroscopic fields can be compared");
   check_meshes(run, reference);
@@ -196,8 +196,8 @@ double difference_norm(const outcome& run, const std::vector<double>& state, err
     if (state.size() != run.state.size()) not_comparable("velocity", "their states have different sizes");
     return norm_of(run.state, state, run.cell_volume * run.component_weight, shares, norm);
   }
-  return norm_of(field_of(run.config, run.state, shares, quantity),
-                 field_of(run.config, state, shares, quantity), run.cell_volume, shares, norm);
+  return norm_of(compared_field(run.config, run.state, shares, quantity),
+                 compared_field(run.config, state, shares, quantity), run.cell_volume, shares, norm);
 }
 
 double difference_norm(const outcome& run, const outcome& finer, error_norm norm,
@@ -206,8 +206,8 @@ double difference_norm(const outcome& run, const outcome& finer, error_norm norm
   const auto state = on_mesh_of(run, finer);
   if (quantity.empty()) return difference_norm(run, state, norm);
   const auto shares = shares_of_gas(run.config);
-  return norm_of(field_of(run.config, run.state, shares, quantity),
-                 field_of(finer.config, state, shares, quantity), run.cell_volume, shares, norm);
+  return norm_of(compared_field(run.config, run.state, shares, quantity),
+                 compared_field(finer.config, state, shares, quantity), run.cell_volume, shares, norm);
 }
 
 }  // namespace apsis

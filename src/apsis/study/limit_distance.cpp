@@ -33,7 +33,7 @@ struct snapshots {
 /// Returns a run of the case with this ε that starts from `state`.
 simulation begin(case_config config, double epsilon, const std::vector<double>& state) {
   config.model.epsilon = fmt::format("{:.17g}", epsilon);
-  simulation run(std::move(config));
+  simulation run(config);
   run_state start = run.save();
   start.unknowns = state;
   run.restore(start);

@@ -7,7 +7,7 @@
 namespace apsis::sundials {
 namespace {
 
-constexpr double rounding = std::numeric_limits<double>::epsilon();
+constexpr double unit_rounding = std::numeric_limits<double>::epsilon();
 
 }  // namespace
 
@@ -69,7 +69,7 @@ int jacobian::product(N_Vector x, N_Vector jx) {
 int jacobian::curvature(N_Vector x, N_Vector jk, N_Vector hx) {
   // Products that are differences themselves have two thirds of the digits.
   const bool exact = of_.product != nullptr || of_.matrix != nullptr;
-  const double part = std::sqrt(rounding), h = length(x, exact ? part : std::sqrt(part));
+  const double part = std::sqrt(unit_rounding), h = length(x, exact ? part : std::sqrt(part));
   if (h == 0.0) {
     N_VConst(0.0, hx);
     return 0;
@@ -107,7 +107,7 @@ double jacobian::length(N_Vector x, double part) {
 
 /// jx ← (Q(v + hx) − Q(v − hx))/(2h).
 int jacobian::difference(N_Vector v, N_Vector x, N_Vector jx) {
-  const double h = length(x, std::cbrt(rounding));
+  const double h = length(x, std::cbrt(unit_rounding));
   if (h == 0.0) {
     N_VConst(0.0, jx);
     return 0;

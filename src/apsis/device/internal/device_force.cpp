@@ -12,9 +12,9 @@
 namespace apsis {
 namespace {
 
-using kernel = kernels::add_force;
+using force_kernel = kernels::add_force;
 
-static_assert(kernel::cells == launch_room::cells_of_block);
+static_assert(force_kernel::cells == launch_room::cells_of_block);
 
 int most_lines_of(const force& of, const velocity_lattice& lattice) {
   std::size_t most = 0;
@@ -36,7 +36,7 @@ device_force::device_force(device& on, const gas_model& gas, std::shared_ptr<dom
       components_(gas.components()),
       most_lines_(most_lines_of(host_, lattice_)),
       room_(on.memory(), cells_,
-            static_cast<std::size_t>(kernel::numbers_of_room(components_, most_lines_))) {
+            static_cast<std::size_t>(force_kernel::numbers_of_room(components_, most_lines_))) {
   const auto all = static_cast<std::size_t>(space_->mesh().size());
   accelerations_.resize(3 * all);
   sums_on_host_.resize(all * host_.sums_of_cell());
@@ -70,7 +70,7 @@ void device_force::add(double t, const field& u, std::span<const target<field, d
 
 void device_force::change(const field& u, std::span<const target<field, double>> targets) {
   const lattice_rows::flux_rule rule = host_.rule_for(1.0);
-  kernel::arguments of{};
+  force_kernel::arguments of{};
   of.u = u.row(0);
   of.a = accelerations_on_device_.data();
   of.weights = weights_.data();
@@ -87,7 +87,7 @@ void device_force::change(const field& u, std::span<const target<field, double>>
   of.most_lines = most_lines_;
   of.fifth_order = rule.fifth_order ? 1 : 0;
   of.limited = rule.limited ? 1 : 0;
-  constexpr auto most = static_cast<std::size_t>(kernel::most_targets);
+  constexpr auto most = static_cast<std::size_t>(force_kernel::most_targets);
   for (std::size_t first = 0; first < targets.size(); first += most) {
     of.targets = static_cast<int>(std::min(most, targets.size() - first));
     for (std::size_t n = 0; n < static_cast<std::size_t>(of.targets); ++n)
@@ -96,9 +96,10 @@ void device_force::change(const field& u, std::span<const target<field, double>>
       room_.for_parts(some, [&](int begin, int end) {
         of.first = begin;
         of.last = end;
-        const int blocks = (end - begin + kernel::cells - 1) / kernel::cells;
-        device_.launch<kernel>(
-            {blocks, kernel::lanes, static_cast<std::size_t>(kernels::most_totals * kernel::lanes)}, of);
+        const int blocks = (end - begin + force_kernel::cells - 1) / force_kernel::cells;
+        device_.launch<force_kernel>({blocks, force_kernel::lanes,
+                                      static_cast<std::size_t>(kernels::most_totals * force_kernel::lanes)},
+                                     of);
       });
   }
   device_.memory().copy_to_host(sums_.data(), sums_on_host_.size(), sums_on_host_.data());

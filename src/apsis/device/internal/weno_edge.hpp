@@ -12,6 +12,7 @@ struct weno_edge {
   static APSIS_FORMULA double edge(double a, double b, double c, double d, double e) {
     using namespace scalar::weno5;
     const window<Weights, double> u(a, b, c, d, e);
+    // NOLINTNEXTLINE(misc-const-correctness): weights for all sizes do not change it.
     right_fraction<double> cell(edge_terms<Weights, double>{u});
     if constexpr (!Weights::of_any_size)
       cell.replace_if_too_large(right_fraction<double>(edge_terms<scaled<Weights>, double>(u)));

@@ -51,7 +51,8 @@ class mpi_communicator final : public communicator {
     int finalized = 0;
     MPI_Finalized(&finalized);
     if (finalized != 0) {
-      static_cast<void>(notice_.release());  // MPI_Finalize has ended its request
+      // MPI_Finalize has ended its request.
+      static_cast<void>(notice_.release());  // NOLINT(bugprone-unused-return-value)
       return;
     }
     notice_.reset();
@@ -184,7 +185,7 @@ class mpi_communicator final : public communicator {
     wait(one);
   }
 
-  void swap(const void* mine, void* theirs, int bytes, int with) {
+  void trade(const void* mine, void* theirs, int bytes, int with) {
     pending both{{}, 1};
     check_mpi(MPI_Irecv(theirs, bytes, MPI_BYTE, with, reductions, all_, &both.requests.emplace_back()),
               "MPI_Irecv");
@@ -217,7 +218,7 @@ class mpi_communicator final : public communicator {
     const int place = paired ? rank_ / 2 : rank_ - beyond;
     for (int bit = 1; bit < power; bit <<= 1) {
       const int other = place ^ bit;
-      swap(values.data(), others.data(), bytes, other < beyond ? 2 * other : other + beyond);
+      trade(values.data(), others.data(), bytes, other < beyond ? 2 * other : other + beyond);
       take();
     }
     if (paired) send(values.data(), bytes, rank_ + 1, reductions);

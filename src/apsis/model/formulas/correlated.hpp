@@ -29,6 +29,7 @@ struct conditional_gaussian {
                                                const small_matrix<D>& inverse, int last, const int* across) {
     constexpr double twice_pi = 2.0 * 3.14159265358979323846;
     conditional_gaussian found{1.0 / inverse.of[last][last], 0.0, {}, {}};
+    // NOLINTNEXTLINE(misc-const-correctness): one component does not change it.
     double determinant = found.variance * twice_pi;
     if constexpr (D == 2) {
       const double variance = covariance.of[across[0]][across[0]];

@@ -43,6 +43,7 @@ struct target_shape {
 template <int D, bool Cubic>
 APSIS_FORMULA cubic_polynomial<double> polynomial_on_line(const target_polynomial& p, const int* across,
                                                           int last, const double* c) {
+  // NOLINTNEXTLINE(misc-const-correctness): polynomials of second degree do not change it.
   double square = 0.0, along = 0.0;
   cubic_polynomial<double> of_line{p.k, p.l[last], p.a[last][last], p.w[last]};
   for (int k = 0; k + 1 < D; ++k) {

@@ -23,7 +23,7 @@ struct multiply_adds {
     double x[chains];
     for (int k = 0; k < chains; ++k) x[k] = static_cast<double>(number % 1024) + 0.1 * k;
     for (long round = 0; round < of.rounds; ++round)
-      for (int k = 0; k < chains; ++k) x[k] = scalar::fma(x[k], of.factor, of.addend);
+      for (double& one : x) one = scalar::fma(one, of.factor, of.addend);
     double sum = x[0];
     for (int k = 1; k < chains; ++k) sum = sum + x[k];
     return sum;

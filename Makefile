@@ -85,18 +85,19 @@ tsan: ## run the tests of threads and of their users under the thread sanitizer
 	ctest --preset tsan -LE slow
 
 # Lists of compile commands and one generated file suffice. Checks of the syntax visit every
-# included header again for each file, and therefore run over all sources of a room together. Two of them do not expect a source
-# that includes others. The analyzer follows only functions of the file itself, and takes one source at a time.
+# included header again for each file, and therefore run over a file that includes all sources of a room. Two of them do not expect
+# that. The analyzer follows only functions of the file itself: it gets the text of all sources.
 tidy: ## run clang-tidy over the library, the program and the Python package
 	cmake --preset clang -B build/tidy -DAPSIS_PYTHON_PACKAGE=ON -DPython3_EXECUTABLE=$(PYTHON) \
 	  -DCMAKE_UNITY_BUILD=ON -DCMAKE_UNITY_BUILD_BATCH_SIZE=1000 >/dev/null
 	cmake --build build/tidy --target apsis_commit
 	run-clang-tidy-19 -quiet -p build/tidy -j $(CORES) \
 	  -checks='-clang-analyzer-*,-bugprone-suspicious-include,-readability-redundant-declaration' \
-	  '$(CURDIR)/(build/tidy/)?(src|app|paper|validation|python)/.*'
-	cmake --preset clang -B build/analyze -DAPSIS_PYTHON_PACKAGE=ON -DPython3_EXECUTABLE=$(PYTHON) >/dev/null
-	run-clang-tidy-19 -quiet -p build/analyze -j $(CORES) -checks='-bugprone-*,-misc-*,-modernize-*,-performance-*,-readability-*' \
-	  '$(CURDIR)/(src|app|paper|validation|python)/.*'
+	  '$(CURDIR)/(build/tidy/)?(src|app|paper|validation|python)/.*[.]c(pp|xx)$$'
+	scripts/join_sources.py build/tidy
+	run-clang-tidy-19 -quiet -p build/tidy/joined -j $(CORES) \
+	  -checks='-bugprone-*,-misc-*,-modernize-*,-performance-*,-readability-*' \
+	  '$(CURDIR)/(build/tidy/joined/)?(src|app|paper|validation|python)/.*[.]cpp$$'
 
 bench: ## measure every table of docs/speed.md into results/bench/speed.json (two hours, on an idle machine)
 	@scripts/install-packages.sh test

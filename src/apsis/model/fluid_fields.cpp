@@ -28,12 +28,13 @@ std::vector<field_group> flow_fields(int dimensions) {
   const auto slope = [](const field_point& at, int k, int l) {
     return at.gradients[1 + static_cast<std::size_t>(k)][static_cast<std::size_t>(l)];
   };
-  field_group divergence{{{"divergence", "divergence of the velocity (dimensionless)", dimensions::rate}},
-                         [=](const field_point& at, double* values) {
-                           *values = 0.0;
-                           for (int k = 0; k < dimensions; ++k) *values += slope(at, k, k);
-                         },
-                         true};
+  const field_group divergence{
+      {{"divergence", "divergence of the velocity (dimensionless)", dimensions::rate}},
+      [=](const field_point& at, double* values) {
+        *values = 0.0;
+        for (int k = 0; k < dimensions; ++k) *values += slope(at, k, k);
+      },
+      true};
   if (dimensions == 1) return {divergence};
   field_group vorticity{{},
                         [=](const field_point& at, double* values) {

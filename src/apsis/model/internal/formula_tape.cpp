@@ -208,7 +208,7 @@ std::optional<formula_tape> formula_tape::of(const text_of_tables& text, const f
   // A condition evaluates only one of its formulas, which a tape cannot express.
   if (text.text.find_first_of("?&|") != std::string::npos) return std::nullopt;
   const std::size_t count = kind.variables.size();
-  recorder recorded(count);
+  recorder recorded(count);  // NOLINT(misc-const-correctness): the parser calls it by a pointer
   mu::Parser parser;
   define_operators(parser);
   define_functions(parser, text);

@@ -1,5 +1,6 @@
 #include "problems.hpp"
 
+#include <cmath>
 #include <numeric>
 #include <string>
 #include <utility>
@@ -49,6 +50,28 @@ TEST(conserved_quantities, stay_at_their_values_to_the_tolerance_of_stage_solves
   for (const double epsilon : {1e-2, 1e-6, 1e-10}) {
     const double before = sum_of(solve_exchange("-ts_max_steps 0", epsilon, 64).u);
     EXPECT_NEAR(sum_of(solve_exchange(third_order, epsilon, 64).u), before, 1e-8 * before) << epsilon;
+  }
+}
+
+// The stage equation has another root near u = -1/2, where the derivative of the exchange vanishes. Newton's
+// method finds it from u = 0.
+TEST(stages, lead_to_the_equilibrium_that_short_steps_reach) {
+  const options now(std::string(third_order) + " -snes_stol 1e-12");
+  for (const double epsilon : {1e-2, 1e-3, 3e-4, 1e-6}) {
+    run one(line(3, 2, DM_BOUNDARY_PERIODIC));
+    exchange problem{.epsilon = epsilon};
+    problem.enter(one);
+    {
+      const own_points own(one.dm());
+      const points<2> u(one.dm(), one.u());
+      for (PetscInt i = own.begin; i < own.end; ++i) {
+        u[i][0] = 0;
+        u[i][1] = 1;
+      }
+    }
+    const auto found = one.solve(10, 0.125).u;  // 80 steps, each of which damps deviations by more than half
+    for (std::size_t i = 0; i < found.size(); i += 2)
+      EXPECT_NEAR(found[i], (std::sqrt(5.0) - 1) / 2, 1e-7) << epsilon;  // u² = 1 - u; the tolerance of SNES
   }
 }
 

@@ -180,6 +180,24 @@ TEST(sundials_integrators, conserve_linear_invariants) {
   }
 }
 
+/// The stage equation has another root near u = −1/2, where the derivative of the exchange vanishes. Newton's
+/// method finds it from u = 0.
+TEST(sundials_integrators, reach_the_equilibrium_that_short_steps_reach) {
+  for (const bool tolerant : {false, true})
+    for (const double epsilon : {1e-2, 1e-3, 3e-4, 1e-6}) {
+      line of = of_cells(1, epsilon);
+      of.speed = 0.0;
+      const auto s = make_line("md-imex-8-3-mixed", of);
+      const auto y = serial({0.0, 1.0});
+      expect_ok(apsis_sundials_reset(s.get(), 0.0, y.get()));
+      expect_ok(tolerant ? apsis_sundials_set_tolerance(s.get(), 1e-8, 1e-10)
+                         : apsis_sundials_set_step(s.get(), 0.125));
+      expect_ok(apsis_sundials_evolve(s.get(), 10.0, y.get(), nullptr));
+      // u² = 1 − u. Equal steps solve stages to rounding, others to 1e-3 of the tolerance.
+      EXPECT_NEAR(values(y.get())[0], (std::sqrt(5.0) - 1.0) / 2.0, tolerant ? 1e-7 : 1e-10) << epsilon;
+    }
+}
+
 TEST(sundials_integrators, reach_a_tolerance_with_every_way_to_solve) {
   const line of = of_cells(8, 1e-3, 0.02);
   const auto truth = after_steps("md-imex-6-3", of, 0.4, 800);

@@ -12,6 +12,8 @@
 #include <apsis/integrate/simplified_newton.hpp>
 #include <apsis/integrate/unsquared_newton.hpp>
 
+#include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <functional>
 #include <limits>
@@ -196,10 +198,41 @@ class newton_problem {
     equation_.a = a;
     equation_.b = b;
     equation_.explicit_part = v_;
-    if (!solve_by_kept_derivative())
-      report_ =
-          sparse_ ? sparse_->solve(equation_, v_, options_) : guarded_newton<real>(equation_, v_, options_);
+    if (b != real(0) && is_far_from_equilibrium()) start_from_implicit_euler();
+    if (!solve_by_kept_derivative()) report_ = solve_from_start();
     unload(v_, u);
+  }
+
+  newton_report solve_from_start() {
+    return sparse_ ? sparse_->solve(equation_, v_, options_) : guarded_newton<real>(equation_, v_, options_);
+  }
+
+  /// Returns whether G changes an unknown by more than its size in the time √−b of the second derivative. The
+  /// stage equation then has other roots than the one that short steps lead to, and Newton's method may find
+  /// them: near a zero of G' for example.
+  bool is_far_from_equilibrium() {
+    using std::abs, std::sqrt;
+    equation_.field.value(v_, equation_.g);
+    if (equation_.mass_of_rates) equation_.mass_of_rates->divide(equation_.g);
+    const real time = sqrt(-equation_.b);
+    for (std::size_t i = 0; i < v_.size(); ++i)
+      if (abs(time * equation_.g[i]) > abs(v_[i])) return true;
+    return false;
+  }
+
+  /// Replaces the start of Newton's method by a step of the implicit Euler method, if there is one.
+  void start_from_implicit_euler() {
+    using std::sqrt;
+    const real a = equation_.a, b = equation_.b;
+    equation_.a = std::max(a, sqrt(-b));
+    equation_.b = real(0);
+    try {
+      solve_from_start();
+    } catch (const numerical_error&) {
+      v_ = equation_.explicit_part;
+    }
+    equation_.a = a;
+    equation_.b = b;
   }
 
   /// Solves the stage by simplified_newton if its errors have a tolerance and the solver factorizes matrices.

@@ -141,14 +141,23 @@ bool stage_solver::solve(const stage& now, Vec u) {
   jacobian_->evaluate(now.t, u);
   const double gamma = std::max(now.a, std::sqrt(-now.b));
   stiffness_ = gamma * jacobian_->size(u);
-  // Far from equilibrium, residuals of (Δt/ε)² Q leave no digits to slow modes. An implicit Euler step gives
-  // a start near equilibrium.
-  if (now.b != 0.0 && preconditioner_ && stiffness_ > most_without_start) {
+  // Far from equilibrium, residuals of (Δt/ε)² Q leave no digits to slow modes, and the equation has other
+  // roots than the one that short steps lead to. An implicit Euler step gives a start near equilibrium.
+  if (now.b != 0.0 && ((preconditioner_ && stiffness_ > most_without_start) || is_far_from_equilibrium(u))) {
     now_ = {now.t, gamma, 0.0, now.dt, false};
     if (!iterate(u)) check(VecCopy(explicit_part_.get(), u));
     now_ = now;
   }
   return iterate(u);
+}
+
+/// Returns whether Q changes an unknown by more than its size in the time √−b of the second derivative.
+bool stage_solver::is_far_from_equilibrium(Vec u) {
+  const Vec rate = rate_.like(u);
+  of_.minus_collision(now_.t, u, rate);
+  PetscReal largest = 0.0;
+  check(VecMaxPointwiseDivide(rate, u, &largest));
+  return std::sqrt(-now_.b) * largest > 1.0;
 }
 
 bool stage_solver::iterate(Vec u) {

@@ -181,11 +181,16 @@ void stage_newton::finish(const stage& s) {
         s.t));
 }
 
-/// Whether rounding errors of r would hide the slow components of v. The stiff part of r has the square of
-/// the stiffness.
-bool stage_newton::is_far_from_equilibrium() const {
+/// Whether Newton's method should begin near equilibrium. Rounding errors of r, whose stiff part has the
+/// square of the stiffness, would hide the slow components of v. If Q changes an unknown by more than its
+/// size in the time √−b of the second derivative, the equation also has other roots than the one that short
+/// steps lead to.
+bool stage_newton::is_far_from_equilibrium(const stage& s) const {
   constexpr double most = 1e6;
-  return N_VMaxNorm(now_.r.get()) > most * N_VMaxNorm(now_.v.get());
+  if (N_VMaxNorm(now_.r.get()) > most * N_VMaxNorm(now_.v.get())) return true;
+  const double relative = accuracy_.absolute ? accuracy_.relative : 1.0;
+  N_VProd(now_.k.get(), weights_.get(), work_.get());
+  return std::sqrt(-s.b) * relative * N_VMaxNorm(work_.get()) > 1.0;
 }
 
 void stage_newton::start_at(const stage& s) {
@@ -195,6 +200,17 @@ void stage_newton::start_at(const stage& s) {
                     "stage; reduce the time "
                     "step, or check the callbacks",
                     s.t));
+}
+
+/// Moves the iterate to the solution of an implicit Euler step, if there is one.
+void stage_newton::start_from_implicit_euler(const stage& s) {
+  try {
+    start_at(s);
+    find_root(s);
+    N_VLinearSum(1.0, now_.v.get(), 1.0, now_.delta.get(), now_.v.get());
+  } catch (const numerical_error&) {
+    N_VScale(1.0, s.u, now_.v.get());
+  }
 }
 
 /// Throws numerical_error. `does` completes the sentence "Newton's method …".
@@ -246,11 +262,8 @@ void stage_newton::solve(double t, bool timed, double a, double b, nvector& u) {
   }
   now_.v = u;
   start_at(s);
-  if (b != 0.0 && is_far_from_equilibrium()) {
-    const stage euler{t, std::sqrt(-b), 0.0, false, u.get()};
-    start_at(euler);
-    find_root(euler);
-    N_VLinearSum(1.0, now_.v.get(), 1.0, now_.delta.get(), now_.v.get());
+  if (b != 0.0 && is_far_from_equilibrium(s)) {
+    start_from_implicit_euler({t, std::max(a, std::sqrt(-b)), 0.0, false, u.get()});
     start_at(s);
   }
   find_root(s);

@@ -66,6 +66,7 @@ class stage_solver {
 
  private:
   void attach(Vec like);
+  bool is_far_from_equilibrium(Vec u);
   bool iterate(Vec u);
   void add_curvature(Vec x, Vec y);
   void count_iterations();

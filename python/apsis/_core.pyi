@@ -75,9 +75,13 @@ def integrate(transport: Callable[..., Any], moments: Callable[..., Any], equili
               admissible: Optional[Callable[..., bool]], epsilon: float, u0: ArrayLike, t: Sequence[float], method: Method,
               dt: Optional[float], safety: float, growth: Optional[int],
               tolerance: Optional[float], controller: str) -> tuple[Array, Array, int, int]: ...
+class Coupling:
+    all: Coupling
+    cell: Coupling
+    cells: Coupling
 def integrate_general(collision: Callable[..., Any], product: Callable[..., Any], curvature: Callable[..., Any],
                       transport: Optional[Callable[..., Any]], forward_euler_step: Optional[Callable[..., float]],
-                      admissible: Optional[Callable[..., bool]], local: bool, krylov: bool, u0: ArrayLike, t: Sequence[float], method: Method,
+                      admissible: Optional[Callable[..., Any]], coupled: Coupling, krylov: bool, u0: ArrayLike, t: Sequence[float], method: Method,
                       dt: Optional[float], safety: float, growth: Optional[int],
                       tolerance: Optional[float], controller: str) -> tuple[Array, Array, int, int]: ...
 def run(text: Optional[str], name: str, overrides: list[str], out: Optional[str], restart: Optional[str],

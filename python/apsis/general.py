@@ -2,10 +2,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Callable
+from typing import Any, Callable
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+
+from . import _core
+from .arguments import real_array
+from .derivatives import CellDerivatives, Derivatives, some_cells
+from .errors import InputError
 
 Array = NDArray[np.float64]
 
@@ -23,6 +28,10 @@ class GeneralProblem:
         admissible(u)             whether u is admissible as a stage; Newton iterates stay inside
         local                     Q couples only the last axis of u, cell by cell: the functions collision, jacobian and
                                   admissible then get one cell, an array of the length of that axis
+        vectorized                with local: these functions get m cells, an array of shape (m, n), and return arrays of shape
+                                  (m, n), (m, n, n) and (m,). A step takes some calls of each function instead of some per cell
+        parameters                with vectorized: an array whose first axes are those of the cells. The functions get its rows
+                                  for the m cells as the last argument: collision(u, p), such as ε(x) or rates of each cell
 
     Without a jacobian, derivatives are complex steps Im Q(u + ihx)/h, exact to rounding. They require that Q accepts complex
     numbers, and that they agree with finite differences at u0. Otherwise derivatives are central differences with about ten
@@ -41,4 +50,67 @@ class GeneralProblem:
     forward_euler_step: Callable[[float, Array], float] | None = None
     admissible: Callable[[Array], bool] | None = None
     local: bool = False
+    vectorized: bool = False
+    parameters: ArrayLike | None = None
     solver: str = "dense"
+
+
+@dataclass(frozen=True)
+class CollisionFunctions:
+    """The functions of a collision as the compiled part calls them.
+
+    coupling    what they get: the whole state, one cell, or several cells and their indices"""
+
+    coupling: _core.Coupling
+    collision: Callable[..., ArrayLike]
+    derivatives: Derivatives | CellDerivatives
+    admissible: Callable[..., Any] | None
+
+
+def collision_functions(problem: GeneralProblem, u0: Array) -> CollisionFunctions:
+    """Returns the functions of `problem` for states like u0. Raises InputError if the settings of its cells do not fit together."""
+    if problem.vectorized and not problem.local:
+        raise InputError("vectorized = True has no meaning without local = True (it is about functions of cells); give local=True too, "
+                         "or remove it")
+    if problem.parameters is not None and not problem.vectorized:
+        raise InputError("parameters have no meaning without vectorized = True (they are those of several cells); give vectorized=True "
+                         "too, or remove them")
+    if problem.vectorized:
+        return _functions_of_cells(problem, u0)
+    if not problem.local:
+        derivatives = Derivatives(problem.collision, problem.jacobian, u0.copy())
+        return CollisionFunctions(_core.Coupling.all, problem.collision, derivatives, problem.admissible)
+    cells = u0.reshape(-1, u0.shape[-1])
+    first, *others = (cells[k].copy() for k in some_cells(len(cells)))
+    derivatives = Derivatives(problem.collision, problem.jacobian, first, others=others)
+    return CollisionFunctions(_core.Coupling.cell, problem.collision, derivatives, problem.admissible)
+
+
+def _functions_of_cells(problem: GeneralProblem, u0: Array) -> CollisionFunctions:
+    cells = u0.reshape(-1, u0.shape[-1])
+    rows = None if problem.parameters is None else _rows_of(real_array("parameters", problem.parameters), u0.shape[:-1])
+
+    def with_parameters(function: Callable[..., Any]) -> Callable[[Array, Any], Any]:
+        return lambda u, which: function(u) if rows is None else function(u, rows[which])
+
+    def admissible(u: Array, which: Any) -> Any:
+        assert problem.admissible is not None
+        found = np.asarray(with_parameters(problem.admissible)(u, which))
+        if found.dtype.kind != "b" or found.shape != (len(u),):
+            raise InputError(f"admissible returned an array of shape {found.shape} and type {found.dtype} (True or False is needed for "
+                             f"each cell, an array of shape ({len(u)},)); return that")
+        return found
+
+    collision = with_parameters(problem.collision)
+    derivatives = CellDerivatives(collision, None if problem.jacobian is None else with_parameters(problem.jacobian), cells)
+    return CollisionFunctions(_core.Coupling.cells, collision, derivatives, None if problem.admissible is None else admissible)
+
+
+def _rows_of(parameters: Array, cells: tuple[int, ...]) -> Array:
+    """Returns the parameters as an array whose first axis is that of all cells. It cannot be changed by the functions."""
+    if parameters.shape[:len(cells)] != cells:
+        raise InputError(f"parameters have the shape {parameters.shape} (its first axes must be those of the cells, {cells}); give a row "
+                         "for each cell")
+    rows = parameters.reshape(-1, *parameters.shape[len(cells):]).copy()
+    rows.setflags(write=False)
+    return rows

@@ -10,9 +10,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _core
 from .arguments import number, real_array, text, whole_number
-from .derivatives import Derivatives
 from .errors import CostWarning, InputError
-from .general import GeneralProblem
+from .general import GeneralProblem, collision_functions
 from .kinetic import KineticProblem
 from .methods import Method, html_table, method as find_method
 
@@ -165,11 +164,11 @@ def _integrate_general(problem: GeneralProblem, u0: Array, times: list[float], i
         raise InputError(f"unknown solver {problem.solver!r} (there is no such name); give \"dense\" or \"krylov\"")
     if problem.solver == "dense":
         _warn_of_cost(u0.shape[-1] if problem.local else u0.size, integrator)
-    derivatives = Derivatives(problem.collision, problem.jacobian, u0.reshape(-1, u0.shape[-1])[0].copy() if problem.local else u0.copy())
-    found = _core.integrate_general(problem.collision, derivatives.product, derivatives.curvature, problem.transport,
-                                    problem.forward_euler_step, problem.admissible, bool(problem.local), problem.solver == "krylov", u0, times, integrator._core,
-                                    *steps_by)
-    return Solution(*found, integrator.name, reason, derivatives.by)
+    q = collision_functions(problem, u0)
+    found = _core.integrate_general(q.collision, q.derivatives.product, q.derivatives.curvature, problem.transport,
+                                    problem.forward_euler_step, q.admissible, q.coupling, problem.solver == "krylov", u0, times,
+                                    integrator._core, *steps_by)
+    return Solution(*found, integrator.name, reason, q.derivatives.by)
 
 
 def _name(method: object) -> str:

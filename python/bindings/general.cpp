@@ -1,6 +1,7 @@
 #include "arrays.hpp"
 #include "callback.hpp"
 #include "march.hpp"
+#include "side_by_side.hpp"
 
 #include <apsis/core/errors.hpp>
 #include <apsis/integrate/newton_problem.hpp>
@@ -20,15 +21,14 @@ namespace {
 using state = std::vector<double>;
 using extents = std::vector<py::ssize_t>;
 
-struct general_functions {
-  callback collision, product, curvature;
-  std::optional<callback> transport, forward_euler_step, admissible;
+struct transport_functions {
+  std::optional<callback> transport, forward_euler_step;
 };
 
 /// Q and its derivatives at one point, an array of the given shape (`differentiated`).
 class python_field {
  public:
-  python_field(const general_functions& of, extents shape) : of_(&of), shape_(std::move(shape)) {}
+  python_field(const collision_functions& of, extents shape) : of_(&of), shape_(std::move(shape)) {}
 
   void value(std::span<const double> u, std::span<double> out) {
     of_->collision.numbers(of_->collision(look(u)), shape_, out);
@@ -44,57 +44,44 @@ class python_field {
  private:
   py::array_t<double> look(std::span<const double> u) const { return to_fixed_array(u, shape_); }
 
-  const general_functions* of_;
+  const collision_functions* of_;
   extents shape_;
 };
 
-/// u' = T(t, u) + Q(u), where Q couples the numbers of a cell only, which are contiguous.
-class general_problem {
+/// Collisions that couple the numbers of a cell only, which are contiguous. Cells are solved one after
+/// another.
+class collisions_alone {
  public:
-  using state = python::state;
-  using real = double;
-
-  general_problem(const general_functions& of, extents shape, const extents& cell, linear_solver solver)
-      : of_(of), shape_(std::move(shape)), local_({}, python_field(of, cell), newton_options{solver}) {
+  collisions_alone(const collision_functions& of, const extents& cell, linear_solver solver)
+      : of_(of), shape_(cell), local_({}, python_field(of, cell), newton_options{solver}) {
     for (const auto n : cell) length_ *= static_cast<std::size_t>(n);
     cell_.resize(length_);
     if (of.admissible)
-      local_.with_admissible([this, cell](std::span<const double> v) {
-        return of_.admissible->truth((*of_.admissible)(to_fixed_array(v, cell)));
+      local_.with_admissible([this](std::span<const double> v) {
+        return of_.admissible->truth((*of_.admissible)(to_fixed_array(v, shape_)));
       });
   }
 
-  void add_transport(double t, const state& u, std::span<const target<state, double>> targets) {
-    accumulate<state>(targets, u, [&]() -> const state& { return transport(t, u); });
-  }
-  void add_collision(double, const state& u, std::span<const target<state, double>> targets) {
-    accumulate<state>(targets, u, [&]() -> const state& {
-      work_ = u;
-      const target<state, double> to{&rate_, 0.0, 1.0, true};
-      rate_.resize(length_);
-      for_each_cell(work_, [&](state& cell) {
-        local_.add_collision(0.0, cell, {&to, 1});
-        cell = rate_;
-      });
-      return work_;
+  void evaluate(const state& u, state& rate) {
+    rate = u;
+    const target<state, double> to{&rate_, 0.0, 1.0, true};
+    rate_.resize(length_);
+    for_each_cell(rate, [&](state& cell) {
+      local_.add_collision(0.0, cell, {&to, 1});
+      cell = rate_;
     });
   }
-  void solve_collision(double t, double a, double b, state& u) {
+  void solve(double t, double a, double b, state& u) {
     state solved = u;
     for_each_cell(solved, [&](state& cell) { local_.solve_collision(t, a, b, cell); });
     u.swap(solved);
   }
-  bool is_admissible(const state& u) {
+  bool are_admissible(const state& u) {
     if (!of_.admissible) return true;
     state copy = u;
     bool all = true;
     for_each_cell(copy, [&](const state& cell) { all = all && local_.is_admissible(cell); });
     return all;
-  }
-  bool has_transport(double t, const state& u) { return of_.transport && !is_zero(transport(t, u)); }
-  double forward_euler_step(double t, const state& u) const {
-    if (!of_.forward_euler_step) return std::numeric_limits<double>::infinity();
-    return of_.forward_euler_step->number((*of_.forward_euler_step)(t, to_fixed_array(u, shape_)));
   }
 
  private:
@@ -116,56 +103,115 @@ class general_problem {
     }
   }
 
+  const collision_functions& of_;
+  extents shape_;
+  std::size_t length_ = 1;
+  newton_problem<no_transport, python_field> local_;
+  state cell_, rate_;
+};
+
+/// u' = T(t, u) + Q(u)
+template <class Collisions>
+class general_problem {
+ public:
+  using state = python::state;
+  using real = double;
+
+  general_problem(const transport_functions& of, extents shape, Collisions& collisions)
+      : of_(of), shape_(std::move(shape)), collisions_(collisions) {}
+
+  void add_transport(double t, const state& u, std::span<const target<state, double>> targets) {
+    accumulate<state>(targets, u, [&]() -> const state& { return transport(t, u); });
+  }
+  void add_collision(double, const state& u, std::span<const target<state, double>> targets) {
+    accumulate<state>(targets, u, [&]() -> const state& {
+      collisions_.evaluate(u, work_);
+      return work_;
+    });
+  }
+  void solve_collision(double t, double a, double b, state& u) { collisions_.solve(t, a, b, u); }
+  bool is_admissible(const state& u) { return collisions_.are_admissible(u); }
+  bool has_transport(double t, const state& u) { return of_.transport && !is_zero(transport(t, u)); }
+  double forward_euler_step(double t, const state& u) const {
+    if (!of_.forward_euler_step) return std::numeric_limits<double>::infinity();
+    return of_.forward_euler_step->number((*of_.forward_euler_step)(t, to_fixed_array(u, shape_)));
+  }
+
+ private:
   const state& transport(double t, const state& u) {
     work_.assign(u.size(), 0.0);
     if (of_.transport) of_.transport->numbers((*of_.transport)(t, to_fixed_array(u, shape_)), shape_, work_);
     return work_;
   }
 
-  const general_functions& of_;
+  const transport_functions& of_;
   extents shape_;
-  std::size_t length_ = 1;
-  newton_problem<no_transport, python_field> local_;
-  state cell_, work_, rate_;
+  Collisions& collisions_;
+  state work_;
 };
 
-py::tuple integrate_general(const general_functions& of, bool local, bool krylov, const array& u0,
-                            const std::vector<double>& t, const method& m, const step_choice& choice) {
-  const extents shape(u0.shape(), u0.shape() + u0.ndim());
-  state u(u0.data(), u0.data() + u0.size());
-  if (u.empty()) throw input_error("u0 has no numbers; give an initial state");
-  general_problem problem(of, shape, local ? extents{shape.back()} : shape,
-                          krylov ? linear_solver::krylov : linear_solver::dense);
+/// Where an integration begins, its times, its method and its steps.
+struct march_plan {
+  const array& u0;
+  const std::vector<double>& t;
+  const method& by;
+  const step_choice& steps;
+};
+
+template <class Collisions>
+py::tuple integrate_general(const transport_functions& of, Collisions& collisions, const march_plan& plan) {
+  const extents shape(plan.u0.shape(), plan.u0.shape() + plan.u0.ndim());
+  state u(plan.u0.data(), plan.u0.data() + plan.u0.size());
+  general_problem<Collisions> problem(of, shape, collisions);
   state all = u;
   const auto count = march_through(
-      problem, u, t, m, choice, of.forward_euler_step.has_value(), largest_difference,
+      problem, u, plan.t, plan.by, plan.steps, of.forward_euler_step.has_value(), largest_difference,
       [&all](const state& now) { all.insert(all.end(), now.begin(), now.end()); },
       [] {
         if (PyErr_CheckSignals() != 0) throw py::error_already_set();
       });
-  extents shape_of_all = {static_cast<py::ssize_t>(t.size())};
+  extents shape_of_all = {static_cast<py::ssize_t>(plan.t.size())};
   shape_of_all.insert(shape_of_all.end(), shape.begin(), shape.end());
-  return py::make_tuple(to_array(std::vector<double>(t)), to_array(std::move(all), shape_of_all), count.steps,
-                        count.rejected);
+  return py::make_tuple(to_array(std::vector<double>(plan.t)), to_array(std::move(all), shape_of_all),
+                        count.steps, count.rejected);
 }
+
+/// What a collision couples, and how its functions are called.
+enum class coupling { all, cell, cells };
 
 }  // namespace
 
 void bind_general(py::module_& m) {
-  m.def("integrate_general", [](const py::function& collision, const py::function& product,
-                                const py::function& curvature, const std::optional<py::function>& transport,
-                                const std::optional<py::function>& forward_euler_step,
-                                const std::optional<py::function>& admissible, bool local, bool krylov,
-                                const array& u0, const std::vector<double>& t, const apsis::method& method,
-                                std::optional<double> dt, double safety, std::optional<int> growth,
-                                std::optional<double> tolerance, const std::string& controller) {
-    return integrate_general(
-        {callback(collision, "collision"), callback(product, "the derivative of collision"),
-         callback(curvature, "the second derivative of collision"), optional_callback(transport, "transport"),
-         optional_callback(forward_euler_step, "forward_euler_step"),
-         optional_callback(admissible, "admissible")},
-        local, krylov, u0, t, method, {dt, safety, growth, tolerance, controller});
-  });
+  py::enum_<coupling>(m, "Coupling")
+      .value("all", coupling::all)
+      .value("cell", coupling::cell)
+      .value("cells", coupling::cells);
+  m.def(
+      "integrate_general",
+      [](const py::function& collision, const py::function& product, const py::function& curvature,
+         const std::optional<py::function>& transport, const std::optional<py::function>& forward_euler_step,
+         const std::optional<py::function>& admissible, coupling coupled, bool krylov, const array& u0,
+         const std::vector<double>& t, const apsis::method& method, std::optional<double> dt, double safety,
+         std::optional<int> growth, std::optional<double> tolerance, const std::string& controller) {
+        if (u0.size() == 0) throw input_error("u0 has no numbers; give an initial state");
+        const collision_functions q{callback(collision, "collision"),
+                                    callback(product, "the derivative of collision"),
+                                    callback(curvature, "the second derivative of collision"),
+                                    optional_callback(admissible, "admissible")};
+        const transport_functions of{optional_callback(transport, "transport"),
+                                     optional_callback(forward_euler_step, "forward_euler_step")};
+        const auto solver = krylov ? linear_solver::krylov : linear_solver::dense;
+        const step_choice steps{dt, safety, growth, tolerance, controller};
+        const march_plan plan{u0, t, method, steps};
+        if (coupled == coupling::cells) {
+          collisions_side_by_side side_by_side(q, static_cast<std::size_t>(u0.shape(u0.ndim() - 1)), solver);
+          return integrate_general(of, side_by_side, plan);
+        }
+        extents cell(u0.shape(), u0.shape() + u0.ndim());
+        if (coupled == coupling::cell) cell = {cell.back()};
+        collisions_alone alone(q, cell, solver);
+        return integrate_general(of, alone, plan);
+      });
 }
 
 }  // namespace apsis::python

@@ -21,7 +21,8 @@ NAMES = {
     "ninja-build": (None, "ninja"),  # Spack adds it for generator("ninja")
     "libfmt-dev": ("fmt", "fmt"), "libtomlplusplus-dev": ("tomlplusplus", "tomlplusplus"),
     "nlohmann-json3-dev": ("nlohmann-json", "nlohmann_json"), "libeigen3-dev": ("eigen", "eigen"),
-    "libboost-dev": ("boost", "libboost-headers"), "libmuparser-dev": ("muparser", "muparser"), "libhdf5-dev": ("hdf5", "hdf5"),
+    "libboost-dev": ("boost", "libboost-headers"), "libboost-context-dev": ("boost", "libboost-devel"),
+    "libmuparser-dev": ("muparser", "muparser"), "libhdf5-dev": ("hdf5", "hdf5"),
     "libxxhash-dev": ("xxhash", "xxhash"), "libcli11-dev": ("cli11", "cli11"), "coinor-libipopt-dev": ("ipopt", "ipopt"),
     "libhwy-dev": ("highway", "libhwy"), "python3-numpy": ("py-numpy", "numpy"),
     "python3-matplotlib": ("py-matplotlib", "matplotlib-base"), "python3-h5py": ("py-h5py", "h5py"),
@@ -86,7 +87,7 @@ class Spack(unittest.TestCase):
         wanted = {NAMES[package][0] for package in packages("run", "python", "mpi")} - {None}
         self.assertEqual(specs.keys() - {"c"}, wanted)
         for package, version in required_versions().items():
-            self.assertEqual(specs[NAMES[package][0]], f"{NAMES[package][0]}@{version}:")
+            self.assertEqual(re.split("[~+]", specs[NAMES[package][0]])[0], f"{NAMES[package][0]}@{version}:")
 
     def test_every_option_and_variant_exists(self):
         set_options = self.first_arguments("define") + self.first_arguments("define_from_variant")

@@ -46,6 +46,7 @@ class Apsis(CMakePackage, PythonExtension):
         depends_on("py-pip", type="build")
         depends_on("py-wheel", type="build")
         depends_on("py-pybind11", type=("build", "link"))
+        depends_on("boost@1.74:+context")
         depends_on("py-numpy", type=("build", "run"))
         depends_on("py-matplotlib", type="run")
         depends_on("py-h5py", type="run")

@@ -176,7 +176,7 @@ py::tuple integrate_general(const transport_functions& of, Collisions& collision
                         count.steps, count.rejected);
 }
 
-/// What a collision couples, and how its functions are called.
+/// The numbers that a collision couples, and with which its functions are called.
 enum class coupling { all, cell, cells };
 
 }  // namespace

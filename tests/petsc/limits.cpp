@@ -69,7 +69,7 @@ TEST(stages, lead_to_the_equilibrium_that_short_steps_reach) {
         u[i][1] = 1;
       }
     }
-    const auto found = one.solve(10, 0.125).u;  // 80 steps, each of which damps deviations by more than half
+    const auto found = one.solve(10, 0.125).u;  // 80 steps; each damps deviations by more than half
     for (std::size_t i = 0; i < found.size(); i += 2)
       EXPECT_NEAR(found[i], (std::sqrt(5.0) - 1) / 2, 1e-7) << epsilon;  // u² = 1 - u; the tolerance of SNES
   }

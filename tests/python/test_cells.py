@@ -1,4 +1,4 @@
-"""Local problems whose functions get many cells at once."""
+"""Local problems whose functions get many cells in one call."""
 import apsis
 import numpy as np
 import pytest

@@ -28,7 +28,8 @@ class RelaxationProblem:
         transport(t, u)           T, of the shape of u
         moments(u)                ω, of any type
         equilibrium(omega)        E, of the shape of u
-        rate(omega)               C ≥ 0, a number
+        rate(omega)               C ≥ 0: a number, or an array that NumPy broadcasts to the shape of u. Systems side by side,
+                                  such as cells, may have different C/ε; numbers that moments couple have the same
         forward_euler_step(t, u)  Δt_FE of the transport, for steps without dt
         admissible(u)             whether u is admissible as a stage
     """
@@ -36,7 +37,7 @@ class RelaxationProblem:
     transport: Callable[[float, Array], ArrayLike]
     moments: Callable[[Array], Any]
     equilibrium: Callable[[Any], ArrayLike]
-    rate: Callable[[Any], float]
+    rate: Callable[[Any], ArrayLike]
     epsilon: float
     forward_euler_step: Callable[[float, Array], float] | None = None
     admissible: Callable[[Array], bool] | None = None

@@ -84,6 +84,24 @@ void callback::numbers(const py::object& returned, const std::vector<py::ssize_t
   std::copy_n(found.data(), out.size(), out.data());
 }
 
+void callback::broadcast(const py::object& returned, const std::vector<py::ssize_t>& shape,
+                         std::span<double> out) const {
+  const auto wanted = [&] {
+    return fmt::format("a real number, or an array that NumPy broadcasts to the shape of u, {},",
+                       shape_text(shape));
+  };
+  if (returned.is_none()) refuse(returned, wanted());
+  try {
+    const py::object all = py::module_::import("numpy").attr("broadcast_to")(real_numbers(returned), shape);
+    const real_array found = all.cast<real_array>();
+    std::copy_n(found.data(), out.size(), out.data());
+  } catch (py::error_already_set& why) {
+    refuse(why, returned, wanted());
+  } catch (const py::type_error&) {
+    refuse(returned, wanted());
+  }
+}
+
 double callback::number(const py::object& returned) const {
   const double value = PyFloat_AsDouble(returned.ptr());
   if (value == -1.0 && PyErr_Occurred() != nullptr) {

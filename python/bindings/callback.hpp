@@ -33,6 +33,9 @@ class callback {
   /// `returned` as real numbers of this shape, in C order. One number may come in any shape of one element.
   void numbers(const py::object& returned, const std::vector<py::ssize_t>& shape,
                std::span<double> out) const;
+  /// `returned` as real numbers of this shape; an array of another shape is repeated as NumPy broadcasts it.
+  void broadcast(const py::object& returned, const std::vector<py::ssize_t>& shape,
+                 std::span<double> out) const;
   /// `returned` as one real number.
   double number(const py::object& returned) const;
   /// `returned` as a truth value.

@@ -65,7 +65,8 @@ result integrate_python(const functions& of, double epsilon, const array& u0, co
       [&](const moments_value& omega, state& out) {
         of.equilibrium.numbers(of.equilibrium(omega.get()), shape, out);
       },
-      [&](const moments_value& omega) { return of.rate.number(of.rate(omega.get())); }, epsilon);
+      [&](const moments_value& omega, state& out) { of.rate.broadcast(of.rate(omega.get()), shape, out); },
+      epsilon);
   if (of.forward_euler_step)
     problem.with_forward_euler_step([&](double time, const state& v) {
       return of.forward_euler_step->number((*of.forward_euler_step)(time, look(v)));

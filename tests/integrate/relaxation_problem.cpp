@@ -5,6 +5,7 @@
 #include <apsis/core/errors.hpp>
 #include <apsis/core/relaxation_weights.hpp>
 #include <apsis/integrate/autodiff.hpp>
+#include <apsis/integrate/exact_collisions.hpp>
 #include <apsis/integrate/integrate.hpp>
 #include <apsis/integrate/newton_problem.hpp>
 
@@ -366,6 +367,63 @@ TEST(relaxation_problem, rejects_an_equilibrium_with_wrong_moments) {
       [](const std::array<double, 2>& w, std::vector<double>& E) { E = {w[0] / 2, w[0] / 2}; },
       [](const std::array<double, 2>&) { return 1.0; }, 1.0);
   EXPECT_NE(complaint_of_step(ranged, "md-imex-3-2").find("differs from w by 0.33 of"), std::string::npos);
+}
+
+/// Pairs (u, v) side by side with w = u + v, E = (w²/16, w − w²/16), T = −u/10 and a rate for each pair.
+auto pairs(const row& rates) {
+  return apsis::relaxation_problem(
+      [](double, const row& u, row& T) {
+        for (std::size_t i = 0; i < u.size(); ++i) T[i] = -0.1 * u[i];
+      },
+      [](const row& u) {
+        row w(u.size() / 2);
+        for (std::size_t i = 0; i < w.size(); ++i) w[i] = u[2 * i] + u[2 * i + 1];
+        return w;
+      },
+      [](const row& w, row& E) {
+        for (std::size_t i = 0; i < w.size(); ++i) {
+          E[2 * i] = w[i] * w[i] / 16.0;
+          E[2 * i + 1] = w[i] - E[2 * i];
+        }
+      },
+      [rates](const row&, row& C) {
+        for (std::size_t i = 0; i < C.size(); ++i) C[i] = rates[i * rates.size() / C.size()];
+      },
+      0.5);
+}
+
+TEST(relaxation_problem, systems_side_by_side_have_rates_of_their_own) {
+  const row rates = {0.0, 1e-3, 1.0, 1e6, 1e15};
+  for (const std::string name : {"md-imex-8-3-mixed", "ark-436", "exponential-2"}) {
+    const apsis::method& m = apsis::find_method(name);
+    const auto solve = [&m](const row& own, row u) {
+      auto problem = pairs(own);
+      apsis::exact_collisions exact(problem);
+      const auto rule = apsis::step_rule<double>::fixed(0.25);
+      if (apsis::solves_exactly(m.kind)) {
+        apsis::stepper march(m, exact);
+        apsis::integrate(march, u, 0.0, 1.0, rule);
+      } else {
+        apsis::stepper march(m, problem);
+        apsis::integrate(march, u, 0.0, 1.0, rule);
+      }
+      return u;
+    };
+    row start;
+    for (std::size_t i = 0; i < rates.size(); ++i)
+      start.insert(start.end(), {2.0 + static_cast<double>(i), 0.5});
+    const row together = solve(rates, start);
+    for (std::size_t i = 0; i < rates.size(); ++i) {
+      const row alone = solve({rates[i]}, {start[2 * i], start[2 * i + 1]});
+      EXPECT_EQ((row{together[2 * i], together[2 * i + 1]}), alone) << name << " " << rates[i];
+    }
+  }
+}
+
+TEST(relaxation_problem, rejects_rates_that_do_not_conserve_the_moments) {
+  EXPECT_EQ(complaint_of_step(pairs({1.0, 1.0}), "md-imex-3-2"), "");
+  const std::string complaint = complaint_of_step(pairs({1.0, 2.0}), "md-imex-3-2");
+  EXPECT_EQ(complaint.substr(0, 45), "the rates do not conserve the moments (w chan") << complaint;
 }
 
 TEST(method_without_transport, is_rejected_for_problems_with_transport) {

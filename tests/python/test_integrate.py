@@ -94,7 +94,8 @@ def test_exceptions_of_the_functions_propagate():
     (dict(transport=lambda t, u: [[1.0], 2.0]), {}, "transport returned a value of type list"),
     (dict(equilibrium=lambda w: np.array([1.0, 2.0j])), {}, "equilibrium returned an array of shape .* type complex128"),
     (dict(moments=lambda u: None), {}, "moments returned None"),
-    (dict(rate=lambda w: np.ones(2)), {}, r"rate returned an array of shape \(2,\).*one real number"),
+    (dict(rate=lambda w: np.ones(3)), {}, r"rate returned an array of shape \(3,\).*broadcasts to the shape of u, \(2,\)"),
+    (dict(rate=lambda w: np.array([1.0, 2.0])), {}, "the rates do not conserve the moments"),
     (dict(rate=lambda w: None), {}, "rate returned None"), (dict(rate=lambda w: "x"), {}, "rate returned a value of type str"),
     (dict(admissible=lambda u: u > 0), {}, "admissible returned an array .*True or False"),
     (dict(admissible=lambda u: None), {}, "admissible returned None"),
@@ -291,3 +292,19 @@ def test_a_failure_reports_its_stage_and_place():
         apsis.integrate(problem, [2.0, 1.0], (0, 5), dt=0.1)
     assert failure.value.step > 1 and 0.0 < failure.value.t < 5.0
     assert isinstance(failure.value, ArithmeticError)
+
+
+@pytest.mark.parametrize("method", ["md-imex-8-3-mixed", "ark-436", "exponential-2"])
+def test_cells_may_have_rates_of_their_own(method):
+    """Cells side by side are solved as alone: a layer with ε/C from 1e-12 to 1, and cells that do not relax."""
+    rates = np.concatenate([[0.0], 10.0 ** np.linspace(0, 12, 5)])
+    u0 = np.stack([2.0 + np.arange(6), np.zeros(6)], axis=-1)
+
+    def problem(rate):
+        return apsis.RelaxationProblem(lambda t, u: -0.1 * u, lambda u: u.sum(axis=-1),
+                                       lambda w: np.stack([w ** 2 / 16, w - w ** 2 / 16], axis=-1), rate, 1.0)
+
+    together = apsis.integrate(problem(lambda w: rates[:, None]), u0, (0, 0.5, 1), method, dt=0.25)
+    for cell, rate in enumerate(rates):
+        alone = apsis.integrate(problem(lambda w: rate), u0[cell], (0, 0.5, 1), method, dt=0.25)
+        np.testing.assert_array_equal(together.u[:, cell], alone.u)

@@ -27,13 +27,16 @@ namespace apsis {
 /// nonnegative wherever u and E are, in floating point too, and equals E for ε = 0.
 ///
 /// The first two evaluations of E check ℛE(ω) = ω to 1e-8 of the largest moment if ω is a number or a range
-/// of numbers. An E that does not have the moments ω ends the step with an input_error.
+/// of numbers. An E that does not have the moments ω ends the step with an input_error, and so do rates that
+/// do not conserve them.
 ///
 /// All quantities are dimensionless. The functions, with N = u.size():
 ///   transport(t, u, out)   out ← T(t, u); `out` has size N and undefined content
 ///   moments(u)             ω, of any type (a number, a range, a struct)
 ///   equilibrium(ω, out)    out ← E(ω); `out` has size N and undefined content
 ///   rate(ω)                C(ω) ≥ 0
+///   rate(ω, out)           instead, out ← C for each unknown, equal where moments couple unknowns: systems
+///                          side by side, such as the cells of a mesh, each with its own C/ε
 /// relaxation_problem{…} has the state std::vector<double>, make_relaxation_problem<State>(…) any other.
 template <class Transport, class Moments, class Equilibrium, class Rate,
           array_state State = std::vector<double>>
@@ -80,29 +83,23 @@ class relaxation_problem {
   /// Sets u ← v. Throws numerical_error if u or v is not finite or not admissible, or if the rate is negative
   /// or not finite.
   void solve_collision(real, real a, real b, State& u) {
-    if (a != real(0) || b != real(0)) {
-      const auto weights = relax_weights(a, b, relaxation(u), epsilon_);
-      using size_type = decltype(u.size());
-      for (size_type i = 0; i < u.size(); ++i) u[i] = weights.of_u * u[i] + weights.of_e * work_[i];
-    }
+    if (a != real(0) || b != real(0)) mix(u, [&](real rate) { return relax_weights(a, b, rate, epsilon_); });
     require_valid(u);
   }
 
   /// Required by `problem_with_projection`. Throws like solve_collision().
   void project_to_equilibrium(real, State& u) {
-    if (relaxation(u) > real(0)) {
-      using size_type = decltype(u.size());
-      for (size_type i = 0; i < u.size(); ++i) u[i] = work_[i];
-    }
+    mix(u, [](real rate) {
+      const real of_e = rate > real(0) ? real(1) : real(0);
+      return relaxation_weights<real>{real(1) - of_e, of_e};
+    });
     require_valid(u);
   }
 
   /// Required by `problem_with_known_collision`: u ← e^{−z}u + (1 − e^{−z})E, z = sC/ε. Throws like
   /// solve_collision().
   void advance_collision(real, real s, State& u) {
-    const auto weights = flow_weights(s, relaxation(u), epsilon_);
-    using size_type = decltype(u.size());
-    for (size_type i = 0; i < u.size(); ++i) u[i] = weights.of_u * u[i] + weights.of_e * work_[i];
+    mix(u, [&](real rate) { return flow_weights(s, rate, epsilon_); });
     require_valid(u);
   }
 
@@ -112,7 +109,7 @@ class relaxation_problem {
     accumulate<State>(targets, u, [&]() -> const State& {
       const real k = finite_relaxation(u);
       using size_type = decltype(u.size());
-      for (size_type i = 0; i < u.size(); ++i) work_[i] = k * (work_[i] - u[i]);
+      for (size_type i = 0; i < u.size(); ++i) work_[i] = relaxation_of(i, k) * (work_[i] - u[i]);
       return work_;
     });
   }
@@ -124,7 +121,7 @@ class relaxation_problem {
       if (flow_.size() != u.size()) flow_ = u;
       transport_(t, u, flow_);
       using size_type = decltype(u.size());
-      for (size_type i = 0; i < u.size(); ++i) flow_[i] += k * (work_[i] - u[i]);
+      for (size_type i = 0; i < u.size(); ++i) flow_[i] += relaxation_of(i, k) * (work_[i] - u[i]);
       return flow_;
     });
   }
@@ -145,25 +142,56 @@ class relaxation_problem {
     }
   }
 
-  /// Required by `problem_with_relaxation_time`: ε/C; +infinity if nothing relaxes, and for ε = 0, where
-  /// there is no layer to resolve.
-  real relaxation_time(real, const State& u) const {
-    const real rate = checked_rate(moments_(u));
+  /// Required by `problem_with_relaxation_time`: the smallest ε/C; +infinity if nothing relaxes, and for ε =
+  /// 0, where there is no layer to resolve.
+  real relaxation_time(real, const State& u) {
+    const real rate = largest_rate(moments_(u), u);
     return rate > real(0) && epsilon_ > real(0) ? epsilon_ / rate : std::numeric_limits<real>::infinity();
   }
 
   real epsilon() const { return epsilon_; }  ///< ε
 
  private:
-  template <class Omega>
-  real checked_rate(const Omega& omega) const {
-    const real rate = rate_(omega);
+  using moments_type = std::remove_cvref_t<std::invoke_result_t<Moments&, const State&>>;
+  /// Whether each unknown has a rate of its own.
+  static constexpr bool many_rates = std::is_invocable_v<Rate&, const moments_type&, State&>;
+
+  /// Sets the rates C(ω), one or many, and returns the largest of them.
+  real largest_rate(const moments_type& omega, const State& u) {
+    if constexpr (many_rates) {
+      if (rates_.size() != u.size()) rates_ = u;
+      rate_(omega, rates_);
+      real largest(0);
+      using size_type = decltype(u.size());
+      for (size_type i = 0; i < u.size(); ++i) largest = std::max(largest, checked_rate(rates_[i]));
+      return largest;
+    } else {
+      return checked_rate(rate_(omega));
+    }
+  }
+  static real checked_rate(real rate) {
     if (!(rate >= real(0)) || !(rate <= std::numeric_limits<real>::max()))
       throw numerical_error(
           "the relaxation rate is negative or not finite (the moments are not admissible); "
           "reduce the time step, or check the functions of the problem",
           {-1, std::nan(""), -1, static_cast<double>(rate)});
     return rate;
+  }
+
+  /// Sets u ← of_u u + of_e E(ℛu) with the weights for C(ℛu).
+  template <class Weights>
+  void mix(State& u, const Weights& weights_for) {
+    const real rate = relaxation(u);
+    using size_type = decltype(u.size());
+    if constexpr (many_rates) {
+      for (size_type i = 0; i < u.size(); ++i) {
+        const auto weights = weights_for(real(rates_[i]));
+        u[i] = weights.of_u * u[i] + weights.of_e * work_[i];
+      }
+    } else {
+      const auto weights = weights_for(rate);
+      for (size_type i = 0; i < u.size(); ++i) u[i] = weights.of_u * u[i] + weights.of_e * work_[i];
+    }
   }
 
   /// Throws numerical_error unless u is finite and admissible.
@@ -179,7 +207,7 @@ class relaxation_problem {
     if (work_.size() != u.size()) work_ = u;
   }
 
-  /// work_ ← E(ℛu); returns C(ℛu)/ε.
+  /// work_ ← E(ℛu), and sets the rates; returns the largest C/ε.
   real finite_relaxation(const State& u) {
     if (epsilon_ == real(0))
       throw input_error(
@@ -187,11 +215,19 @@ class relaxation_problem {
           "choose a method of type A, which is implicit at every stage");
     return relaxation(u) / epsilon_;
   }
+  /// Returns C/ε of unknown i. `largest` is that of all unknowns.
+  template <class Index>
+  real relaxation_of([[maybe_unused]] Index i, [[maybe_unused]] real largest) const {
+    if constexpr (many_rates)
+      return real(rates_[i]) / epsilon_;
+    else
+      return largest;
+  }
 
-  /// work_ ← E(ℛu); returns C(ℛu).
+  /// work_ ← E(ℛu), and sets the rates; returns the largest.
   real relaxation(const State& u) {
     const auto omega = moments_(u);
-    const real rate = checked_rate(omega);
+    const real rate = largest_rate(omega, u);
     match_size(u);
     equilibrium_(omega, work_);
     if (unchecked_ > 0) {
@@ -199,17 +235,33 @@ class relaxation_problem {
       real size(0);
       using size_type = decltype(work_.size());
       for (size_type i = 0; i < work_.size(); ++i) size += std::abs(real(work_[i]));
-      check_moments(omega, moments_(work_), size);
+      check_moments(omega, moments_(work_), size,
+                    "the equilibrium does not have the given moments (R E(w) differs from w by {} of the "
+                    "largest); correct the equilibrium or the moments");
+      if constexpr (many_rates) check_rates(omega, u, rate, size);
     }
     return rate;
   }
 
-  /// Checks the moments if ω is a number or a range of numbers; any other type is not checked.
+  /// Checks that the rates conserve the moments of u.
+  void check_rates(const moments_type& omega, const State& u, real largest, real size) {
+    if (!(largest > real(0))) return;
+    flow_ = u;
+    using size_type = decltype(u.size());
+    for (size_type i = 0; i < u.size(); ++i) flow_[i] += (rates_[i] / largest) * (work_[i] - u[i]);
+    check_moments(
+        omega, moments_(flow_), size,
+        "the rates do not conserve the moments (w changes by {} of the largest moment); give unknowns "
+        "that a moment couples the same rate");
+  }
+
+  /// Checks the moments if ω is a number or a range of numbers; any other type is not checked. In the message
+  /// the relative defect replaces {}.
   template <class Omega>
-  static void check_moments(const Omega& omega, const Omega& kept, real size) {
+  static void check_moments(const Omega& omega, const Omega& kept, real size, const char* message) {
     if constexpr (std::is_convertible_v<Omega, real>) {
       require_kept(std::abs(static_cast<real>(kept) - static_cast<real>(omega)),
-                   std::abs(static_cast<real>(omega)), size);
+                   std::abs(static_cast<real>(omega)), size, message);
     } else if constexpr (requires {
                            { *std::begin(omega) } -> std::convertible_to<real>;
                            std::end(omega);
@@ -222,18 +274,18 @@ class relaxation_problem {
         largest = std::max(largest, std::abs(real(one)));
         ++other;
       }
-      require_kept(defect, largest, size);
+      require_kept(defect, largest, size, message);
     }
   }
 
   /// Rounding errors of sums over N numbers stay far below 1e-8 of ω or, where ω cancels, 1e-12 of `size` =
   /// Σ|E|. Errors of a wrong formula for E do not.
-  static void require_kept(real defect, real largest, real size) {
+  static void require_kept(real defect, real largest, real size, const char* message) {
     if (defect <= real(1e-8) * largest || defect <= real(1e-12) * size || !(largest > real(0))) return;
-    char text[32];
-    std::snprintf(text, sizeof text, "%.2g", static_cast<double>(defect / largest));
-    throw input_error("the equilibrium does not have the given moments (R E(w) differs from w by " +
-                      std::string(text) + " of the largest); correct the equilibrium or the moments");
+    char part[32];
+    std::snprintf(part, sizeof part, "%.2g", static_cast<double>(defect / largest));
+    std::string text = message;
+    throw input_error(text.replace(text.find("{}"), 2, part));
   }
 
   Transport transport_;
@@ -243,7 +295,8 @@ class relaxation_problem {
   real epsilon_;
   std::function<real(real, const State&)> forward_euler_;
   std::function<bool(const State&)> admissible_;
-  State work_{}, flow_{};  ///< E, Q or T; T + Q
+  State work_{}, flow_{},  ///< E, Q or T; T + Q
+      rates_{};            ///< C of each unknown
   int unchecked_ = 2;      ///< number of evaluations of E still to be checked
 };
 

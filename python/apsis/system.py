@@ -112,7 +112,7 @@ class System:
 
     def _restrict_to(self, matrix: Any) -> None:
         """Lets Q' differ from 0 on the diagonal and where a matrix does; a sparse matrix where it has an entry, which may be 0."""
-        rows, columns = _entries(matrix, zeros=True)
+        rows, columns, _ = _entries(matrix, zeros=True)
         n = matrix.shape[0]
         self._pattern = np.union1d(rows * n + columns, np.arange(n) * (n + 1))
         self.places = n, list(zip(rows.tolist(), columns.tolist()))
@@ -120,7 +120,7 @@ class System:
     def _require_places(self, matrix: Any) -> None:
         if self._pattern is None:
             return
-        rows, columns = _entries(matrix, zeros=False)
+        rows, columns, _ = _entries(matrix, zeros=False)
         outside = ~np.isin(rows * matrix.shape[0] + columns, self._pattern)
         if np.any(outside):
             k = int(np.argmax(outside))
@@ -130,20 +130,19 @@ class System:
 
 def entries_of(matrix: Any) -> list[tuple[int, int, float]]:
     """Returns row, column and value of the entries of an array or sparse matrix that are not 0."""
-    rows, columns = _entries(matrix, zeros=False)
-    values = matrix[rows, columns] if not hasattr(matrix, "tocoo") else matrix.tocoo().data[matrix.tocoo().data != 0]
-    return list(zip(rows.tolist(), columns.tolist(), np.asarray(values).ravel().tolist()))
+    return list(zip(*(part.tolist() for part in _entries(matrix, zeros=False))))
 
 
-def _entries(matrix: Any, zeros: bool) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Rows and columns of the entries that are not 0; with `zeros`, of all stored ones of a sparse matrix."""
+def _entries(matrix: Any, zeros: bool) -> tuple[NDArray[np.int64], NDArray[np.int64], Array]:
+    """Rows, columns and values of the entries that are not 0; with `zeros`, of all stored ones of a sparse matrix."""
     if not hasattr(matrix, "tocoo"):
         rows, columns = np.nonzero(matrix)
+        values = np.asarray(matrix)[rows, columns]
     else:
         entries = matrix.tocoo()
         kept = np.full(entries.data.shape, True) if zeros else entries.data != 0
-        rows, columns = entries.row[kept], entries.col[kept]
-    return rows.astype(np.int64), columns.astype(np.int64)
+        rows, columns, values = entries.row[kept], entries.col[kept], entries.data[kept]
+    return rows.astype(np.int64), columns.astype(np.int64), values
 
 
 def _one_number(k: int, value: Any) -> float:

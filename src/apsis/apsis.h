@@ -240,8 +240,9 @@ int apsis_set_forward_euler_step(apsis_integrator* integrator, apsis_time_functi
 int apsis_set_safety(apsis_integrator* integrator, double safety);
 /// Controls the estimated error e of a step: |e_i| ≤ absolute + relative |u_i| for every i. relative ≥ 0, and
 /// absolute > 0; both 0 removes the control. Methods without an embedded solution take each step twice, as
-/// one step and as two halves. For a single block, Newton's method ends when its error is a thousandth of
-/// this bound. Stages of methods without second derivatives then share one derivative of Q per step.
+/// one step and as two halves. Newton's method ends when its error is a thousandth of this bound.
+/// Stages of methods without second derivatives then share one derivative of Q per step and block. If the
+/// derivatives of all blocks have more than 2^24 entries, stages are solved to rounding errors instead.
 int apsis_set_tolerance(apsis_integrator* integrator, double relative, double absolute);
 /// Does the same with an absolute tolerance for each unknown: n positive numbers, which are copied.
 int apsis_set_tolerances(apsis_integrator* integrator, double relative, const double* absolute);

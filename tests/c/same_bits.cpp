@@ -201,6 +201,46 @@ TEST(c_same_bits, of_newtons_method_within_a_tolerance) {
   }
 }
 
+/// Returns an integrator of several systems of two unknowns with the same start.
+integrator of_blocks(general& g, std::size_t blocks, const std::vector<double>& absolute) {
+  const auto of_all = [](double t, size_t n, const double* u, double* out, void* data) {
+    for (size_t i = 0; i < n; i += 2) transport(t, 2, u + i, out + i, data);
+    return 0;
+  };
+  auto s = make("ark-437", 2 * blocks);
+  apsis_set_data(s.get(), &g);
+  apsis_set_transport(s.get(), of_all);
+  apsis_set_rate(s.get(), value);
+  apsis_set_product(s.get(), product);
+  EXPECT_EQ(apsis_set_block_size(s.get(), 2), APSIS_OK);
+  apsis_set_tolerances(s.get(), 1e-6, absolute.data());
+  state u0;
+  for (std::size_t k = 0; k < blocks; ++k) u0.insert(u0.end(), {1, 0.5});
+  EXPECT_EQ(apsis_start(s.get(), 0, u0.data()), APSIS_OK);
+  EXPECT_EQ(apsis_integrate(s.get(), 0.25), APSIS_OK) << apsis_error_message();
+  return s;
+}
+
+// Equal blocks have equal errors, so that their steps are those of one block.
+TEST(c_same_bits, of_blocks_within_a_tolerance) {
+  general g{1e4};
+  const auto one = of_blocks(g, 1, {1e-9, 1e-9}), three = of_blocks(g, 3, state(6, 1e-9));
+  const state expected = state_of(one), found = state_of(three, 6);
+  EXPECT_EQ(apsis_count(three.get(), APSIS_STEPS), apsis_count(one.get(), APSIS_STEPS));
+  // Each block shares a derivative of its own in every step.
+  EXPECT_EQ(apsis_count(three.get(), APSIS_PRODUCT_EVALUATIONS),
+            3 * apsis_count(one.get(), APSIS_PRODUCT_EVALUATIONS));
+  for (std::size_t i = 0; i < 6; ++i) EXPECT_EQ(found[i], expected[i % 2]) << i;
+}
+
+TEST(c_same_bits, of_blocks_with_other_tolerances_do_not_depend_on_their_order) {
+  general g{1e4};
+  const state u = state_of(of_blocks(g, 2, {1e-9, 1e-9, 1e-3, 1e-3}), 4),
+              v = state_of(of_blocks(g, 2, {1e-3, 1e-3, 1e-9, 1e-9}), 4);
+  EXPECT_EQ((state{v[2], v[3], v[0], v[1]}), u);
+  EXPECT_NE(u[0], u[2]);  // the second block solves its stages less accurately
+}
+
 TEST(c_same_bits, stages_of_a_step_share_a_derivative) {
   general g{1e4};
   const auto derivatives_of = [&g](double relative) {

@@ -12,7 +12,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <memory>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace apsis::c {
@@ -26,16 +28,24 @@ class newton_blocks {
   using targets = std::span<const target<state, double>>;
 
   /// Stores a reference.
-  explicit newton_blocks(callbacks& of) : of_(of), local_({}, block_field(of, now_), options_of(of)) {
-    local_.with_admissible([this](std::span<const double> v) { return of_.is_admissible(now_.block, v); });
-    if (of.pattern) local_.with_sparsity(*of.pattern);
-    if (of.mass) local_.with_mass(*of.mass);
-  }
-  /// Ends the stage solves of a single block of n unknowns at a share of the tolerances. Its stages with b =
-  /// 0 then share the derivative of a step. Stages of several blocks are solved to rounding errors, because
-  /// each block would need a derivative of its own.
-  void set_tolerances(const component_tolerances<double>& tolerances, std::size_t n) {
-    if (of_.block_size == n) local_.with_tolerances(tolerances);
+  explicit newton_blocks(callbacks& of) : of_(of) { solvers_.push_back(std::make_unique<solver>(of)); }
+
+  /// Ends the stage solves of all n unknowns at a share of the tolerances. Stages with b = 0 then share the
+  /// derivative of their block in a step. Blocks with more entries of derivatives than most_kept are still
+  /// solved to rounding errors, since each of them would keep its own.
+  void set_tolerances(double relative, const std::vector<double>& absolute, std::size_t n) {
+    const std::size_t size = of_.block_size;
+    if (n > size && n > most_kept / size) return;
+    solvers_.clear();
+    for (std::size_t at = 0; at < n; at += size) {
+      auto one = std::make_unique<solver>(of_);
+      one->now.block = at / size;
+      const auto begin = absolute.begin() + static_cast<std::ptrdiff_t>(absolute.size() == n ? at : 0);
+      one->local.with_tolerances(component_tolerances<double>(
+          {relative},
+          absolute.size() == n ? state(begin, begin + static_cast<std::ptrdiff_t>(size)) : absolute));
+      solvers_.push_back(std::move(one));
+    }
   }
   newton_blocks(const newton_blocks&) = delete;
   newton_blocks& operator=(const newton_blocks&) = delete;
@@ -64,13 +74,23 @@ class newton_blocks {
     });
   }
   void solve_collision(double t, double a, double b, state& u) {
-    solve(a, b, u, [&](state& one) { local_.solve_collision(t, a, b, one); });
+    solve(a, b, u, [&](auto& local, state& one) { local.solve_collision(t, a, b, one); });
   }
   void solve_timed_collision(double t, double a, double b, state& u) {
-    solve(a, b, u, [&](state& one) { local_.solve_timed_collision(t, a, b, one); });
+    solve(a, b, u, [&](auto& local, state& one) { local.solve_timed_collision(t, a, b, one); });
   }
-  void begin_step(double t, const state& u) { local_.begin_step(t, u); }
-  void end_step() { local_.end_step(); }
+  void begin_step(double t, const state& u) {
+    // One solver for several blocks has no tolerances.
+    if (solvers_.size() * of_.block_size != u.size()) return;
+    for (const auto& one : solvers_) {
+      const auto begin = u.begin() + static_cast<std::ptrdiff_t>(one->now.block * of_.block_size);
+      one_.assign(begin, begin + static_cast<std::ptrdiff_t>(of_.block_size));
+      one->local.begin_step(t, one_);
+    }
+  }
+  void end_step() {
+    for (const auto& one : solvers_) one->local.end_step();
+  }
   bool has_transport(double t, const state& u) {
     if (of_.transport == nullptr) return false;
     of_.evaluate_transport(t, u, work_);
@@ -82,26 +102,46 @@ class newton_blocks {
   }
 
  private:
-  /// Solves a stage block by block; solve_one(u) solves that of one block.
+  /// Largest number of entries of the derivatives that are kept for a step: 128 MiB.
+  static constexpr std::size_t most_kept = std::size_t{1} << 24;
+
+  /// Newton's method for a block.
+  struct solver {
+    explicit solver(callbacks& of) : local({}, block_field(of, now), options_of(of)) {
+      local.with_admissible(
+          [this, &of](std::span<const double> v) { return of.is_admissible(now.block, v); });
+      if (of.pattern) local.with_sparsity(*of.pattern);
+      if (of.mass) local.with_mass(*of.mass);
+    }
+    solver(const solver&) = delete;  // the problem refers to the position
+    solver& operator=(const solver&) = delete;
+
+    stage_position now;
+    newton_problem<no_transport, block_field> local;
+  };
+
+  /// Solves a stage block by block; solve_one(local, u) solves that of one block.
   template <class Solve>
   void solve(double a, double b, state& u, const Solve& solve_one) {
-    now_.step = std::max(a, std::sqrt(std::abs(b)));
     const std::size_t size = of_.block_size;
     solved_ = u;
-    for (now_.block = 0; now_.block * size < u.size(); ++now_.block) {
-      ++now_.solve;
-      const auto begin = solved_.begin() + static_cast<std::ptrdiff_t>(now_.block * size);
+    for (std::size_t block = 0; block * size < u.size(); ++block) {
+      auto& [now, local] = *solvers_[solvers_.size() == 1 ? 0 : block];
+      now.block = block;
+      now.step = std::max(a, std::sqrt(std::abs(b)));
+      ++now.solve;
+      const auto begin = solved_.begin() + static_cast<std::ptrdiff_t>(block * size);
       one_.assign(begin, begin + static_cast<std::ptrdiff_t>(size));
       try {
-        solve_one(one_);
+        solve_one(local, one_);
       } catch (const numerical_error& failure) {
         failure_site site = failure.site();
-        if (size < u.size()) site.cell = static_cast<long>(now_.block);
+        if (size < u.size()) site.cell = static_cast<long>(block);
         throw numerical_error(failure.problem(), site);
       }
       if (a != 0.0 || b != 0.0) {
         of_.count(APSIS_STAGE_SOLVES);
-        of_.count(APSIS_NEWTON_ITERATIONS, local_.report().iterations);
+        of_.count(APSIS_NEWTON_ITERATIONS, local.report().iterations);
       }
       std::copy(one_.begin(), one_.end(), begin);
     }
@@ -122,8 +162,7 @@ class newton_blocks {
   }
 
   callbacks& of_;
-  stage_position now_;
-  newton_problem<no_transport, block_field> local_;
+  std::vector<std::unique_ptr<solver>> solvers_;  ///< one for all blocks, or one for each
   state work_, rate_, solved_, one_;
 };
 

@@ -10,9 +10,7 @@ import sys
 from pathlib import Path
 
 
-def joined(unity: Path) -> str:
-    """Returns the text of the sources that a unity file includes."""
-    sources = re.findall(r'^#include "(.+)"', unity.read_text(encoding="utf-8"), re.M)
+def joined(sources: list[str]) -> str:
     return "".join(f'#line 1 "{source}"\n{Path(source).read_text(encoding="utf-8")}\n' for source in sources)
 
 
@@ -31,8 +29,11 @@ def main() -> int:
         room = unity.parent.parent.name.removesuffix(".dir")
         file = folder / unity.parents[3].relative_to(build) / f"{room}_{unity.stem}.cpp"
         file.parent.mkdir(parents=True, exist_ok=True)
-        file.write_text(joined(unity), encoding="utf-8")
-        entry["command"] = entry["command"].replace(str(unity), str(file))
+        sources = re.findall(r'^#include "(.+)"', unity.read_text(encoding="utf-8"), re.M)
+        file.write_text(joined(sources), encoding="utf-8")
+        # Sources include headers of their own folder by name.
+        folders = " ".join(f"-I{where}" for where in sorted({str(Path(source).parent) for source in sources}))
+        entry["command"] = entry["command"].replace(str(unity), f"{folders} {file}")
         entry["file"] = str(file)
     (folder / "compile_commands.json").write_text(json.dumps(entries, indent=1), encoding="utf-8")
     return 0

@@ -32,7 +32,7 @@ std::vector<double> two_per_decade(double loosest, double tightest);
 
 /// The integrators of other_integrators() in words, for the notes of tables.
 inline constexpr const char* words_of_others =
-    "two-step methods, IMEX-BDF of orders 2 to 5 and a method with exact collisions, with equal steps";
+    "two-step methods, IMEX-BDF of orders 2 to 5, and a method with exact collisions";
 
 /// Class of contestants. Each row of best results covers one or several classes.
 enum class league {

@@ -90,22 +90,20 @@ void make_quick(kinetic_settings& choices) {
 
 const std::string kinetic_note =
     std::string(
-        "CPU seconds of one thread for a given relative temporal error of f (2-norm over all cells and "
-        "velocities), in brackets relative to the best of Apsis with f ≥ 0 throughout, and the minimum of f "
-        "after "
-        "any step. Contestants: every IMEX method of the catalogue and extrapolated Euler steps, with equal "
-        "steps "
-        "and with steps chosen by a tolerance. Others: ") +
+        "The table shows CPU seconds of one thread for a given relative temporal error of f, in the 2-norm "
+        "over all cells and velocities. Brackets contain the ratio to the best of Apsis with f ≥ 0 "
+        "throughout. Columns `least` have the minimum of f after any step. Contestants are every IMEX "
+        "method of the catalogue and extrapolated Euler steps. They take equal steps, and steps chosen by "
+        "a tolerance. Other contestants take equal steps. They are ") +
     words_of_others +
-    ". Runs of methods with "
-    "an SSP coefficient count only with f ≥ 0 "
-    "throughout. For each contestant the cheapest run that reaches the error, whatever its setting. All use "
-    "the same T and Q. ARKODE: T explicit, Q/ε implicit; tuned: implicit right-hand side deduced, 20 "
-    "nonlinear "
-    "iterations, and the inverse of the linearized collision as preconditioner of GMRES or instead of it. "
-    "CVODE: BDF, tuned in the same way. f ≥ 0: with their constraint. Radau 5: the control of RADAU5, Newton "
-    "matrices factorized by a sparse solver (bench/peers/radau_kinetic.cpp). —: no run reached the error in "
-    "{:g} s. ";
+    ". Runs of methods with an SSP coefficient count only with f ≥ 0 throughout. Each contestant is "
+    "represented by the cheapest run that reaches the error, whatever its setting. All contestants use "
+    "the same T and Q. ARKODE integrates T explicitly and Q/ε implicitly. Tuned runs deduce the "
+    "implicit right-hand side and have 20 nonlinear iterations. They use the inverse of the linearized "
+    "collision as preconditioner of GMRES or instead of GMRES. CVODE uses BDF and is tuned in the same "
+    "way. Names with f ≥ 0 mark runs of ARKODE and CVODE with their constraint. Radau 5 has the "
+    "control of RADAU5. A sparse solver factorizes its Newton matrices "
+    "(bench/peers/radau_kinetic.cpp). A dash marks errors that no run reached in {:g} s. ";
 
 }  // namespace
 
@@ -146,17 +144,18 @@ result_table race_on_mixed_regime(unknowns which, const std::vector<double>& err
   result.note =
       fmt::format(fmt::runtime(kinetic_note), choices.seconds_others) +
       fmt::format(
-          "The mixed-regime problem (40 cells, 150 velocities, {}) at t = {:g}. The reference, "
-          "by an explicit method, is accurate to {:.1e} by comparison with an implicit one. Radau 5 is "
-          "entered on point values only, where a step takes seconds.",
+          "The contest uses the mixed-regime problem (40 cells, 150 velocities, {}) at t = {:g}. An explicit "
+          "method computes the reference. The reference is accurate to {:.1e} by comparison with an implicit "
+          "method. Radau 5 is entered on point values only. A step takes seconds there.",
           which == unknowns::points     ? "point values"
           : which == unknowns::averages ? "cell averages"
                                         : "cell averages that collide at centres",
           task.end(), apart);
   if (at_gauss_points)
     result.note +=
-        " Gauss points: runs with the constraint f ≥ 0, and of an explicit method, on averages that collide "
-        "there, compared with a reference of their own, because other programs keep f ≥ 0 there only.";
+        " Names with \"Gauss points\" mark runs on averages that collide there. They are runs with the "
+        "constraint f ≥ 0 and runs of an explicit method. They are compared with a reference of their own. "
+        "They are entered because other programs keep f ≥ 0 at Gauss points only.";
   all.add_to(result, std::nullopt, false);
   result.data["reference_error"] = apart;
   result.data["end"] = task.end();
@@ -197,10 +196,10 @@ result_table race_on_broadwell(const settings& options) {
     if (result.note.empty()) result.note = fmt::format(fmt::runtime(kinetic_note), choices.seconds_others);
   }
   result.note += fmt::format(
-      "Broadwell's model with the smooth data out of equilibrium of paper/broadwell, 80 cells, "
-      "finite differences (WENO5-JS), at t = {:g}. The reference, by extrapolated Euler steps of "
-      "order 8, is accurate to {:.1e} by comparison with ark-548-2. Explicit methods are entered for ε ≥ "
-      "1e-4.",
+      "The contest uses Broadwell's model with the smooth data out of equilibrium of paper/broadwell. "
+      "The problem has 80 cells and finite differences (WENO5-JS), and ends at t = {:g}. Extrapolated "
+      "Euler steps of order 8 compute the reference. The reference is accurate to {:.1e} by comparison "
+      "with ark-548-2. Explicit methods are entered for ε ≥ 1e-4.",
       end, furthest);
   result.data["reference_error"] = furthest;
   result.data["end"] = end;

@@ -97,23 +97,19 @@ contest contestants(const stiff_task& task, bool quick) {
 
 const std::string note =
     std::string(
-        " Contestants: every IMEX method of the catalogue, and extrapolated Euler steps of orders 2 to 8. "
-        "They take 1 to 8192 equal steps, without and with graded starts whose times grow by factors of 2, 4 "
-        "and 8. Those with an embedded solution also take steps chosen by a tolerance. Others: explicit "
-        "methods; ") +
+        " Contestants are every IMEX method of the catalogue, and extrapolated Euler steps of orders 2 to "
+        "8. They take 1 to 8192 equal steps, without and with graded starts. The times of graded starts "
+        "grow by factors of 2, 4 and 8. Contestants with an embedded solution also take steps chosen by a "
+        "tolerance. Other contestants take equal steps. They are explicit methods, ") +
     words_of_others +
-    ". Peers: CVODE (BDF, dense); ARKODE (T "
-    "explicit, or all implicit, or all explicit); "
-    "Radau "
-    "IIA of order 5 with the control of RADAU5 (bench/peers/radau_steps.hpp). CPU microseconds of a whole "
-    "integration "
-    "from t = 0 to 1 for a given error |Δu1| + |Δu2| at t = 1; in brackets relative to the best of Apsis. "
-    "For "
-    "each contestant the cheapest run that reaches the error, whatever its setting (steps, start-up, "
-    "tolerances, "
-    "nonlinear tolerance). Tuned: exact Jacobian, implicit right-hand side deduced. Integrators are created "
-    "once "
-    "and reinitialized.";
+    ". Other programs are CVODE, ARKODE and Radau IIA of order 5. CVODE uses BDF and a dense solver. "
+    "ARKODE integrates T explicitly, or all terms implicitly, or all terms explicitly. Radau IIA has "
+    "the control of RADAU5 (bench/peers/radau_steps.hpp). The table shows CPU microseconds of a whole "
+    "integration from t = 0 to 1 for a given error. The error is |Δu1| + |Δu2| at t = 1. Brackets "
+    "contain the ratio to the best of Apsis. Each contestant is represented by the cheapest run that "
+    "reaches the error, whatever its setting (steps, start-up, tolerances, nonlinear tolerance). Tuned "
+    "programs have the exact Jacobian and deduce the implicit right-hand side. Integrators are created "
+    "once and reinitialized.";
 
 }  // namespace
 

@@ -68,12 +68,12 @@ result_table measure(const settings& options) {
   result_table result;
   result.title = "The price of a body";
   result.note =
-      "The table shows steps on one thread of shipped flows past bodies, and of those with divided cells. "
-      "Unknowns are those in the gas; the third column is the share in cut cells. The ratio compares "
-      "point·stages per second with the flow without its bodies, in the same turns. The last columns are the "
-      "time of an unknown in a cut cell, where an unknown of the flow without bodies takes 1: by the kernels "
-      "of cut cells, and with all the additional time. Bodies "
-      "cost most of it elsewhere.";
+      "The table shows steps on one thread of shipped flows past bodies, and of the same flows with "
+      "divided cells. Unknowns are those in the gas. The third column is the share in cut cells. The "
+      "ratio compares point·stages per second with the flow without its bodies, in the same turns. The "
+      "last columns are the time of an unknown in a cut cell, where an unknown of the flow without "
+      "bodies takes 1. Column `cut cell` has the time by the kernels of cut cells. Column `additional` "
+      "has the time with all the additional time. Bodies cost most of the additional time elsewhere.";
   result.columns = {"case", "unknowns", "cut", "point·stages/s", "ratio", "cut cell", "additional"};
   set_threads(1);
   const std::vector<std::string> names = {"gas/cylinder", "gas/ellipse", "gas/wing",

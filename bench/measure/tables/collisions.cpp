@@ -59,9 +59,9 @@ result_table measure(const settings& options) {
   result_table result;
   result.title = "Collision models of a gas";
   result.note =
-      "Point·stages per second of md-imex-6-3 with the limiter, 100 cells, one thread; a point is a number "
-      "of the row of a cell, so that (g, h) has two for each velocity. The ratio is that to the first model "
-      "of its group, in the same turns.";
+      "The table shows point·stages per second of md-imex-6-3 with the limiter, 100 cells and one "
+      "thread. A point is a number of the row of a cell, so that (g, h) has two for each velocity. The "
+      "ratio is that to the first model of its group, in the same turns.";
   result.columns = {"model", "d", "D", "row", "formulation", "point·stages/s", "ratio"};
   for (const char* discretization : {"finite-difference", "finite-volume"}) {
     add_rows(result, {{"bgk", 1, 1}, {"bgk", 1, 3}, {"shakhov", 1, 3}, {"es-bgk", 1, 3}}, discretization,

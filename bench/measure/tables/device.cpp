@@ -132,11 +132,12 @@ result_table measure(const settings& options) {
   result_table result;
   result.title = "Finite differences on " + on->name();
   result.note = fmt::format(
-      "{}A gas between walls, {} velocities, {} with the positivity limiter. The speed is that of steps, in "
-      "point·stages per second. Ceilings: copies by a kernel, {:.3g} bytes per second, and multiply–adds in "
-      "registers, {:.3g} per second. Work of a point and stage is the least, as counted on the host: {:.1f} "
-      "bytes and {:.1f} operations. The host has {} thread{}; its steps alternate with those of the device. "
-      "The last column is the speed of whole runs, which check the state after each step.",
+      "{}The problem is a gas between walls with {} velocities. Steps use {} with the positivity "
+      "limiter. The speed is that of steps, in point·stages per second. Copies by a kernel have a "
+      "ceiling of {:.3g} bytes per second. Multiply–adds in registers have a ceiling of {:.3g} per "
+      "second. Work of a point and stage is the least, with {:.1f} bytes and {:.1f} operations as "
+      "counted on the host. The host has {} thread{}. Its steps alternate with those of the device. The "
+      "last column is the speed of whole runs, which check the state after each step.",
       real ? "" : "No figure is that of a device (lanes on the host took its part). ", velocities, method,
       most.bytes, most.multiply_adds, most.bytes_of_point, most.operations_of_point, threads(),
       threads() == 1 ? "" : "s");

@@ -110,15 +110,17 @@ result_table measure(const settings& options) {
   result_table result;
   result.title = "Dimensions of space and velocity";
   result.note =
-      "Point·stages per second of md-imex-6-3 with finite differences and the limiter, BGK, states of "
-      "50 to 75 MB. The ratio is that to the first row in the same turns. Equilibria are Maxwellians in "
-      "closed form where the velocities are dense and reach far enough for exact moments, and otherwise "
-      "found by Newton's method. A stage of D dimensions has D sweeps: operations (arithmetic "
-      "instructions per number, with those that neighbouring boxes repeat) and bytes (compulsory memory "
-      "traffic) are those of a point·stage. The next columns are fractions of three ceilings of the "
-      "machine in the same turn: multiply–adds in registers, the triad on arrays of the length of a "
-      "state, and the kernels of the D sweeps on data in the first-level cache, without collisions. The "
-      "last one is the share of the sweeps in the time of a step; the rest are collisions.";
+      "The table shows point·stages per second of md-imex-6-3 with finite differences, the limiter and "
+      "BGK. States have 50 to 75 MB. The ratio is that to the first row in the same turns. Equilibria "
+      "are Maxwellians in closed form where the velocities are dense and reach far enough for exact "
+      "moments. Newton's method finds all other equilibria. A stage of D dimensions has D sweeps. "
+      "Operations and bytes are those of a point·stage. Operations are arithmetic instructions per "
+      "number, with those that neighbouring boxes repeat. Bytes are the compulsory memory traffic. The "
+      "next columns are fractions of three ceilings of the machine in the same turn. The first ceiling "
+      "is that of multiply–adds in registers. The second is the triad on arrays of the length of a "
+      "state. The third is that of the kernels of the D sweeps on data in the first-level cache, without "
+      "collisions. The last column is the share of the sweeps in the time of a step. Collisions take the "
+      "rest.";
   result.columns = {
       "space × velocity", "equilibria", "threads",          "point·stages/s", "ratio",
       "operations",       "bytes",      "of multiply–adds", "of triad",       "of sweeps in cache",

@@ -82,14 +82,12 @@ result_table measure(const settings& options) {
   result_table result;
   result.title = "Ensembles";
   result.note =
-      "Ensembles of systems whose parameters vary by 30 percent, on one core: eight systems in lanes "
-      "(`integrate_ensemble`, compiled with -march=native), and CVODE for one system after the other with "
-      "exact "
-      "Jacobians. Times are microseconds for a system. Errors are the largest of all unknowns, relative to "
-      "|u_i| + "
-      "size_i, where atol_i = rtol · size_i. The ratios are the time of CVODE over that of lanes: with the "
-      "same "
-      "rtol, and with the largest tolerance whose error is as small.";
+      "The table shows ensembles of systems whose parameters vary by 30 percent, on one core. "
+      "`integrate_ensemble` integrates eight systems in lanes and is compiled with -march=native. CVODE "
+      "integrates one system after the other with exact Jacobians. Times are microseconds for a system. "
+      "Errors are the largest of all unknowns, relative to |u_i| + size_i, where atol_i = rtol · size_i. "
+      "The ratios are the time of CVODE divided by that of lanes. Column `same rtol` compares runs with "
+      "the same rtol. In column `same error` CVODE has the largest tolerance whose error is as small.";
   result.columns = {"problem", "method", "rtol", "error", "µs", "error of CVODE", "same rtol", "same error"};
   add_rows(result, peers::robertson_ensemble(), options);
   add_rows(result, peers::ode_model_ensemble(), options);

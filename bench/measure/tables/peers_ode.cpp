@@ -6,12 +6,12 @@ namespace apsis::bench::peers_ode_table {
 namespace {
 
 result_table measure(const settings& options) {
-  return peers::run({"ODE model: work and precision",
-                     "The ODE model of the paper, data out of equilibrium. The reference is extrapolated in "
-                     "extended precision to "
-                     "1e-13.",
-                     peers::make_ode_model},
-                    options);
+  return peers::run(
+      {"ODE model: work and precision",
+       "The contest uses the ODE model of the paper with data out of equilibrium. The reference is "
+       "extrapolated in extended precision to 1e-13.",
+       peers::make_ode_model},
+      options);
 }
 
 const registered here({"peers-ode",

@@ -128,11 +128,12 @@ result_table measure(const settings& options) {
   result_table result;
   result.title = "Library and plain loops, mixed-regime BGK";
   result.note =
-      "Milliseconds per step of paper/bgk-mixed on one thread (40 cells, 150 velocities, finite volumes): "
-      "plain loops (bench/plain) with the flags of the library and with -O3 -march=native -ffast-math "
-      "(native), the step of the library alone, and simulation::advance(), which also checks every step. "
-      "Ratios are medians over the turns. `difference`: largest relative difference of the results after a "
-      "few steps, in the 2-norm over f.";
+      "The table shows milliseconds per step of paper/bgk-mixed on one thread (40 cells, 150 velocities, "
+      "finite volumes). Column `plain` has plain loops (bench/plain) with the flags of the library. "
+      "Column `native` has the same loops with -O3 -march=native -ffast-math. Column `library` has the "
+      "step of the library alone. Column `advance` has simulation::advance(), which also checks every "
+      "step. Ratios are medians over the turns. Column `difference` has the largest relative difference "
+      "of the results after a few steps, in the 2-norm over f.";
   result.columns = {"method",        "plain (ms)",     "native (ms)",   "library (ms)", "advance (ms)",
                     "plain/library", "native/library", "plain/advance", "difference"};
   // Jobs are short and turns many, so that a disturbance affects only one turn.

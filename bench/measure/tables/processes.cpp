@@ -169,9 +169,9 @@ void measure_messages(const settings& options, result_table& result) {
   result.data["reduction_s"] = median(sums);
   result.data["processes"] = all->size();
   result.note += fmt::format(
-      " Messages between two processes of the machine: {:.2g} µs for one number, {:.2g} GB/s in both "
-      "directions simultaneously for "
-      "8 MB; {:.2g} µs for a sum of 70 words over all.",
+      " Messages between two processes of the machine take {:.2g} µs for one number. For 8 MB they reach "
+      "{:.2g} GB/s in both directions simultaneously. A sum of 70 words over all processes takes {:.2g} "
+      "µs.",
       1e6 * median(shortest), 1e-9 * sizeof(double) * numbers / median(longest), 1e6 * median(sums));
 }
 
@@ -213,17 +213,16 @@ result_table measure(const settings& options) {
   result_table result;
   result.title = "Several processes";
   result.note =
-      "Whole steps of runs with one thread on each process: md-imex-6-3, finite differences and the limiter, "
-      "BGK, with the sums of the history after every step. Weak: time of one process with one block, over "
-      "that "
-      "of all processes with the whole mesh. Strong: time of one process with the whole mesh, over the "
-      "number "
-      "of processes times that of all. Independent: time of one process with one block, over that of "
-      "unrelated "
-      "runs of one block on all processes simultaneously, the ceiling of both. Medians of turns, in which "
-      "idle "
-      "processes sleep. Messages, MB and reductions are those of a process in a step. Blocking: packing, "
-      "sending and waiting without other work, in percent of the step; waiting: the same within a step.";
+      "The table shows whole steps of runs with one thread on each process. The runs use md-imex-6-3, "
+      "finite differences, the limiter and BGK. They compute the sums of the history after every step. "
+      "Column `weak` is the time of one process with one block, divided by that of all processes with "
+      "the whole mesh. Column `strong` divides the time of one process with the whole mesh by the number "
+      "of processes times the time of all. Column `independent` divides the time of one process with one "
+      "block by that of unrelated runs. The unrelated runs have one block each, and run on all processes "
+      "simultaneously. This ratio is the ceiling of both others. Figures are medians of turns, in which "
+      "idle processes sleep. Messages, MB and reductions are those of a process in a step. Blocking is "
+      "packing, sending and waiting without other work, in percent of the step. Waiting is the same "
+      "within a step.";
   result.columns = {"space × velocity", "points",   "processes", "ms per step", "weak",     "strong",
                     "independent",      "messages", "MB",        "reductions",  "blocking", "waiting"};
   const std::vector<gas> gases =

@@ -31,9 +31,10 @@ result_table measure(const settings& options) {
   result_table result;
   result.title = "Cost of a step against its size";
   result.note =
-      "Finite differences, md-imex-3-2, 150 velocities, one thread. In multiply–adds: the time per "
-      "point·stage divided by the time per multiply–add (one of the eight of a vector), measured "
-      "alternately. Three fields of this size are in use.";
+      "The table shows steps of finite differences with md-imex-3-2 and 150 velocities on one thread. "
+      "Column `in multiply–adds` is the time per point·stage divided by the time per multiply–add (one "
+      "of the eight of a vector). The two times are measured alternately. Three fields of this size are "
+      "in use.";
   result.columns = {"points",           "MB per field", "ms per step", "ns per point·stage",
                     "in multiply–adds", "against 10⁶"};
   const std::vector<double> sizes =

@@ -87,11 +87,11 @@ result_table measure(const settings& options) {
   result_table result;
   result.title = "Methods for general stiff systems";
   result.note =
-      "The problems of the table above, at the same tolerances: geometric mean of the CPU time relative to "
-      "the "
-      "best method of each problem, and the number of problems solved within a digit of the tolerance. A "
-      "problem that is not counts as 30. Mean: over all problems and tolerances. Methods of order 3 and more "
-      "without second derivatives, whose stages share a derivative of Q in a step.";
+      "The table uses the problems of the table above, at the same tolerances. A cell has the geometric "
+      "mean of the CPU time relative to the best method of each problem. Brackets contain the number of "
+      "problems solved within a digit of the tolerance. A problem that is not solved counts as 30. The "
+      "last column is the mean over all problems and tolerances. The methods are those of order 3 and "
+      "more without second derivatives. Their stages share a derivative of Q in a step.";
   const auto methods = competitors(options.quick);
   const auto tolerances = options.quick ? std::vector<double>{1e-4} : std::vector<double>{1e-4, 1e-6, 1e-8};
   result.columns = {"method"};

@@ -139,20 +139,18 @@ result_table measure(const settings& options) {
   result_table result;
   result.title = "Stiff systems of the literature";
   result.note =
-      "Problems of `src/apsis/verify/stiff` at the tolerances rtol and atol_i = rtol · size_i, the same for "
-      "all. A cell has correct digits; CPU milliseconds of a whole integration, set-up included; calls of Q "
-      "+ "
-      "evaluations of Q' (products of Apsis count as parts of an evaluation). All have the same Q and the "
-      "same "
-      "automatic derivatives. Best of Apsis: the method of one step that takes the least time "
-      "among those that reach rtol within a digit. Without such a method it is the one with most digits. "
-      "For the last three problems it is chosen from `ark-437`, `ark-548-2` and `extrapolated-euler-6`. "
-      "Auto: "
-      "the method that `auto` chooses for the "
-      "tolerance, without hindsight. "
-      "CVODE: BDF. ARKODE: its default diagonally implicit methods of orders 4 and 5. Both have a dense or "
-      "a band solver. Radau 5: the control of RADAU5 with dense or sparse factorizations "
-      "(bench/peers/radau_stiff.cpp). Turns of more than 2 s are measured once. A run is stopped after 10 s.";
+      "The problems are those of `src/apsis/verify/stiff`. All contestants have the same tolerances rtol "
+      "and atol_i = rtol · size_i. A cell has three entries. The first is the number of correct digits. "
+      "The second is the CPU time of a whole integration in milliseconds, set-up included. The third has "
+      "calls of Q + evaluations of Q'. Products of Apsis count as parts of an evaluation. All "
+      "contestants have the same Q and the same automatic derivatives. The best of Apsis is the method "
+      "of one step that takes the least time among those that reach rtol within a digit. Without such a "
+      "method it is the one with most digits. For the last three problems it is chosen from `ark-437`, "
+      "`ark-548-2` and `extrapolated-euler-6`. Column `auto` has the method that `auto` chooses for the "
+      "tolerance, without hindsight. CVODE uses BDF. ARKODE uses its default diagonally implicit methods "
+      "of orders 4 and 5. Both have a dense or a band solver. Radau 5 has the control of RADAU5 with "
+      "dense or sparse factorizations (bench/peers/radau_stiff.cpp). Turns of more than 2 s are measured "
+      "once. A run is stopped after 10 s.";
   result.columns = {"problem", "rtol", "best of Apsis", "auto", "CVODE", "ARKODE 4", "ARKODE 5", "Radau 5"};
   const auto methods =
       options.quick ? std::vector<std::string>{"ark-436", "extrapolated-euler-5"} : implicit_methods();

@@ -55,9 +55,9 @@ result_table measure(const settings& options) {
   result_table result;
   result.title = "Subnormal numbers";
   result.note =
-      "Share of subnormal values of f after some steps of the mixed-regime problem (40 cells, spacing 0.2, "
-      "md-imex-3-2, one thread), and the time of a step relative to a step with flush-to-zero, medians over "
-      "the turns.";
+      "The table shows the share of subnormal values of f after some steps. The steps are those of the "
+      "mixed-regime problem (40 cells, spacing 0.2, md-imex-3-2, one thread). The time of a step is "
+      "relative to a step with flush-to-zero. Times are medians over the turns.";
   result.columns = {"v_max", "finite volumes: subnormal", "time", "finite differences: subnormal", "time"};
   for (const int max : {15, 60, 120}) {
     const auto fv = compare("finite-volume", max, options), fd = compare("finite-difference", max, options);
@@ -72,7 +72,8 @@ result_table measure(const settings& options) {
 result_table measure(const settings&) {
   result_table result;
   result.title = "Subnormal numbers";
-  result.note = "Measured on x86 only, whose control register can flush them to zero.";
+  result.note =
+      "Subnormal numbers are measured on x86 only, because its control register can flush them to zero.";
   return result;
 }
 

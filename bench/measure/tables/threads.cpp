@@ -36,9 +36,10 @@ result_table measure(const settings& options) {
   result_table result;
   result.title = "Two threads against one";
   result.note =
-      "Ratio of wall times of the same steps, in turns. \"The machine\" is this ratio for multiply–adds in "
-      "registers, which share nothing: the ideal speedup at that moment. \"In steps\" is the same with as "
-      "many barriers as in these steps.";
+      "The table shows the ratio of wall times of the same steps, which were measured in turns. Column "
+      "`the machine` is this ratio for multiply–adds in registers, which share nothing. It is the ideal "
+      "speedup at that moment. Column `in steps` is the same ratio with as many barriers as in these "
+      "steps.";
   result.columns = {"formulation", "N",       "ms per step, 1 thread", "ms per step, 2 threads", "ratio",
                     "the machine", "in steps"};
   const std::vector<int> sizes = options.quick ? std::vector<int>{40} : std::vector<int>{40, 400, 4000};

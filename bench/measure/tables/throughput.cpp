@@ -75,10 +75,11 @@ result_table measure(const settings& options) {
   result_table result;
   result.title = fmt::format("Throughput, N = {} × 150 velocities, positivity limiter", cells);
   result.note =
-      "Point·stages per second of whole steps. Operations are arithmetic instructions per number (a "
-      "multiply–add counts as one, as in the ceiling, and so does a division), bytes the compulsory memory "
-      "traffic; both per point·stage. Ceilings: multiply–adds in registers, and the triad on arrays of the "
-      "length of the field, on as many threads, in the same turn.";
+      "The table shows point·stages per second of whole steps. Operations and bytes are those of a "
+      "point·stage. Operations are arithmetic instructions per number. A multiply–add counts as one, as "
+      "in the ceiling, and so does a division. Bytes are the compulsory memory traffic. Ceilings are "
+      "multiply–adds in registers, and the triad on arrays of the length of the field. They are measured "
+      "on as many threads, in the same turn.";
   result.columns = {"formulation", "method",           "threads",  "point·stages/s",        "operations",
                     "bytes",       "of multiply–adds", "of triad", "of the binding ceiling"};
   for (const int n : {1, 2})

@@ -35,9 +35,10 @@ result_table measure(const settings& options) {
   result_table result;
   result.title = "The same kernels in each instruction set";
   result.note =
-      "Speedup of a step of the mixed-regime problem (40 cells, 150 velocities, md-imex-3-2, one thread) "
-      "over scalar code, medians over the turns; for comparison the same of multiply–adds in registers, the "
-      "upper bound for the vector units of this processor.";
+      "The table shows the speedup of a step over scalar code. The step is that of the mixed-regime "
+      "problem (40 cells, 150 velocities, md-imex-3-2, one thread). Speedups are medians over the turns. "
+      "The last column has the speedup of multiply–adds in registers for comparison. It is the upper "
+      "bound for the vector units of this processor.";
   result.columns = {"instruction set", "finite volumes", "finite differences", "multiply–adds"};
   const auto sets = hwy::SupportedAndGeneratedTargets();
   const int turns = options.quick ? 1 : 5 * options.repeats;

@@ -44,8 +44,7 @@ class run_of final : public any_run {
          double t, const numbers& u)
       : problem_(of), evolution_(m, problem_, rule, tolerance) {
     if constexpr (std::is_same_v<Problem, newton_blocks>) {
-      if (tolerance)
-        problem_.set_tolerances(limits.relative, limits.absolute, u.size());
+      if (tolerance) problem_.set_tolerances(limits.relative, limits.absolute, u.size());
     }
     evolution_.set_stops(events.stops);
     evolution_.set_events(functions_of(of, events), [&of](std::size_t k, double at, const numbers& now) {

@@ -198,8 +198,9 @@ class newton_problem {
     equation_.a = a;
     equation_.b = b;
     equation_.explicit_part = v_;
-    if (b != real(0) && is_far_from_equilibrium()) start_from_implicit_euler();
-    if (!solve_by_kept_derivative()) report_ = solve_from_start();
+    if (b == real(0) || !is_far_from_equilibrium() || !solve_from_implicit_euler()) {
+      if (!solve_by_kept_derivative()) report_ = solve_from_start();
+    }
     unload(v_, u);
   }
 
@@ -220,19 +221,27 @@ class newton_problem {
     return false;
   }
 
-  /// Replaces the start of Newton's method by a step of the implicit Euler method, if there is one.
-  void start_from_implicit_euler() {
+  /// Solves the stage from the solution of an implicit Euler step. Returns whether that is possible; v_ is
+  /// the explicit part otherwise.
+  bool solve_from_implicit_euler() {
     using std::sqrt;
     const real a = equation_.a, b = equation_.b;
     equation_.a = std::max(a, sqrt(-b));
     equation_.b = real(0);
-    try {
-      solve_from_start();
-    } catch (const numerical_error&) {
-      v_ = equation_.explicit_part;
-    }
+    bool found = try_from_start();
     equation_.a = a;
     equation_.b = b;
+    found = found && try_from_start();
+    if (!found) v_ = equation_.explicit_part;
+    return found;
+  }
+  bool try_from_start() {
+    try {
+      report_ = solve_from_start();
+      return true;
+    } catch (const numerical_error&) {
+      return false;
+    }
   }
 
   /// Solves the stage by simplified_newton if its errors have a tolerance and the solver factorizes matrices.

@@ -145,8 +145,10 @@ bool stage_solver::solve(const stage& now, Vec u) {
   // roots than the one that short steps lead to. An implicit Euler step gives a start near equilibrium.
   if (now.b != 0.0 && ((preconditioner_ && stiffness_ > most_without_start) || is_far_from_equilibrium(u))) {
     now_ = {now.t, gamma, 0.0, now.dt, false};
-    if (!iterate(u)) check(VecCopy(explicit_part_.get(), u));
+    const bool begun = iterate(u);
     now_ = now;
+    if (begun && iterate(u)) return true;
+    check(VecCopy(explicit_part_.get(), u));
   }
   return iterate(u);
 }

@@ -202,15 +202,24 @@ void stage_newton::start_at(const stage& s) {
                     s.t));
 }
 
-/// Moves the iterate to the solution of an implicit Euler step, if there is one.
-void stage_newton::start_from_implicit_euler(const stage& s) {
+/// Finds the root, starting from the solution of an implicit Euler step. Returns whether that is possible;
+/// the iterate is the explicit part otherwise.
+bool stage_newton::find_root_from_implicit_euler(const stage& s) {
+  const stage euler{s.t, std::max(s.a, std::sqrt(-s.b)), 0.0, false, s.u};
+  bool found = true;
   try {
+    start_at(euler);
+    find_root(euler);
+    N_VLinearSum(1.0, now_.v.get(), 1.0, now_.delta.get(), now_.v.get());
     start_at(s);
     find_root(s);
-    N_VLinearSum(1.0, now_.v.get(), 1.0, now_.delta.get(), now_.v.get());
   } catch (const numerical_error&) {
-    N_VScale(1.0, s.u, now_.v.get());
+    found = false;
   }
+  if (found) return true;
+  N_VScale(1.0, s.u, now_.v.get());
+  start_at(s);
+  return false;
 }
 
 /// Throws numerical_error. `does` completes the sentence "Newton's method …".
@@ -262,11 +271,7 @@ void stage_newton::solve(double t, bool timed, double a, double b, nvector& u) {
   }
   now_.v = u;
   start_at(s);
-  if (b != 0.0 && is_far_from_equilibrium(s)) {
-    start_from_implicit_euler({t, std::max(a, std::sqrt(-b)), 0.0, false, u.get()});
-    start_at(s);
-  }
-  find_root(s);
+  if (b == 0.0 || !is_far_from_equilibrium(s) || !find_root_from_implicit_euler(s)) find_root(s);
   finish(s);
   u.swap(now_.v);
 }

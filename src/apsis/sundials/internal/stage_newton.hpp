@@ -56,7 +56,7 @@ class stage_newton {
   void start_at(const stage& s);
   void find_root(const stage& s);
   bool is_far_from_equilibrium(const stage& s) const;
-  void start_from_implicit_euler(const stage& s);
+  bool find_root_from_implicit_euler(const stage& s);
   bool is_small(const iterate& at) const;
   bool is_done(double before) const;
   void prepare(const stage& s, bool fresh);

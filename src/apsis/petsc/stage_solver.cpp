@@ -153,8 +153,12 @@ bool stage_solver::solve(const stage& now, Vec u) {
   return iterate(u);
 }
 
-/// Returns whether Q changes an unknown by more than its size in the time √−b of the second derivative.
+/// Returns whether Q changes an unknown by more than its size in the time √−b of the second derivative. The
+/// equations of a solver for linear problems have one root.
 bool stage_solver::is_far_from_equilibrium(Vec u) {
+  PetscBool linear = PETSC_FALSE;
+  check(PetscObjectTypeCompare(reinterpret_cast<PetscObject>(snes_), SNESKSPONLY, &linear));
+  if (linear == PETSC_TRUE) return false;
   const Vec rate = rate_.like(u);
   of_.minus_collision(now_.t, u, rate);
   PetscReal largest = 0.0;

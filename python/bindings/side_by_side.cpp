@@ -19,8 +19,9 @@ using coroutine = boost::coroutines2::coroutine<void>;
 using stack_pool = boost::coroutines2::pooled_fixedsize_stack;
 using extents = std::vector<py::ssize_t>;
 
-/// Most cells that are solved side by side. Each has matrices of its own.
-constexpr std::size_t most_slots = 256;
+/// Most cells that are solved side by side, and most entries of their matrices: 16 MiB for each matrix of a
+/// solve.
+constexpr std::size_t most_slots = 256, most_entries = std::size_t{1} << 21;
 /// Bytes of a stack, for solves whose vectors and matrices are on the heap. The system provides its pages on
 /// first use.
 constexpr std::size_t stack_bytes = std::size_t{256} << 10;
@@ -132,8 +133,10 @@ struct collisions_side_by_side::stacks {
 collisions_side_by_side::collisions_side_by_side(const collision_functions& of, std::size_t length,
                                                  linear_solver solver)
     : of_(of), length_(length), stacks_(std::make_unique<stacks>()) {
-  // Functions of large cells take most of the time, and their matrices most of the memory.
-  const std::size_t slots = length > most_unknowns_of_newton ? 1 : most_slots;
+  // Each slot would warn of the cost of large cells.
+  const std::size_t slots = length > most_unknowns_of_newton
+                                ? 1
+                                : std::clamp(most_entries / (length * length), std::size_t{1}, most_slots);
   for (std::size_t k = 0; k < slots; ++k)
     slots_.push_back(std::make_unique<slot>(of.admissible.has_value(), solver));
 }

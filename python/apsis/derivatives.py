@@ -104,8 +104,8 @@ class CellDerivatives:
 
     def __init__(self, collision: Callable[[Array, Any], ArrayLike], jacobian: Callable[[Array, Any], Any] | None, u: Array) -> None:
         self._cells = some_cells(len(u))
-        given = None if jacobian is None else lambda v: jacobian(v, self._cells)
-        self._of_cells = Derivatives(lambda v: collision(v, self._cells), given, u[self._cells], rows=True)
+        given = partial(self._call, jacobian) if jacobian else None
+        self._of_cells = Derivatives(partial(self._call, collision), given, u[self._cells], rows=True)
 
     @property
     def by(self) -> str:
@@ -119,6 +119,9 @@ class CellDerivatives:
     def curvature(self, u: Array, k: Array, x: Array, cells: Any) -> Array:
         """Returns Q''(u)[k, x] to a few digits."""
         return self._at(cells).curvature(u, k, x)
+
+    def _call(self, function: Callable[[Array, Any], Any], u: Array) -> Any:
+        return function(u, self._cells)
 
     def _at(self, cells: Any) -> Derivatives:
         if not np.array_equal(cells, self._cells):

@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 from typing import Any, Callable
 
 import numpy as np
@@ -90,20 +91,20 @@ def _functions_of_cells(problem: GeneralProblem, u0: Array) -> CollisionFunction
     cells = u0.reshape(-1, u0.shape[-1])
     rows = None if problem.parameters is None else _rows_of(real_array("parameters", problem.parameters), u0.shape[:-1])
 
-    def with_parameters(function: Callable[..., Any]) -> Callable[[Array, Any], Any]:
-        return lambda u, which: function(u) if rows is None else function(u, rows[which])
+    def call(function: Callable[..., Any], u: Array, which: Any) -> Any:
+        return function(u) if rows is None else function(u, rows[which])
 
-    def admissible(u: Array, which: Any) -> Any:
-        assert problem.admissible is not None
-        found = np.asarray(with_parameters(problem.admissible)(u, which))
+    def truths(function: Callable[..., Any], u: Array, which: Any) -> Any:
+        found = np.asarray(call(function, u, which))
         if found.dtype.kind != "b" or found.shape != (len(u),):
             raise InputError(f"admissible returned an array of shape {found.shape} and type {found.dtype} (True or False is needed for "
                              f"each cell, an array of shape ({len(u)},)); return that")
         return found
 
-    collision = with_parameters(problem.collision)
-    derivatives = CellDerivatives(collision, None if problem.jacobian is None else with_parameters(problem.jacobian), cells)
-    return CollisionFunctions(_core.Coupling.cells, collision, derivatives, None if problem.admissible is None else admissible)
+    collision = partial(call, problem.collision)
+    jacobian = partial(call, problem.jacobian) if problem.jacobian else None
+    admissible = partial(truths, problem.admissible) if problem.admissible else None
+    return CollisionFunctions(_core.Coupling.cells, collision, CellDerivatives(collision, jacobian, cells), admissible)
 
 
 def _rows_of(parameters: Array, cells: tuple[int, ...]) -> Array:

@@ -30,7 +30,7 @@ class GeneralProblem:
         local                     Q couples only the last axis of u, cell by cell: the functions collision, jacobian and
                                   admissible then get one cell, an array of the length of that axis
         vectorized                with local: these functions get m cells, an array of shape (m, n), and return arrays of shape
-                                  (m, n), (m, n, n) and (m,). A step takes some calls of each function instead of some per cell
+                                  (m, n), (m, n, n) and (m,). A step then calls each function a few times, not a few times per cell
         parameters                with vectorized: an array whose first axes are those of the cells. The functions get its rows
                                   for the m cells as the last argument: collision(u, p), such as ε(x) or rates of each cell
 

@@ -20,7 +20,7 @@ struct collision_functions {
 /// Collisions that couple the numbers of a cell only, for functions of many cells. The stages of some hundred
 /// cells are solved side by side: the solve of a cell is suspended when it needs a function, and the function
 /// is called once for all cells that wait for it. The stages are bitwise those of cells that are solved one
-/// after another, if the functions treat each cell alike in any company.
+/// after another, if the functions give a cell the same numbers whichever cells come with it.
 class collisions_side_by_side {
  public:
   /// Cells have `length` unknowns. Arguments of the functions are arrays [cells, unknowns of a cell], and

@@ -209,8 +209,8 @@ class newton_problem {
   }
 
   /// Returns whether G changes an unknown by more than its size in the time √−b of the second derivative. The
-  /// stage equation then has other roots than the one that short steps lead to, and Newton's method may find
-  /// them: near a zero of G' for example.
+  /// stage equation then has other roots than the one that short steps lead to. Newton's method may find one
+  /// of them, for example near a zero of G'.
   bool is_far_from_equilibrium() {
     using std::abs, std::sqrt;
     equation_.field.value(v_, equation_.g);

@@ -8,6 +8,7 @@
 #include <apsis/scheme/reconstruction_registry.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -337,6 +338,19 @@ std::vector<strong_flow> all_strong_flows() {
   }
   all.push_back({"gas/shock", {}});
   all.push_back({"gas/step", {"space.cells=[18, 12]"}});
+  // Plates whose speeds differ by 6 and 10 speeds of sound, and walls with temperatures 100 and 1.
+  for (const char* delta : {"1", "10"})
+    for (const auto& [U, max, points] : {std::array{"3.9", "14", "[48, 48]"}, {"6.5", "19", "[48, 64]"}})
+      all.push_back({"gas/couette",
+                     {std::string("parameters.delta=") + delta, std::string("parameters.U=") + U,
+                      std::string("velocity.max=") + max, std::string("velocity.points=") + points}});
+  all.push_back({"gas/fourier",
+                 {"parameters.delta=10", "model.tails=nonnegative", "boundary.left.T=100",
+                  "boundary.right.T=1", "velocity.max=40", "velocity.points=96"}});
+  for (const char* knudsen : {"5", "0.5", "0.05"})
+    all.push_back(
+        {"gas/cylinder",
+         {std::string("parameters.Kn=") + knudsen, "space.cells=[36, 18]", "velocity.points=[12, 12]"}});
   return all;
 }
 

@@ -21,7 +21,8 @@ TEST(cut_rows, are_the_formulas_of_single_numbers) {
     const auto n = static_cast<std::size_t>(1 + k % 19);
     const rows u(2, n, random, any_size), v(2, n, random, any_sign);
     rows slopes(2, n, random, any_sign), beyond(2, n, random, any_sign);
-    std::vector<double> plain(2 * n), share(n), values(n, 7.0), alone(n), to_row(n, 0.5), to_both(n, 0.5);
+    std::vector<double> plain(2 * n), steady(2 * n), share(n), values(n, 7.0), alone(n), to_row(n, 0.5),
+        to_both(n, 0.5);
     const rows around(2, n, random, any_size);
     const std::array<cut_rows::neighbour, 2> neighbours = {
         {{around.at[0], {0.7, -0.1, 0.0}}, {around.at[1], {-0.2, 0.4, 0.0}}}};
@@ -41,6 +42,8 @@ TEST(cut_rows, are_the_formulas_of_single_numbers) {
     const std::array<cut_rows::outlet, 2> outlets = {{{way_at(0), to[0]}, {way_at(1), to[1]}}};
     cut_rows::fit(u.at[0], neighbours, of, {plain.data(), plain.data() + n, nullptr});
     cut_rows::fit(u.at[0], neighbours, {outlets, step, kept.data()}, of, line_to(0).slopes);
+    cut_rows::fit(u.at[0], neighbours, {outlets, step, nullptr}, of,
+                  {steady.data(), steady.data() + n, nullptr});
     cut_rows::project(way_at(0), of, share.data());
     cut_rows::leave(share.data(), line_to(0), of, values.data());
     cut_rows::leave_alone(way_at(0), line_to(0), of, alone.data());
@@ -63,7 +66,7 @@ TEST(cut_rows, are_the_formulas_of_single_numbers) {
       };
       ASSERT_EQ(plain[j], slope(0));
       ASSERT_EQ(plain[n + j], slope(1));
-      scalar::cut_demand<double> sums{0.0, 0.0, 0.0};
+      scalar::cut_demand<double> sums{0.0, 0.0, 0.0, 0.0};
       for (std::size_t face = 0; face < 2; ++face) {
         const double first = slope(0) * to[face][0], second = slope(1) * to[face][1];
         sums.add(step * outward(face), first + second, std::abs(first) + std::abs(second));
@@ -71,6 +74,9 @@ TEST(cut_rows, are_the_formulas_of_single_numbers) {
       const double factor = sums.factor(u.at[0][j], kept[j]);
       ASSERT_EQ(slopes.all[j], factor * slope(0));
       ASSERT_EQ(slopes.all[n + j], factor * slope(1));
+      const double steady_factor = sums.steady_factor(u.at[0][j]);
+      ASSERT_EQ(steady[j], steady_factor * slope(0));
+      ASSERT_EQ(steady[n + j], steady_factor * slope(1));
       ASSERT_EQ(share[j], outward(0));
       const double leaving = value(u.at[0][j], slopes.all[j], slopes.all[n + j], to[0]),
                    entering = value(u.at[1][j], beyond.all[j], beyond.all[n + j], other.vector);

@@ -118,8 +118,6 @@ TEST(past_bodies, gases_of_all_densities_and_models_settle) {
     flows.back().of.wall_temperature = 1.05;  // ten velocities have no target for larger stresses
   }
   flows.push_back(flows[2]);
-  flows.back().of.limited = true;
-  flows.push_back(flows[2]);
   flows.back().of.accommodation = 0.5;
   flows.push_back({{.dimensions = 3,
                     .cells = 8,
@@ -129,12 +127,19 @@ TEST(past_bodies, gases_of_all_densities_and_models_settle) {
                     .limited = false,
                     .wall_temperature = 1.2},
                    most_iterations});
+  // With the limiter they took 19 to 71 iterations.
+  const std::size_t unlimited = flows.size();
+  for (std::size_t k = 0; k < unlimited; ++k) {
+    flows.push_back(flows[k]);
+    flows.back().of.limited = true;
+  }
   for (const auto& [of, most] : flows) {
     const gas_past_bodies gas = make(of);
     const double mass = integrals(gas, gas.uniform())[0];
     const auto [f, last] = solve(gas);
     EXPECT_LE(last.number, most) << of.epsilon << " " << of.model;
     // Fixed points satisfy T + Q = 0, independently of J and the sweeps.
+    gas.problem->limit_for_steady_states();
     field r = gas.step(f, 0.0, 1.0);
     const apsis::target<field, double> to{&r, 0.0, 1.0, false};
     gas.problem->add_collision(0.0, f, {&to, 1});

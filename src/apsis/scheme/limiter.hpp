@@ -56,6 +56,10 @@ inline double low_order_edge(double u) {
 /// Least CFL number κ for which fluxes are limited. At smaller ones, from slow velocities or short steps,
 /// fluxes hardly need a limiter.
 inline constexpr double least_cfl_number = 1e-3;
+/// CFL number κ for which fluxes are limited in steady states, at every velocity. No step then determines κ.
+/// The flux of a cell then depends at most 1/κ times as much on its value as in the first-order scheme.
+/// Sweeps of the steady iteration use the latter, and may not converge for small κ.
+inline constexpr double steady_cfl_number = 0.5;
 
 /// Limits fluxes. The flux function of point values may be negative where the solution touches zero: near a
 /// minimum it is lower by Δx² u''/24. Edge values must therefore not be cut off at zero. Instead, the fluxes

@@ -84,7 +84,7 @@ void fit(const double* u, std::span<const neighbour> around, const extent& of, c
 /// Returns the factor of the limiter for some components.
 template <std::size_t Directions, class N>
 HWY_INLINE N factor_at(N here, const std::array<N, Directions>& slopes, const line_bounds& within, int k) {
-  cut_demand<N> sums{N(0.0), N(0.0), N(0.0)};
+  cut_demand<N> sums{N(0.0), N(0.0), N(0.0), N(0.0)};
   for (const outlet& one : within.outlets) {
     N sum(0.0), size(0.0);
     for (std::size_t d = 0; d < Directions; ++d) {
@@ -94,7 +94,7 @@ HWY_INLINE N factor_at(N here, const std::array<N, Directions>& slopes, const li
     }
     sums.add(N(within.step) * leaving_share<N>(one.way, static_cast<int>(Directions), k), sum, size);
   }
-  return sums.factor(here, N::load(within.kept + k));
+  return within.kept == nullptr ? sums.steady_factor(here) : sums.factor(here, N::load(within.kept + k));
 }
 
 void fit_within(const double* u, std::span<const neighbour> around, const line_bounds& within,

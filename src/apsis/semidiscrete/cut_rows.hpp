@@ -56,7 +56,9 @@ struct outlet {
 struct line_bounds {
   std::span<const outlet> outlets;  ///< all faces and walls
   double step;                      ///< length of a step
-  const double* kept;               ///< fraction of u that transport may take in a step, of every component
+  /// Fraction of u that transport may take in a step, of every component. Null for a steady state: the factor
+  /// is then that of cut_demand::steady_factor(), which does not depend on the step.
+  const double* kept;
 };
 
 /// Fits with a limiter: slopes[d] ← ϑ Σ weight[d] (row − u).

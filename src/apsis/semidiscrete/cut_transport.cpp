@@ -21,6 +21,7 @@ constexpr int groups_of_task = 4;
 void cut_transport::limit_for_steps(double step, aligned_vector<double> kept) {
   step_ = step;
   kept_ = std::move(kept);
+  steady_ = false;
 }
 
 cut_rows::gradient cut_transport::slopes_of(int number) {
@@ -62,7 +63,7 @@ void cut_transport::fit_group(const field& u, int number, scratch& own) {
   if (!limited_) return cut_rows::fit(here, own.around, size(), slopes);
   own.outlets.clear();
   for (const way& one : of.ways) own.outlets.push_back({out_by(one), one.from_centre});
-  cut_rows::fit(here, own.around, {own.outlets, step_, kept_.data()}, size(), slopes);
+  cut_rows::fit(here, own.around, {own.outlets, step_, steady_ ? nullptr : kept_.data()}, size(), slopes);
 }
 
 void cut_transport::complete(int surface, int place, const field& u,

@@ -50,6 +50,8 @@ class cut_transport {
   /// Prepares for steps of at most this length. In such a step transport may take the fraction `kept` of a
   /// value of each component.
   void limit_for_steps(double step, aligned_vector<double> kept);
+  /// Limits for a steady state instead (cut_rows::line_bounds).
+  void limit_for_steady_states() { steady_ = true; }
   /// Computes the lines from u. Collective.
   void prepare(const field& u);
   /// Adds the flux that enters a whole cell from a cut cell, at an end of a segment. Concurrent calls must
@@ -116,7 +118,7 @@ class cut_transport {
   std::shared_ptr<domain> space_;
   face_fluxes& faces_;
   local_groups here_;
-  bool flat_, limited_;
+  bool flat_, limited_, steady_ = false;
   int ghosts_;
   double step_ = 0.0;
   aligned_vector<double> kept_;

@@ -120,6 +120,12 @@ void upwind_transport::limit_for_steps(double share) {
   if (force_) force_->limit_for_steps(share);
 }
 
+void upwind_transport::limit_for_steady_states() {
+  limit_for_steps(1.0);
+  line_speeds::limit_for_steady_states(speeds_);
+  if (cut_) cut_->limit_for_steady_states();
+}
+
 double upwind_transport::growth_of_source(double t, const field& u) const {
   return source_depends_on_state() ? source_->growth(t, u) : 0.0;
 }

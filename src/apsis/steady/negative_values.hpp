@@ -15,10 +15,11 @@ struct removed_values {
   double lowest = 0.0;     ///< the smallest of them
 };
 
-/// Makes all rows of `cells` nonnegative. Their moments ω = ℛf change only by rounding. A row of a gas
-/// becomes max(f, 0)(1 + α + β·c + γ|c|²) with the ω of f. If this is negative too, and for other models, the
-/// row becomes f + θ(E(ω) − f) with the smallest θ ∈ [0, 1]. Throws numerical_error with the number of the
-/// cell in the whole mesh of `space` if ω has no equilibrium. Dimensionless.
+/// Makes all rows of `cells` nonnegative. Their moments ω = ℛf change only by rounding. A row becomes
+/// max(f, 0)(1 + Σ_i a_i W_i) with the ω of f. W_i are the functions of the moments: ω_i = Σ_k W_ik f_k. For
+/// a gas the factor is 1 + α + β·c + γ|c|². If it is negative somewhere, the row becomes f + θ(E(ω) − f) with
+/// the smallest θ ∈ [0, 1]. Throws numerical_error with the number of the cell in the whole mesh of `space`
+/// if ω has no equilibrium. Dimensionless.
 removed_values remove_negative_values(const relaxation_model& equation, const domain& space,
                                       const std::vector<int>& cells, field& f);
 

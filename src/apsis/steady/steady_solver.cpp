@@ -62,6 +62,18 @@ std::vector<double> checked_epsilon(const problem_builder& space) {
   return found;
 }
 
+/// Limits a problem for steady states during its lifetime.
+class steady_limits {
+ public:
+  explicit steady_limits(semidiscrete_problem& of) : of_(of) { of_.limit_for_steady_states(); }
+  ~steady_limits() { of_.limit_for_steps(1.0); }
+  steady_limits(const steady_limits&) = delete;
+  steady_limits& operator=(const steady_limits&) = delete;
+
+ private:
+  semidiscrete_problem& of_;
+};
+
 }  // namespace
 
 bool is_nonnegative(const relaxation_model& equation, const problem_builder& space) {
@@ -77,6 +89,7 @@ struct steady_solver::impl {
         processes(space.processes()),
         options(given),
         epsilon(checked_epsilon(space)),
+        limits(problem),
         links(builder.space()),
         cut(builder.space()),
         cells(equation, builder, links),
@@ -187,6 +200,7 @@ struct steady_solver::impl {
   communicator& processes;
   steady_options options;
   std::vector<double> epsilon;
+  steady_limits limits;
   cell_links links;
   cut_links cut;
   cell_measures cells;

@@ -82,6 +82,13 @@ void device_transport::limit_for_steps(double share) {
   if (force_) force_->on_host().limit_for_steps(share);
 }
 
+void device_transport::limit_for_steady_states() {
+  limit_for_steps(1.0);
+  host_.limit_for_steady_states();
+  line_speeds::limit_for_steady_states(speeds_);
+  for (std::size_t k = 0; k < along_.size(); ++k) along_[k].set_speeds(speeds_[k]);
+}
+
 bool device_transport::add_transport(double t, const field& u, targets_view targets, const cells_job&) const {
   if (std::all_of(targets.begin(), targets.end(), [](const auto& to) { return to.beta == 0.0; })) {
     for (const auto& to : targets) {

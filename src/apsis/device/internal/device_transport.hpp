@@ -50,6 +50,7 @@ class device_transport final : public transport {
 
   double forward_euler_step() const override { return host_.forward_euler_step(); }
   void limit_for_steps(double share) override;
+  void limit_for_steady_states() override;
   double growth_of_source(double, const field&) const override { return 0.0; }
   bool source_depends_on_state() const override { return false; }
 

@@ -15,12 +15,17 @@ namespace apsis::APSIS_NUMBERS {
 /// Largest ratio of the terms of a correction to the value.
 inline constexpr double largest_terms = 50.0;
 
+/// Least leaving value of a steady state, as a part of the value of the cell. If a leaving value were 0 and
+/// the value of the cell grew, the outflow would not grow with it, and the steady iteration would not
+/// converge.
+inline constexpr double least_leaving_part = 0.25;
+
 /// Measures of the corrections of a cut cell. `size` is the largest sum of the sizes of their terms. The
-/// others are sums over the faces and walls through which a component leaves: its outflow in a step, and the
-/// corrections that increase the outflow.
+/// others belong to the faces and walls through which a component leaves: its outflow in a step, the sum of
+/// the corrections that increase the outflow, and the largest one that decreases it.
 template <class N>
 struct cut_demand {
-  N size, outflow, increase;
+  N size, outflow, increase, decrease;
 
   /// Adds a face or wall through which the fraction `leaving` > 0 of the cell leaves in a step. Adds nothing
   /// if the component enters.
@@ -30,20 +35,37 @@ struct cut_demand {
     size = maximum(size, size_of_terms);
     outflow = outflow + share;
     increase = fma(share, maximum(counted, N(0.0)), increase);
+    decrease = maximum(decrease, N(0.0) - counted);
   }
 
   /// Returns the factor ϑ ∈ [0, 1] of the corrections with which at most the value u leaves in a step.
   /// Leaving values are at least 0 (nonnegative_leaving_value()). `kept` is the fraction of u that transport
   /// may take. Returns 0 for NaN and for negative u.
   APSIS_FORMULA N factor(N u, N kept) const {
+    const N theta = factor_within(u, kept - outflow);
+    return select(theta > N(0.0), theta, N(0.0));
+  }
+
+  /// Returns the factor ϑ ∈ [0, 1] for a steady state. The outflow is at most 1/steady_cfl_number times that
+  /// of the value u, and leaving values are at least least_leaving_part u. Returns 0 for NaN and for negative
+  /// u.
+  APSIS_FORMULA N steady_factor(N u) const {
+    const N theta = factor_within(u, N(1.0 / apsis::limiter::steady_cfl_number - 1.0) * outflow);
+    const N most = N(1.0 - least_leaving_part) * u, demanded = theta * decrease;
+    const N lower = select(demanded > most, theta * (most / demanded), theta);
+    return select(lower > N(0.0), lower, N(0.0));
+  }
+
+ private:
+  /// Returns the largest factor with which the corrections increase the outflow by at most `more` u.
+  APSIS_FORMULA N factor_within(N u, N more) const {
     const N margin = N(1.0 - apsis::limiter::relative_margin);
     // Terms that cancel leave rounding errors proportional to their size. These must stay below the margin.
     const N most = N(largest_terms) * u;
     const N by_size = select(size > most, most / size, N(1.0));
-    const N allowed = maximum((kept - outflow) * u * margin - N(apsis::limiter::absolute_margin), N(0.0));
+    const N allowed = maximum(more * u * margin - N(apsis::limiter::absolute_margin), N(0.0));
     const N demanded = increase * by_size;
-    const N theta = select(demanded > allowed, by_size * (allowed / demanded), by_size);
-    return select(theta > N(0.0), theta, N(0.0));
+    return select(demanded > allowed, by_size * (allowed / demanded), by_size);
   }
 };
 

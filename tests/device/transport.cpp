@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <span>
 
 #include <gmock/gmock.h>
@@ -105,6 +106,40 @@ TEST(device_transport, has_the_bits_of_the_host_with_every_boundary_in_one_to_th
   }
 }
 
+TEST(device_transport, has_the_bits_of_the_host_with_sources_of_every_kind) {
+  struct kind {
+    const char* label;
+    bool in_time, of_state;
+  };
+  for (const kind& one :
+       {kind{"steady", false, false}, {"in time", true, false}, {"of the state", false, true}})
+    for (const auto& on : tested_devices()) {
+      const device_case of = flow(2, apsis::find_boundary("diffuse"), true);
+      apsis::source_rate rate;
+      rate.steady = !one.in_time && !one.of_state;
+      rate.value = [one](double t, const apsis::position& x, std::span<const double> u,
+                         std::span<double> row) {
+        const double size = (1.0 + x[0]) * (one.in_time ? 1.0 + std::sin(9.0 * t) : 1.0);
+        for (std::size_t k = 0; k < row.size(); ++k)
+          row[k] = one.of_state ? 0.1 * u[k] * u[k] : size / (1.0 + static_cast<double>(k));
+      };
+      if (one.of_state)
+        rate.growth = [](double, const apsis::position&, std::span<const double> u) { return 0.2 * u[0]; };
+      const apsis::limited_reconstruction edges{apsis::find_reconstruction("weno5-z").make(), limits::fluxes};
+      apsis::upwind_transport host(*of.equation, of.space(), edges, apsis::point_values());
+      apsis::device_transport there(*on, *of.equation, of.space(), edges, apsis::point_values(),
+                                    apsis::kernel_of_reconstruction("weno5-z"));
+      host.set_source(rate);
+      there.set_source(rate);
+      const field u = varied_rows(of.mesh, *of.equation, true);
+      EXPECT_EQ(differences_of_transport(of.mesh, u, host, there, *on), 0) << one.label;
+      field sent(of.mesh.size(), u.components(), on->memory());
+      sent.copy_rows(u);
+      EXPECT_EQ(host.source_depends_on_state(), there.source_depends_on_state());
+      EXPECT_EQ(host.growth_of_source(0.3, u), there.growth_of_source(0.3, sent)) << one.label;
+    }
+}
+
 TEST(device_transport, combines_states_like_the_host) {
   const device_case of = flow(2, apsis::find_boundary("diffuse"), true);
   const apsis::limited_reconstruction edges{apsis::find_reconstruction("upwind5").make(), limits::nothing};
@@ -144,8 +179,8 @@ TEST(device_transport, refuses_what_it_does_not_have) {
   EXPECT_THAT([&] { make(limits::edges); },
               testing::ThrowsMessage<apsis::input_error>(testing::HasSubstr("edge values are limited")));
   auto t = make(limits::nothing);
-  EXPECT_THAT([&] { t.set_source({}); },
-              testing::ThrowsMessage<apsis::input_error>(testing::HasSubstr("a source is not possible")));
+  EXPECT_THAT([&] { t.set_rotation(1); },
+              testing::ThrowsMessage<apsis::input_error>(testing::HasSubstr("axisymmetric flow is not")));
 }
 
 }  // namespace device_transport_test

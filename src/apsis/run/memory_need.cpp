@@ -21,9 +21,9 @@ namespace {
 constexpr int fewest_points = 4;  ///< smallest number suggested for velocity.points
 
 /// Returns the number of fields of steady_iterations: the state, the first state, the residual, a temporary
-/// field, and the images of the mixture.
+/// field, the images of the mixture, and a source.
 int buffers_of_iterations(const case_config& config) {
-  return 4 + config.steady_state.images;
+  return 4 + config.steady_state.images + (config.source_term.empty() ? 0 : 1);
 }
 
 int buffers_of(const run_setup& setup) {
@@ -36,7 +36,8 @@ int buffers_of(const run_setup& setup) {
                                : apsis::buffers_of(setup.integrator()) + of_doubling;
   const int compared = setup.config().time.steady ? 1 : 0;
   const int changes = setup.builder().collisions().reach > 0 ? 1 : 0;
-  return compared + changes + of_step;
+  const int source = setup.config().source_term.empty() ? 0 : 1;
+  return compared + changes + source + of_step;
 }
 
 /// Returns the number of rows that a problem stores at the surfaces of its mesh: ghost rows, values of both

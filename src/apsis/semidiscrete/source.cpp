@@ -73,8 +73,14 @@ double source::growth(double t, const field& u) const {
   return largest;
 }
 
+bool source::update(double t, const field& u) {
+  if (known_) return false;
+  compute(t, u);
+  return true;
+}
+
 void source::add(double t, const field& u, std::span<const target<field, double>> targets) {
-  if (!known_) compute(t, u);
+  update(t, u);
   constexpr int block = 64;
   parallel_blocks(values_.cells(), block, [&](int begin, int end) {
     const profile::section timed(kernel::forces, static_cast<double>(end - begin) * u.stride(),

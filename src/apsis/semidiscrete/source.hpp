@@ -25,6 +25,11 @@ class source {
   /// acc ← acc + β S(t, u) for every target. Throws numerical_error if S is not finite, or negative although
   /// the unknowns of the model are not.
   void add(double t, const field& u, std::span<const target<field, double>> targets);
+  /// Computes values(), unless S does not change in time and is known. Returns true if they are new. Throws
+  /// the errors of add(). Collective.
+  bool update(double t, const field& u);
+  /// Returns S of the last update().
+  const field& values() const { return values_; }
   /// Returns true if S depends on u.
   bool depends_on_state() const { return static_cast<bool>(rate_.growth); }
   /// Returns the largest source_rate::growth of the cells of this process.

@@ -187,6 +187,18 @@ TEST(device_runs, in_a_plane_and_in_space_have_the_bits_of_the_host) {
   for (const std::string& text : flows) expect_same(run(text, true), run(text, false), text);
 }
 
+TEST(device_runs, with_sources_have_the_bits_of_the_host) {
+  const std::string time = "method = \"md-imex-8-3-mixed\"\nsafety = 1\nend = 0.03\n";
+  // One source is steady, and the other changes in time.
+  for (const std::string rho : {"0.3", "\"x < 1 ? 0.3*(1 + sin(40*t)) : 0\""}) {
+    const std::string source = "[source]\nrho = " + rho + "\nu = 0.1\nT = 1.2\n";
+    for (const std::string& text :
+         {small_gas(true, time) + source,
+          small_gas(false, time) + source + "[force]\nacceleration = \"0.2*cos(3*x + 40*t)\"\n"})
+      expect_same(run(text, true), run(text, false), text);
+  }
+}
+
 TEST(device_runs, are_continued_on_the_host_and_on_a_device) {
   const std::string text = small_gas(true, "method = \"imex-bdf-3\"\ndt = 0.002\nend = 0.02\n");
   const outcome whole = run(text, false);
@@ -210,7 +222,6 @@ TEST(device_runs, are_refused_before_the_first_step_where_a_kernel_is_missing) {
   };
   refused(changed("formulation = \"finite-difference\"", "formulation = \"finite-volume\""), "formulation");
   refused(gas + "[steady]\ntolerance = 1e-6\n", "a table [steady]");
-  refused(gas + "[source]\nrho = 0.1\nT = 1\n", "a source is not possible");
   refused(
       "[model]\nname = \"broadwell\"\nepsilon = 1\n[space]\ncells = 20\nformulation = "
       "\"finite-difference\"\n[time]\n" +

@@ -2,10 +2,8 @@
 
 #include <apsis/core/errors.hpp>
 #include <apsis/core/first_error.hpp>
-#include <apsis/device/internal/gas_cells.hpp>
+#include <apsis/device/internal/combined_rows.hpp>
 #include <apsis/device/internal/kernel_table.hpp>
-#include <apsis/device/internal/kernels/combine.hpp>
-#include <apsis/device/internal/row_launch.hpp>
 #include <apsis/mesh/grid.hpp>
 
 #include <algorithm>
@@ -15,25 +13,6 @@ namespace apsis {
 namespace {
 
 using targets_view = std::span<const target<field, double>>;
-
-/// acc ← (fresh ? 0 : acc) + Σ α u in the cells of the gas.
-void add_terms(device& on, const grid& mesh, std::span<const linear_term<field, double>> terms, bool fresh,
-               field& sum) {
-  const std::vector<cell_range> cells = gas_cells(mesh);
-  constexpr auto most = static_cast<std::size_t>(kernels::combine::most);
-  for (std::size_t first = 0; first < terms.size(); first += most)
-    for (const auto& [begin, end] : cells) {
-      const auto some = terms.subspan(first, std::min(most, terms.size() - first));
-      const long numbers = static_cast<long>(end - begin) * sum.stride();
-      kernels::combine::arguments of{
-          sum.row(begin), numbers, static_cast<int>(some.size()), fresh && first == 0 ? 1 : 0, {}, {}};
-      for (std::size_t k = 0; k < some.size(); ++k) {
-        of.alpha[k] = some[k].alpha;
-        of.u[k] = some[k].u->row(begin);
-      }
-      on.launch<kernels::combine>(launch_for(static_cast<std::size_t>(numbers)), of);
-    }
-}
 
 }  // namespace
 
@@ -62,6 +41,7 @@ device_transport::device_transport(device& on, const model& equation, std::share
       equation_(equation),
       space_(std::move(space)),
       edges_(std::move(edges)),
+      unknown_(unknown),
       kernel_(std::move(kernel)),
       host_(equation, space_, edges_, unknown),
       surfaces_(on, equation, space_, edges_.ghosts()),
@@ -93,23 +73,33 @@ bool device_transport::add_transport(double t, const field& u, targets_view targ
   if (std::all_of(targets.begin(), targets.end(), [](const auto& to) { return to.beta == 0.0; })) {
     for (const auto& to : targets) {
       const linear_term<field, double> term{to.alpha, &u};
-      add_terms(device_, space_->mesh(), {&term, 1}, to.fresh, *to.acc);
+      combine_rows(device_, space_->mesh(), {&term, 1}, to.fresh, *to.acc);
     }
     return false;
   }
   first_error failure;
   failure.run([&] { sweep_all(t, u, targets); });
-  if (force_) add_force(t, u, targets, failure);
+  if (force_ || source_) add_inside(t, u, targets, failure);
   failure.rethrow();
   return false;
 }
 
-/// Adds the force. This is collective: the sums are over all processes, even if this one has failed.
-void device_transport::add_force(double t, const field& u, targets_view targets, first_error& failure) const {
-  failure.run([&] { force_->add(t, u, targets); });
-  std::vector<double> given = force_->on_host().given();
-  const auto& losses = force_->on_host().losses();
-  given.insert(given.end(), losses.begin(), losses.end());
+/// Adds force and source. This is collective: the sums are over all processes, even if this one has failed.
+void device_transport::add_inside(double t, const field& u, targets_view targets,
+                                  first_error& failure) const {
+  std::vector<double> given;
+  const auto append = [&given](const std::vector<double>& more) {
+    given.insert(given.end(), more.begin(), more.end());
+  };
+  if (force_) {
+    failure.run([&] { force_->add(t, u, targets); });
+    append(force_->on_host().given());
+  }
+  if (source_) {
+    failure.run([&] { source_->add(t, u, targets); });
+    append(source_->on_host().given());
+  }
+  if (force_) append(force_->on_host().losses());
   // Only the root accounts for the amount that all processes have received.
   if (!space_->processes().is_root()) std::fill(given.begin(), given.end(), 0.0);
   surfaces_.set_inside(given);
@@ -144,9 +134,9 @@ void device_transport::sweep(int direction, const field& u, targets_view targets
 
 void device_transport::combine(std::span<const linear_term<field, double>> terms, field& sum) const {
   if (terms.front().u == &sum && terms.front().alpha == 1.0)
-    add_terms(device_, space_->mesh(), terms.subspan(1), false, sum);
+    combine_rows(device_, space_->mesh(), terms.subspan(1), false, sum);
   else
-    add_terms(device_, space_->mesh(), terms, true, sum);
+    combine_rows(device_, space_->mesh(), terms, true, sum);
 }
 
 std::vector<double> device_transport::observe_surfaces(double t, const field& u) const {
@@ -173,8 +163,8 @@ void device_transport::set_rotation(int) {
   throw input_error(
       "axisymmetric flow is not possible on a device (its kernel is missing); run the case on the host");
 }
-void device_transport::set_source(source_rate) {
-  throw input_error("a source is not possible on a device (its kernel is missing); run the case on the host");
+void device_transport::set_source(source_rate rate) {
+  source_ = std::make_unique<device_source>(device_, equation_, space_, std::move(rate), unknown_);
 }
 
 }  // namespace apsis

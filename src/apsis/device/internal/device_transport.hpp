@@ -3,6 +3,7 @@
 #include <apsis/boundary/domain.hpp>
 #include <apsis/device/device.hpp>
 #include <apsis/device/internal/device_force.hpp>
+#include <apsis/device/internal/device_source.hpp>
 #include <apsis/device/internal/surface_rows.hpp>
 #include <apsis/device/internal/swept_segments.hpp>
 #include <apsis/semidiscrete/upwind_transport.hpp>
@@ -45,18 +46,19 @@ class device_transport final : public transport {
   void set_force(acceleration of) override;
   /// Throws input_error, because the kernel for rotations is missing.
   void set_rotation(int radial) override;
-  /// Throws input_error, because the kernel for sources is missing.
   void set_source(source_rate rate) override;
 
   double forward_euler_step() const override { return host_.forward_euler_step(); }
   void limit_for_steps(double share) override;
   void limit_for_steady_states() override;
-  double growth_of_source(double, const field&) const override { return 0.0; }
-  bool source_depends_on_state() const override { return false; }
+  double growth_of_source(double t, const field& u) const override {
+    return source_depends_on_state() ? source_->growth(t, u) : 0.0;
+  }
+  bool source_depends_on_state() const override { return source_ && source_->on_host().depends_on_state(); }
 
  private:
-  void add_force(double t, const field& u, std::span<const target<field, double>> targets,
-                 first_error& failure) const;
+  void add_inside(double t, const field& u, std::span<const target<field, double>> targets,
+                  first_error& failure) const;
   void sweep_all(double t, const field& u, std::span<const target<field, double>> targets) const;
   void sweep(int direction, const field& u, std::span<const target<field, double>> targets) const;
 
@@ -64,12 +66,14 @@ class device_transport final : public transport {
   const model& equation_;
   std::shared_ptr<domain> space_;
   limited_reconstruction edges_;
+  const cell_unknown& unknown_;
   std::string kernel_;
   upwind_transport host_;  ///< for step sizes
   mutable surface_rows surfaces_;
   std::vector<swept_segments> along_;  ///< [direction]
   std::vector<line_speeds> speeds_;
   std::unique_ptr<device_force> force_;
+  std::unique_ptr<device_source> source_;
   double share_ = 1.0;  ///< argument of limit_for_steps()
 };
 

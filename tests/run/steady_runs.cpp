@@ -345,8 +345,8 @@ std::vector<strong_flow> all_strong_flows() {
                      {std::string("parameters.delta=") + delta, std::string("parameters.U=") + U,
                       std::string("velocity.max=") + max, std::string("velocity.points=") + points}});
   all.push_back({"gas/fourier",
-                 {"parameters.delta=10", "model.tails=nonnegative", "boundary.left.T=100",
-                  "boundary.right.T=1", "velocity.max=40", "velocity.points=96"}});
+                 {"parameters.delta=10", "model.name=es-bgk", "boundary.left.T=100", "boundary.right.T=1",
+                  "velocity.max=40", "velocity.points=96"}});
   for (const char* knudsen : {"5", "0.5", "0.05"})
     all.push_back(
         {"gas/cylinder",

@@ -41,8 +41,8 @@ TEST(cut_rows, are_the_formulas_of_single_numbers) {
     const auto kept = drawn(n, random, [](random_source& r) { return r.uniform(0.8, 1.0); });
     const std::array<cut_rows::outlet, 2> outlets = {{{way_at(0), to[0]}, {way_at(1), to[1]}}};
     cut_rows::fit(u.at[0], neighbours, of, {plain.data(), plain.data() + n, nullptr});
-    cut_rows::fit(u.at[0], neighbours, {outlets, step, kept.data()}, of, line_to(0).slopes);
-    cut_rows::fit(u.at[0], neighbours, {outlets, step, nullptr}, of,
+    cut_rows::fit(u.at[0], neighbours, {outlets, step, kept.data(), false}, of, line_to(0).slopes);
+    cut_rows::fit(u.at[0], neighbours, {outlets, step, kept.data(), true}, of,
                   {steady.data(), steady.data() + n, nullptr});
     cut_rows::project(way_at(0), of, share.data());
     cut_rows::leave(share.data(), line_to(0), of, values.data());
@@ -74,7 +74,7 @@ TEST(cut_rows, are_the_formulas_of_single_numbers) {
       const double factor = sums.factor(u.at[0][j], kept[j]);
       ASSERT_EQ(slopes.all[j], factor * slope(0));
       ASSERT_EQ(slopes.all[n + j], factor * slope(1));
-      const double steady_factor = sums.steady_factor(u.at[0][j]);
+      const double steady_factor = sums.steady_factor(u.at[0][j], kept[j]);
       ASSERT_EQ(steady[j], steady_factor * slope(0));
       ASSERT_EQ(steady[n + j], steady_factor * slope(1));
       ASSERT_EQ(share[j], outward(0));

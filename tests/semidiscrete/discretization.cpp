@@ -196,7 +196,7 @@ class plain_upwind final : public apsis::transport {
     throw apsis::input_error("a source (no such term); leave it out");
   }
   void limit_for_steps(double) override {}  // it has no limiter
-  void limit_for_steady_states() override {}
+  void limit_for_steady_states(double) override {}
   double forward_euler_step() const override {
     double fastest = 0.0;
     for (const double v : model_.speeds(0)) fastest = std::max(fastest, std::abs(v));

@@ -56,10 +56,14 @@ inline double low_order_edge(double u) {
 /// Least CFL number κ for which fluxes are limited. At smaller ones, from slow velocities or short steps,
 /// fluxes hardly need a limiter.
 inline constexpr double least_cfl_number = 1e-3;
-/// CFL number κ for which fluxes are limited in steady states, at every velocity. No step then determines κ.
-/// The flux of a cell then depends at most 1/κ times as much on its value as in the first-order scheme.
-/// Sweeps of the steady iteration use the latter, and may not converge for small κ.
-inline constexpr double steady_cfl_number = 0.5;
+/// Returns 1/κ of the limiter of steady states, where no step determines κ. `leaving` is the rate Λ at which
+/// a velocity leaves a cell, and `collisions` the slowest rate of collisions σ at the start. The change of a
+/// cell may depend (Λ/κ + σ)/(Λ + σ) times as much on its value as in a sweep of the steady iteration, which
+/// is of first order. This ratio is at most 2 even if collisions become three times slower on the way.
+inline double steady_inverse_cfl(double leaving, double collisions) {
+  const double found = 2.0 + collisions / (3.0 * leaving);
+  return found < 1.0 / least_cfl_number ? found : 1.0 / least_cfl_number;
+}
 
 /// Limits fluxes. The flux function of point values may be negative where the solution touches zero: near a
 /// minimum it is lower by Δx² u''/24. Edge values must therefore not be cut off at zero. Instead, the fluxes

@@ -58,8 +58,10 @@ void line_speeds::limit_for_steps(std::vector<line_speeds>& speeds, double share
   for (auto& line : speeds) line.inverse_cfl = rates;
 }
 
-void line_speeds::limit_for_steady_states(std::vector<line_speeds>& speeds) {
-  for (auto& line : speeds) line.inverse_cfl.assign(line.per_cell.size(), 1.0 / limiter::steady_cfl_number);
+void line_speeds::limit_for_steady_states(std::vector<line_speeds>& speeds, double collisions) {
+  aligned_vector<double> rates = line_speeds::rates(speeds);
+  for (double& rate : rates) rate = limiter::steady_inverse_cfl(rate, collisions);
+  for (auto& line : speeds) line.inverse_cfl = rates;
 }
 
 void block_sweep::reserve(const context& of, int cells, int cells_of_box, int width, std::size_t targets) {

@@ -29,8 +29,8 @@ struct line_speeds {
   /// a), at least limiter::least_cfl_number.
   static void limit_for_steps(std::vector<line_speeds>& speeds, double share, double rate_of_force,
                               double kappa);
-  /// Sets C = limiter::steady_cfl_number of every component.
-  static void limit_for_steady_states(std::vector<line_speeds>& speeds);
+  /// Sets 1/C = limiter::steady_inverse_cfl() of each component.
+  static void limit_for_steady_states(std::vector<line_speeds>& speeds, double collisions);
 };
 
 /// Computes T along one direction after the other, for some cells and some of their components. The rows of

@@ -94,7 +94,8 @@ HWY_INLINE N factor_at(N here, const std::array<N, Directions>& slopes, const li
     }
     sums.add(N(within.step) * leaving_share<N>(one.way, static_cast<int>(Directions), k), sum, size);
   }
-  return within.kept == nullptr ? sums.steady_factor(here) : sums.factor(here, N::load(within.kept + k));
+  const N kept = N::load(within.kept + k);
+  return within.steady ? sums.steady_factor(here, kept) : sums.factor(here, kept);
 }
 
 void fit_within(const double* u, std::span<const neighbour> around, const line_bounds& within,

@@ -56,9 +56,10 @@ struct outlet {
 struct line_bounds {
   std::span<const outlet> outlets;  ///< all faces and walls
   double step;                      ///< length of a step
-  /// Fraction of u that transport may take in a step, of every component. Null for a steady state: the factor
-  /// is then that of cut_demand::steady_factor(), which does not depend on the step.
+  /// Fraction of u that transport may take in a step, of every component. For a steady state `more` of
+  /// cut_demand::steady_factor().
   const double* kept;
+  bool steady;  ///< whether to limit for a steady state
 };
 
 /// Fits with a limiter: slopes[d] ← ϑ Σ weight[d] (row − u).

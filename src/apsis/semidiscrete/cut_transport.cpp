@@ -24,6 +24,11 @@ void cut_transport::limit_for_steps(double step, aligned_vector<double> kept) {
   steady_ = false;
 }
 
+void cut_transport::limit_for_steady_states(aligned_vector<double> more) {
+  kept_ = std::move(more);
+  steady_ = true;
+}
+
 cut_rows::gradient cut_transport::slopes_of(int number) {
   cut_rows::gradient slopes{};
   for (int d = 0; d < directions(); ++d) slopes[at(d)] = slopes_.row(number * directions() + d);
@@ -63,7 +68,7 @@ void cut_transport::fit_group(const field& u, int number, scratch& own) {
   if (!limited_) return cut_rows::fit(here, own.around, size(), slopes);
   own.outlets.clear();
   for (const way& one : of.ways) own.outlets.push_back({out_by(one), one.from_centre});
-  cut_rows::fit(here, own.around, {own.outlets, step_, steady_ ? nullptr : kept_.data()}, size(), slopes);
+  cut_rows::fit(here, own.around, {own.outlets, step_, kept_.data(), steady_}, size(), slopes);
 }
 
 void cut_transport::complete(int surface, int place, const field& u,

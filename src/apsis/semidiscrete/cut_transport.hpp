@@ -50,8 +50,8 @@ class cut_transport {
   /// Prepares for steps of at most this length. In such a step transport may take the fraction `kept` of a
   /// value of each component.
   void limit_for_steps(double step, aligned_vector<double> kept);
-  /// Limits for a steady state instead (cut_rows::line_bounds).
-  void limit_for_steady_states() { steady_ = true; }
+  /// Limits for a steady state instead. `more` is 1/κ − 1 of each component (limiter::steady_inverse_cfl()).
+  void limit_for_steady_states(aligned_vector<double> more);
   /// Computes the lines from u. Collective.
   void prepare(const field& u);
   /// Adds the flux that enters a whole cell from a cut cell, at an end of a segment. Concurrent calls must
@@ -121,7 +121,7 @@ class cut_transport {
   bool flat_, limited_, steady_ = false;
   int ghosts_;
   double step_ = 0.0;
-  aligned_vector<double> kept_;
+  aligned_vector<double> kept_;  ///< 1/κ − 1 for steady states
   std::array<const double*, 3> speeds_ = {};
   std::array<std::vector<double>, 6> inward_;               ///< speed away from each face of a cell
   std::vector<std::shared_ptr<const oblique_wall>> walls_;  ///< walls of boxes and bodies

@@ -136,7 +136,7 @@ class semidiscrete_problem {
   /// Prepares for steps Δt ≤ share r Δt_FE, share ≤ 1, as transport::limit_for_steps() does.
   void limit_for_steps(double share) { transport_->limit_for_steps(share); }
   /// Prepares for a steady state instead, as transport::limit_for_steady_states() does.
-  void limit_for_steady_states() { transport_->limit_for_steady_states(); }
+  void limit_for_steady_states(double collisions) { transport_->limit_for_steady_states(collisions); }
   /// Required by `problem_with_exact_collision`.
   bool collides_exactly() const { return stages_ == stage_solution::exact; }
   /// Returns true if the model has space or a source.

@@ -71,9 +71,9 @@ class transport {
   /// limiter then changes less, and preserves the same properties.
   virtual void limit_for_steps(double share) = 0;
   /// Limits for a steady state instead, until the next call of limit_for_steps(). The bound of each component
-  /// does not depend on a step. f ≥ 0 holds in a steady state, and not in steps. Called after all terms have
-  /// been set. Not in axisymmetric flow.
-  virtual void limit_for_steady_states() = 0;
+  /// is limiter::steady_inverse_cfl(), for the slowest rate of collisions at the start. f ≥ 0 holds in a
+  /// steady state, and not in steps. Called after all terms have been set. Not in axisymmetric flow.
+  virtual void limit_for_steady_states(double collisions) = 0;
   /// Returns the largest source_rate::growth in the cells of this process; 0 if no source depends on u.
   virtual double growth_of_source(double t, const field& u) const = 0;
   /// Returns true if there is a source that depends on u.

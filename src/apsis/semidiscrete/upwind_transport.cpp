@@ -120,10 +120,13 @@ void upwind_transport::limit_for_steps(double share) {
   if (force_) force_->limit_for_steps(share);
 }
 
-void upwind_transport::limit_for_steady_states() {
+void upwind_transport::limit_for_steady_states(double collisions) {
   limit_for_steps(1.0);
-  line_speeds::limit_for_steady_states(speeds_);
-  if (cut_) cut_->limit_for_steady_states();
+  line_speeds::limit_for_steady_states(speeds_, collisions);
+  if (!cut_) return;
+  auto more = line_speeds::rates(speeds_);
+  for (double& rate : more) rate = limiter::steady_inverse_cfl(rate, collisions) - 1.0;
+  cut_->limit_for_steady_states(std::move(more));
 }
 
 double upwind_transport::growth_of_source(double t, const field& u) const {

@@ -44,7 +44,7 @@ class upwind_transport final : public transport {
   /// cut_cells::cfl_number with bodies. In axisymmetric flow it is max_j ring_rotation::rates_with() / κ.
   double forward_euler_step() const override;
   void limit_for_steps(double share) override;
-  void limit_for_steady_states() override;
+  void limit_for_steady_states(double collisions) override;
   double growth_of_source(double t, const field& u) const override;
   bool source_depends_on_state() const override { return source_ && source_->depends_on_state(); }
 

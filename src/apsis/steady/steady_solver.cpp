@@ -1,6 +1,7 @@
 #include <apsis/steady/steady_solver.hpp>
 
 #include <apsis/core/errors.hpp>
+#include <apsis/core/index.hpp>
 #include <apsis/exec/agreement.hpp>
 #include <apsis/exec/global_sum.hpp>
 #include <apsis/exec/parallel.hpp>
@@ -16,6 +17,7 @@
 #include <apsis/steady/internal/steady_residual.hpp>
 #include <apsis/steady/octant_sweep.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -62,10 +64,19 @@ std::vector<double> checked_epsilon(const problem_builder& space) {
   return found;
 }
 
+/// Returns the smallest of the numbers of some cells; +infinity without cells.
+double lowest_of(const std::vector<double>& numbers, const std::vector<int>& cells) {
+  double lowest = std::numeric_limits<double>::infinity();
+  for (const int cell : cells) lowest = std::min(lowest, numbers[at(cell)]);
+  return lowest;
+}
+
 /// Limits a problem for steady states during its lifetime.
 class steady_limits {
  public:
-  explicit steady_limits(semidiscrete_problem& of) : of_(of) { of_.limit_for_steady_states(); }
+  steady_limits(semidiscrete_problem& of, double collisions) : of_(of) {
+    of_.limit_for_steady_states(collisions);
+  }
   ~steady_limits() { of_.limit_for_steps(1.0); }
   steady_limits(const steady_limits&) = delete;
   steady_limits& operator=(const steady_limits&) = delete;
@@ -89,11 +100,11 @@ struct steady_solver::impl {
         processes(space.processes()),
         options(given),
         epsilon(checked_epsilon(space)),
-        limits(problem),
         links(builder.space()),
         cut(builder.space()),
         cells(equation, builder, links),
         state(equation, problem, links, cells, epsilon, start),
+        limits(problem, global_lowest(processes, lowest_of(state.rates, links.cells()))),
         is_thin(cells.largest_optical_width(state.omega, state.rates) <= widest_thin_cell),
         correction(equation, builder, links, cells, state, is_thin),
         sweep(equation, builder.space(), links, cut, is_thin ? slope_in_thin_cells : usual_slope),
@@ -200,11 +211,11 @@ struct steady_solver::impl {
   communicator& processes;
   steady_options options;
   std::vector<double> epsilon;
-  steady_limits limits;
   cell_links links;
   cut_links cut;
   cell_measures cells;
   steady_residual state;
+  steady_limits limits;
   bool is_thin;  ///< whether all cells are thin
   moment_correction correction;
   octant_sweep sweep;

@@ -62,10 +62,10 @@ void device_transport::limit_for_steps(double share) {
   if (force_) force_->on_host().limit_for_steps(share);
 }
 
-void device_transport::limit_for_steady_states() {
+void device_transport::limit_for_steady_states(double collisions) {
   limit_for_steps(1.0);
-  host_.limit_for_steady_states();
-  line_speeds::limit_for_steady_states(speeds_);
+  host_.limit_for_steady_states(collisions);
+  line_speeds::limit_for_steady_states(speeds_, collisions);
   for (std::size_t k = 0; k < along_.size(); ++k) along_[k].set_speeds(speeds_[k]);
 }
 

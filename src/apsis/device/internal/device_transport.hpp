@@ -50,7 +50,7 @@ class device_transport final : public transport {
 
   double forward_euler_step() const override { return host_.forward_euler_step(); }
   void limit_for_steps(double share) override;
-  void limit_for_steady_states() override;
+  void limit_for_steady_states(double collisions) override;
   double growth_of_source(double t, const field& u) const override {
     return source_depends_on_state() ? source_->growth(t, u) : 0.0;
   }

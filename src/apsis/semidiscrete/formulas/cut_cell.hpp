@@ -46,11 +46,11 @@ struct cut_demand {
     return select(theta > N(0.0), theta, N(0.0));
   }
 
-  /// Returns the factor ϑ ∈ [0, 1] for a steady state. The outflow is at most 1/steady_cfl_number times that
+  /// Returns the factor ϑ ∈ [0, 1] for a steady state. The corrections add at most `more` times the outflow
   /// of the value u, and leaving values are at least least_leaving_part u. Returns 0 for NaN and for negative
   /// u.
-  APSIS_FORMULA N steady_factor(N u) const {
-    const N theta = factor_within(u, N(1.0 / apsis::limiter::steady_cfl_number - 1.0) * outflow);
+  APSIS_FORMULA N steady_factor(N u, N more) const {
+    const N theta = factor_within(u, more * outflow);
     const N most = N(1.0 - least_leaving_part) * u, demanded = theta * decrease;
     const N lower = select(demanded > most, theta * (most / demanded), theta);
     return select(lower > N(0.0), lower, N(0.0));

@@ -42,7 +42,7 @@ def solve_steady(problem: KineticProblem, u0: ArrayLike, tolerance: float = 1e-8
     residual is at most the tolerance times that of u0, or at rounding level. The relative change of the moments is at most the
     tolerance. `images` is the number of earlier iterates that are mixed into each iterate (Anderson). reconstruction = "upwind5" is
     best: nonlinear weights may never settle where f jumps, except those of "weno5-z-smooth". With positivity = True the state is
-    nonnegative for models with nonnegative targets.
+    nonnegative for models with nonnegative targets. Its limiter is not that of steps (docs/steady-method.md).
     Raises InputError for models that do not relax to an equilibrium, without space, and where ε = 0; NumericalError if the
     iteration diverges, stalls, or is not complete after `iterations`. docs/steady.md describes the method."""
     if not isinstance(problem, KineticProblem):

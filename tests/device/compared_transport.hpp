@@ -7,8 +7,8 @@
 #include <algorithm>
 #include <array>
 
-/// Counts the numbers and rates that differ between host and device, in evaluations with several targets and
-/// steps of two lengths.
+/// Counts the numbers and rates that differ between host and device, in evaluations with several targets,
+/// with the limiters of steps of two lengths and of steady states.
 inline bit_differences differences_of_transport(const apsis::grid& mesh, const apsis::field& u,
                                                 apsis::upwind_transport& host, apsis::device_transport& there,
                                                 const apsis::device& on) {
@@ -19,9 +19,14 @@ inline bit_differences differences_of_transport(const apsis::grid& mesh, const a
   sent.copy_rows(u);
   const double step = 0.5 * host.forward_euler_step();
   bit_differences different;
-  for (const double share : {1.0, 0.3}) {
-    host.limit_for_steps(share);
-    there.limit_for_steps(share);
+  constexpr double steady = 0.7;
+  for (const double share : {1.0, 0.3, steady}) {
+    for (apsis::transport* one :
+         {static_cast<apsis::transport*>(&host), static_cast<apsis::transport*>(&there)})
+      if (share == steady)
+        one->limit_for_steady_states(3.0);
+      else
+        one->limit_for_steps(share);
     const std::array<target<field, double>, 2> on_host = {
         {{&a, 1.0, share * step, true}, {&b, 0.4, -step, false}}};
     const std::array<target<field, double>, 2> on_device = {

@@ -141,9 +141,9 @@ extern "C" void rotations(const double* u, double* to) {
 }
 
 extern "C" void cut_cells(const double* u, double* to) {
-  scalar::cut_demand<double> demand{u[0], u[1], u[2]};
+  scalar::cut_demand<double> demand{u[0], u[1], u[2], u[3]};
   demand.add(u[4], u[5], u[6]);
-  to[0] = demand.factor(u[7], u[8]);
+  to[0] = demand.factor(u[7], u[8]) + demand.steady_factor(u[7], u[9]);
   to[1] = scalar::leaving_value(u[7], to[0] * u[5]) + scalar::nonnegative_leaving_value(u[6], to[0] * u[5]);
 }
 

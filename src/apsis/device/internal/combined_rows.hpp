@@ -1,9 +1,9 @@
 #pragma once
 
 #include <apsis/device/device.hpp>
-#include <apsis/integrate/problem.hpp>
 #include <apsis/mesh/field.hpp>
 #include <apsis/mesh/grid.hpp>
+#include <apsis/semidiscrete/transport.hpp>
 
 #include <span>
 

@@ -39,8 +39,9 @@ TEST(memory_need, is_what_a_run_has_after_a_step) {
                     ball = "[[space.body]]\nshape = \"sphere\"\ncentre = [0.1, 0, 0]\nradius = 1.1\n",
                     square = "cells = [60, 50]\ndomain = [[-2, 2], [-2, 2]]\n";
   for (const std::string& space :
-       {cube, cube + "boundary = \"diffuse\"\n", cube + "boundary = \"diffuse\"\n" + ball,
-        cube + "boundary = \"outflow\"\n" + ball, square + "boundary = \"diffuse\"\n"}) {
+       {cube, cube + "[source]\nrho = 0.1\nT = 1\n", cube + "boundary = \"diffuse\"\n",
+        cube + "boundary = \"diffuse\"\n" + ball, cube + "boundary = \"outflow\"\n" + ball,
+        square + "boundary = \"diffuse\"\n"}) {
     const double before = bytes_in_use();
     apsis::simulation run(apsis::parse_case(gas(space), "gas.toml"));
     run.advance();

@@ -4,6 +4,7 @@
 #include <apsis/model/grid_sums.hpp>
 #include <apsis/model/maxwellian.hpp>
 
+#include <algorithm>
 #include <tuple>
 
 namespace apsis {
@@ -14,10 +15,17 @@ void find_powers(const velocity_grid& grid, int k, double u, int degree, aligned
   const velocity_line& line = grid.line(k);
   const auto n = static_cast<std::size_t>(line.points()), count = static_cast<std::size_t>(degree) + 1;
   all.resize(count * n);
-  for (std::size_t j = 0; j < n; ++j) {
-    const double c = line.v()[j] - u;
-    double power = grid.uniform() ? 1.0 : line.weights()[j];
-    for (std::size_t p = 0; p < count; ++p, power *= c) all[p * n + j] = power;
+  if (grid.uniform()) {
+    std::fill_n(all.begin(), n, 1.0);
+  } else {
+    std::copy(line.weights().begin(), line.weights().end(), all.begin());
+  }
+  const double* v = line.v().data();
+  for (std::size_t p = 1; p < count; ++p) {
+    const double* before = all.data() + (p - 1) * n;
+    double* power = all.data() + p * n;
+#pragma omp simd
+    for (std::size_t j = 0; j < n; ++j) power[j] = before[j] * (v[j] - u);
   }
 }
 

@@ -22,16 +22,22 @@ void fill_lines(const velocity_grid& grid, const fluid_state& state,
                 const scalar::conditional_gaussian<D>& of, double* m) {
   std::array<velocity_rows::gaussian, most_line_states>
       some;  // NOLINT(cppcoreguidelines-pro-type-member-init)
+  alignas(64) std::array<double, most_line_states> powers{};
+  std::array<std::array<double, 2>, most_line_states> across{};
   const int n = grid.last_line().points();
   const double u = state.u[grid.last_component()];
   for (int first = 0; first < grid.lines(); first += most_line_states) {
     const int count = std::min(most_line_states, grid.lines() - first);
     for (int i = 0; i < count; ++i) {
-      double c[2] = {};
+      auto& c = across[static_cast<std::size_t>(i)];
       for (int k = 0; k + 1 < D; ++k)
-        c[k] = grid.component_of_lines(k)[first + i] - state.u[grid.component_across(k)];
-      some[static_cast<std::size_t>(i)] = curve_of(of.on_line(c, u));
+        c[static_cast<std::size_t>(k)] =
+            grid.component_of_lines(k)[first + i] - state.u[grid.component_across(k)];
+      powers[static_cast<std::size_t>(i)] = of.exponent(c.data());
     }
+    velocity_rows::exponentials(0.0, count, powers.data());
+    for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i)
+      some[i] = curve_of(of.on_line(across[i].data(), u, powers[i]));
     gaussians_on(grid.last_line(), some.data(), count, m + static_cast<std::ptrdiff_t>(first) * n, n);
   }
 }

@@ -49,18 +49,31 @@ struct conditional_gaussian {
     return found;
   }
 
-  /// Returns the Gaussian along the last line, for other components c' and the bulk velocity u along
-  /// the line.
-  APSIS_FORMULA gaussian_of_line on_line(const double* c, double u) const {
+  /// Returns the exponent of a(c')/a(0).
+  APSIS_FORMULA double exponent(const double* c) const {
+    if constexpr (D == 1) {
+      return 0.0;
+    } else if constexpr (D == 2) {
+      return -0.5 * outer[0][0] * c[0] * c[0];
+    } else {
+      return -0.5 * (outer[0][0] * c[0] * c[0] + 2.0 * outer[0][1] * c[0] * c[1] + outer[1][1] * c[1] * c[1]);
+    }
+  }
+  /// Returns the Gaussian along the last line, for other components c', the bulk velocity u along the line
+  /// and `power` = a(c')/a(0).
+  APSIS_FORMULA gaussian_of_line on_line(const double* c, double u, double power) const {
     if constexpr (D == 1) {
       return {height, u, variance};
     } else if constexpr (D == 2) {
-      return {height * exp_of(-0.5 * outer[0][0] * c[0] * c[0]), u + slope[0] * c[0], variance};
+      return {height * power, u + slope[0] * c[0], variance};
     } else {
-      const double exponent =
-          -0.5 * (outer[0][0] * c[0] * c[0] + 2.0 * outer[0][1] * c[0] * c[1] + outer[1][1] * c[1] * c[1]);
-      return {height * exp_of(exponent), u + (slope[0] * c[0] + slope[1] * c[1]), variance};
+      return {height * power, u + (slope[0] * c[0] + slope[1] * c[1]), variance};
     }
+  }
+  /// Returns the Gaussian along the last line, for other components c' and the bulk velocity u along the
+  /// line.
+  APSIS_FORMULA gaussian_of_line on_line(const double* c, double u) const {
+    return on_line(c, u, D == 1 ? 1.0 : exp_of(exponent(c)));
   }
 };
 

@@ -23,7 +23,7 @@ target_compile_options(apsis_options INTERFACE
   # g++-12 reports overlaps in its own std::string (GCC bug 105651), and more of them with precompiled headers.
   $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>
   "$<$<AND:$<CXX_COMPILER_ID:GNU>,$<BOOL:${APSIS_PCH}>>:-Wno-array-bounds;-Wno-stringop-overflow;-Wno-stringop-overread>"
-  # Its search for garbage, from 128 MB on, takes 5 to 20 % of the time of large files.
+  # g++ collects garbage from 128 MB on, which takes up to a fifth of the time of large files.
   "$<$<AND:$<CXX_COMPILER_ID:GNU>,$<BOOL:${CMAKE_UNITY_BUILD}>>:SHELL:--param ggc-min-heapsize=1000000>"
   # Files that are compiled together look like headers to it, and shadow each other's functions.
   "$<$<AND:$<CXX_COMPILER_ID:GNU>,$<BOOL:${CMAKE_UNITY_BUILD}>>:-Wno-subobject-linkage;-Wno-shadow;-Wshadow=local>"

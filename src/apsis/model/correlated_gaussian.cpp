@@ -16,13 +16,13 @@ velocity_rows::gaussian curve_of(const scalar::gaussian_of_line& of) {
   return {of.a, of.u, of.T};
 }
 
-/// Fills m line by line.
+/// Fills m line by line. One vector exponential computes the heights of several lines.
 template <int D>
 void fill_lines(const velocity_grid& grid, const fluid_state& state,
                 const scalar::conditional_gaussian<D>& of, double* m) {
   std::array<velocity_rows::gaussian, most_line_states>
       some;  // NOLINT(cppcoreguidelines-pro-type-member-init)
-  alignas(64) std::array<double, most_line_states> powers{};
+  alignas(64) std::array<double, most_line_states> heights{};
   std::array<std::array<double, 2>, most_line_states> across{};
   const int n = grid.last_line().points();
   const double u = state.u[grid.last_component()];
@@ -33,11 +33,11 @@ void fill_lines(const velocity_grid& grid, const fluid_state& state,
       for (int k = 0; k + 1 < D; ++k)
         c[static_cast<std::size_t>(k)] =
             grid.component_of_lines(k)[first + i] - state.u[grid.component_across(k)];
-      powers[static_cast<std::size_t>(i)] = of.exponent(c.data());
+      heights[static_cast<std::size_t>(i)] = of.log_of_relative_height(c.data());
     }
-    velocity_rows::exponentials(0.0, count, powers.data());
+    velocity_rows::exponentials(0.0, count, heights.data());
     for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i)
-      some[i] = curve_of(of.on_line(across[i].data(), u, powers[i]));
+      some[i] = curve_of(of.on_line(across[i].data(), u, heights[i]));
     gaussians_on(grid.last_line(), some.data(), count, m + static_cast<std::ptrdiff_t>(first) * n, n);
   }
 }

@@ -55,14 +55,6 @@ void exponentials(double shift, int n, double* x) {
     store_some(exp_of(load_some(x + j, n - j) - pack<wide>(shift)), n - j, x + j);
 }
 
-/// Rows together, so that their chains of operations overlap.
-HWY_NOINLINE void rows_by_exponentials(const spaced_line& line, const velocity_rows::gaussian* of, int rows,
-                                       double* m, std::ptrdiff_t pitch) {
-  for (int p = 0; p < rows; ++p, m += pitch)
-    gaussian_by_octets(eight, line, curve(of[p]),
-                       [&](int k, const N& values) APSIS_PACKED { eight.store(values, line.n - k, m + k); });
-}
-
 /// The first octets of eight Gaussians. The change of `right` is one number per Gaussian, so that one vector
 /// exponential computes it for all of them. The other factors could also be computed from a few numbers.
 /// Their errors would then have the same sign, and so would those of the moments.
@@ -120,7 +112,7 @@ void gaussians(const velocity_rows::points& points, const velocity_rows::gaussia
     double* const to = m + first * pitch;
     if (std::none_of(group, group + some,
                      [&](const auto& one) { return walks_outwards(line, curve(one)); })) {
-      rows_by_exponentials(line, group, some, to, pitch);
+      for (int p = 0; p < some; ++p) gaussian_by_exponentials(line, group[p], to + p * pitch);
     } else {
       const first_octets of(line, group, some);
       for (int p = 0; p < some; ++p) of.fill_row(p, group[p], to + p * pitch);

@@ -49,8 +49,8 @@ struct conditional_gaussian {
     return found;
   }
 
-  /// Returns the exponent of a(c')/a(0).
-  APSIS_FORMULA double exponent(const double* c) const {
+  /// Returns log(a(c')/a(0)).
+  APSIS_FORMULA double log_of_relative_height(const double* c) const {
     if constexpr (D == 1) {
       return 0.0;
     } else if constexpr (D == 2) {
@@ -59,21 +59,16 @@ struct conditional_gaussian {
       return -0.5 * (outer[0][0] * c[0] * c[0] + 2.0 * outer[0][1] * c[0] * c[1] + outer[1][1] * c[1] * c[1]);
     }
   }
-  /// Returns the Gaussian along the last line, for other components c', the bulk velocity u along the line
-  /// and `power` = a(c')/a(0).
-  APSIS_FORMULA gaussian_of_line on_line(const double* c, double u, double power) const {
-    if constexpr (D == 1) {
-      return {height, u, variance};
-    } else if constexpr (D == 2) {
-      return {height * power, u + slope[0] * c[0], variance};
-    } else {
-      return {height * power, u + (slope[0] * c[0] + slope[1] * c[1]), variance};
-    }
+  /// Returns the Gaussian along the last line at other components c'. The bulk velocity along the line is u,
+  /// and `relative_height` is a(c')/a(0).
+  APSIS_FORMULA gaussian_of_line on_line(const double* c, double u, double relative_height) const {
+    double shift = 0.0;
+    for (int k = 0; k + 1 < D; ++k) shift += slope[k] * c[k];
+    return {height * relative_height, u + shift, variance};
   }
-  /// Returns the Gaussian along the last line, for other components c' and the bulk velocity u along the
-  /// line.
+  /// Returns the same Gaussian, with a(c')/a(0) computed here.
   APSIS_FORMULA gaussian_of_line on_line(const double* c, double u) const {
-    return on_line(c, u, D == 1 ? 1.0 : exp_of(exponent(c)));
+    return on_line(c, u, exp_of(log_of_relative_height(c)));
   }
 };
 

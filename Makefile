@@ -51,7 +51,7 @@ test: ## install packages, build all but benchmarks, run all tests except the sl
 	@scripts/install-packages.sh test
 	cmake --preset release -DAPSIS_TESTS=ON -DAPSIS_BENCH=OFF -DAPSIS_PYTHON_PACKAGE=ON -DPython3_EXECUTABLE=$(PYTHON) $(WHOLE) >/dev/null
 	cmake --build build/release
-	ctest --preset release -LE slow --output-junit $(CURDIR)/build/release/quick-tests.xml
+	ctest --preset release -LE slow --test-output-size-passed 1000000 --output-junit $(CURDIR)/build/release/quick-tests.xml
 	$(PYTHON) tests/summary.py build/release/quick-tests.xml
 
 # Benchmarks take a tenth of the time of a whole build, so that they are built here.

@@ -287,7 +287,8 @@ row end_of(const std::string& method, P& problem) {
 
 template <class F>
 void expect_end_by_hand(const std::string& name, F transport, F transport_by_hand) {
-  newton_problem problem(transport, driven), by_hand(transport_by_hand, driven_by_hand);
+  newton_problem problem(transport, driven);
+  newton_problem by_hand(transport_by_hand, driven_by_hand);
   problem.with_mass(mass_matrix<double>::full(2, row{2, 1, 0.5, 3}));
   const row u = end_of(name, problem), v = end_of(name, by_hand);
   // Twenty steps of at most twenty stages, each solved to a few roundings.

@@ -114,4 +114,6 @@ std::span<const device_code_object> device_code_objects() {
 set_property(SOURCE ${generated}/device_code.cpp APPEND PROPERTY OBJECT_DEPENDS "${code_files}")
 set_source_files_properties(${generated}/device_code.cpp ${generated}/host_kernels.cpp PROPERTIES
   SKIP_UNITY_BUILD_INCLUSION ON)
+# Host kernels only check those of the devices, on small grids.
+set_source_files_properties(${generated}/host_kernels.cpp PROPERTIES COMPILE_OPTIONS ${APSIS_QUICKLY_BUILT})
 set(APSIS_DEVICE_GENERATED ${generated}/host_kernels.cpp ${generated}/device_code.cpp)

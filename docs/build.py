@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""Builds the site: docs/build.py [--build build/release] [--work build/docs] [--cases NAME …] [--methods NAME …], pages
-in WORK/html.
+"""Builds the site: docs/build.py [--build build/release] [--work build/docs] [--cases NAME …] [--methods NAME …] [--rooms NAME …],
+pages in WORK/html.
 
 The pages of docs are written for GitHub. A copy in WORK/source adds the parts that only the site has: reference pages from the
 program, a gallery of all cases, a page for each method and for each room of the library, new pictures from the blocks executed by
@@ -75,8 +75,8 @@ class Site:
         return os.path.relpath(to, os.path.dirname(place) or ".") + mark + anchor
 
 
-def assemble(site: Site, program: Path, work: Path, cases: list[str] | None, methods: list[str] | None):
-    """All pages, with pictures of these cases and methods; None: of all. doxygen has been run."""
+def assemble(site: Site, program: Path, work: Path, cases: list[str] | None, methods: list[str] | None, shown: list[str] | None):
+    """All pages, with pictures of these cases and methods and entries of these rooms; None: of all. doxygen has been run."""
     shutil.copytree(ROOT / "docs" / "_static", site.source / "_static")
     unused = shutil.ignore_patterns("*.mjs", "contrib", "*.ttf", "*.woff")
     shutil.copytree(KATEX, site.source / "_static" / "katex", ignore=unused)
@@ -92,7 +92,7 @@ def assemble(site: Site, program: Path, work: Path, cases: list[str] | None, met
     for file, place in site.places.items():
         if file.endswith(".md") and not place.startswith("api/") and place != "index.md":
             site.add(place, (ROOT / file).read_text(encoding="utf-8"), file)
-    add_interfaces(site, read_headers(work / "doxygen" / "xml"))
+    add_interfaces(site, read_headers(work / "doxygen" / "xml"), shown)
     index = (ROOT / "docs" / "index.md").read_text(encoding="utf-8")
     site.add("index.md", with_contents(index, site, generated), "docs/index.md")
 
@@ -109,7 +109,7 @@ def with_contents(text: str, site: Site, generated: dict[str, list[str]]) -> str
                           for title, pages in contents.items())
 
 
-def add_interfaces(site: Site, headers: dict[str, Header]):
+def add_interfaces(site: Site, headers: dict[str, Header], shown: list[str] | None):
     """A page for each room, with all its headers, and one for the Python package."""
     listed = ""
     for room in rooms():
@@ -117,7 +117,7 @@ def add_interfaces(site: Site, headers: dict[str, Header]):
         text = about.replace("\n", "\n\n", 1)
         for name in sorted(name for name in headers if name.startswith(f"apsis/{room}/")):
             text += f"\n## {name.removeprefix(f'apsis/{room}/')}\n\n```cpp\n#include <{name}>\n```\n\n"
-            text += headers[name].directives(name)
+            text += headers[name].directives(name) if shown is None or room in shown else ""
         site.add(f"api/{room}.md", text, f"src/apsis/{room}/README.md")
         listed += f"- [{room}]({room}.md): {about.split(chr(10), 1)[1].split('. ')[0].strip().rstrip('.')}.\n"
     site.add("api/index.md", "# C++ interface\n\n`src/apsis` is a sequence of rooms, each a library that links only those "
@@ -146,6 +146,8 @@ def main() -> int:
     parser.add_argument("--work", type=Path, default=ROOT / "build" / "docs")
     parser.add_argument("--cases", nargs="+", help="cases of the gallery; without them all, which takes many minutes")
     parser.add_argument("--methods", nargs="+", help="methods whose pages have pictures; without them all, which takes a minute")
+    parser.add_argument("--rooms", nargs="+", choices=rooms(), metavar="NAME",
+                        help="rooms of the library whose entries are shown; references to others are not checked")
     given = parser.parse_args()
     build, work = given.build.resolve(), given.work.resolve()
     xml = work / "doxygen" / "xml"
@@ -159,7 +161,7 @@ def main() -> int:
         shutil.rmtree(work / "doctrees", ignore_errors=True)
     site = Site(work / "source")
     try:
-        assemble(site, build / "app" / "apsis", work, given.cases, given.methods)
+        assemble(site, build / "app" / "apsis", work, given.cases, given.methods, given.rooms)
     except GalleryError as problem:
         print(f"docs/build.py: the gallery is incomplete ({problem}); correct the case, or the sizes in docs/gallery.py", file=sys.stderr)
         return 1
@@ -167,7 +169,8 @@ def main() -> int:
         print(problem, file=sys.stderr)
     shutil.rmtree(work / "html", ignore_errors=True)
     environment = {"APSIS_BUILD": str(build), "APSIS_DOCS": str(work), "PYTHONDONTWRITEBYTECODE": "1"}
-    sphinx = subprocess.run(["/usr/bin/python3", "-m", "sphinx", "-W", "--keep-going", "-n", "-q", "-b", "html", "-d",
+    strict = [] if given.rooms else ["-n"]
+    sphinx = subprocess.run(["/usr/bin/python3", "-m", "sphinx", "-W", "--keep-going", *strict, "-q", "-b", "html", "-d",
                              work / "doctrees", "-c", ROOT / "docs", site.source, work / "html"], env=os.environ | environment)
     if (work / "html" / "_static").is_dir():
         mend_theme(work / "html" / "_static")

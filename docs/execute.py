@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Compiles or runs every code block of the documentation.
 
-    docs/execute.py [PAGE…] [--build build/release] [--work build/docs] [--jobs N] [--update]
+    docs/execute.py [PAGE…] [--without PAGE…] [--build build/release] [--work build/docs] [--jobs N] [--update]
 
 The blocks of a page are executed in order in a fresh folder WORK/run/PAGE: sh by bash, with `apsis` and `python3`
 as installed; python in one interpreter; cpp compiled against the installed library. blocks.py explains the comments before
@@ -265,6 +265,7 @@ def run_pages(paths: list[Path], root: Path, tools: Tools, jobs: int) -> list[Pa
 def main(arguments=None) -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("pages", nargs="*", type=Path, metavar="PAGE", help="all pages if none is named")
+    parser.add_argument("--without", nargs="+", type=Path, default=[], metavar="PAGE", help="do not run these pages")
     parser.add_argument("--root", type=Path, default=ROOT, help="of the pages")
     parser.add_argument("--build", type=Path, default=ROOT / "build" / "release")
     parser.add_argument("--work", type=Path, default=ROOT / "build" / "docs")
@@ -273,6 +274,11 @@ def main(arguments=None) -> int:
     given = parser.parse_args(arguments)
     root = given.root.resolve()
     paths = [p.resolve() for p in given.pages] or [p for pattern in PAGES for p in sorted(root.glob(pattern))]
+    omitted = [p.resolve() for p in given.without]
+    unknown = [str(p) for p in omitted if p not in paths]
+    if unknown:
+        parser.error(f"--without names no page that would run ({', '.join(unknown)}); correct the name")
+    paths = [p for p in paths if p not in omitted]
     pages = run_pages(paths, root, Tools(given.build.resolve(), given.work.resolve()), given.jobs)
     for page in pages:
         if given.update:

@@ -236,6 +236,17 @@ class Rules(Pages):
         self.assertEqual(done.returncode, 1)
         self.assertTrue(done.stderr.startswith("page.md:1: nothing checks"), done.stderr)
 
+    def test_pages_can_be_left_out_by_names_that_exist(self):
+        (self.root / "docs").mkdir()
+        for name, text in (("right", "# Right\n"), ("wrong", block("bash", "true"))):
+            (self.root / "docs" / f"{name}.md").write_text(text, encoding="utf-8")
+        for name, code, said in (("wrong", 0, "1 pages, 0 with problems"), ("right", 1, "1 pages, 1 with problems"),
+                                 ("absent", 2, "--without names no page")):
+            done = subprocess.run([sys.executable, execute.__file__, "--root", self.root, "--build", BUILD, "--work", self.root / "build",
+                                   "--without", self.root / "docs" / f"{name}.md"], text=True, capture_output=True)
+            self.assertEqual(done.returncode, code, done.stderr)
+            self.assertIn(said, done.stdout + done.stderr)
+
 
 class Comparison(unittest.TestCase):
     def test_outputs(self):

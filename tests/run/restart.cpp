@@ -109,11 +109,10 @@ TEST_P(restart, continues_bit_for_bit_with_every_method_from_any_step) {
       continue;
     }
     ++asked;
-    for (const long at : {0L, std::uniform_int_distribution<long>(1, 9)(random)}) {
-      run(*c, folder / "half", at);
-      expect_same(*whole, run(*c, folder / "again", 1000, folder / "half/checkpoint.h5"),
-                  name + " from step " + std::to_string(at));
-    }
+    const auto at = std::uniform_int_distribution<long>(0, 9)(random);
+    run(*c, folder / "half", at);
+    expect_same(*whole, run(*c, folder / "again", 1000, folder / "half/checkpoint.h5"),
+                name + " from step " + std::to_string(at));
   }
   EXPECT_GE(asked, 5);
 }

@@ -88,7 +88,7 @@ extern "C" void grid(const double* f, const double* v, int n, int lines, double*
 
 extern "C" void weights(const double* v, int n, double* w) {
   const one_of_eight group{3};
-  auto newton = scalar::nearby_newton::start(1, v[0]);
+  auto newton = scalar::nearby_newton<double>::start(1, v[0], v[1]);
   newton.of[0].set_ends(v[0], v[n - 1]);
   auto sums = scalar::powers_on_line<scalar::sums_of_six_powers<double>>(
       group, {n, v, v}, 0.0, scalar::row_of_line<one_of_eight>{group, w});

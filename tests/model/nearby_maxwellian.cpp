@@ -9,11 +9,14 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
+#include <support/property.hpp>
+#include <support/reference_numbers.hpp>
 
 namespace nearby_maxwellian_test {
 
@@ -123,6 +126,65 @@ TEST(nearby_maxwellian, is_refused_far_from_a_gaussian) {
   EXPECT_FALSE(apsis::nearby_maxwellian(grid, {1.0, {5.2, 0, 0}, 1.0}, m.data()));
   EXPECT_FALSE(apsis::nearby_maxwellian(grid, {1e-290, {0, 0, 0}, 1.0}, m.data()));
   EXPECT_TRUE(apsis::nearby_maxwellian(grid, {1.0, {0.4, 0, 0}, 1.0}, m.data()));
+}
+
+/// Some cells are too cold or too thin for Newton's method from a Gaussian. They must not disturb their
+/// neighbours.
+TEST(nearby_maxwellian, rows_of_a_group_have_the_bits_of_single_rows) {
+  int refused = 0, by_newton = 0;
+  check_property("groups", [&] {
+    const velocity_grid grid = any_grid();
+    const int d = grid.dimensions();
+    const auto size = static_cast<std::size_t>(grid.size()),
+               count = static_cast<std::size_t>(*rc::gen::inRange(1, 20));
+    std::vector<fluid_state> states(count);
+    std::vector<std::array<double, 5>> omega(count);
+    row together(count * size), alone(size);
+    std::vector<apsis::row_of_state> rows;
+    for (std::size_t i = 0; i < count; ++i) {
+      auto& s = states[i] = any_state(d);
+      if (*rc::gen::inRange(0, 6) == 0) s.T *= 0.05;
+      if (*rc::gen::inRange(0, 6) == 0) s.rho = 1e-280;
+      double square = d * s.T;
+      omega[i][0] = s.rho;
+      for (std::size_t k = 0; k < static_cast<std::size_t>(d); ++k) {
+        omega[i][1 + k] = s.rho * s.u[k];
+        square += s.u[k] * s.u[k];
+      }
+      omega[i][static_cast<std::size_t>(d) + 1] = 0.5 * s.rho * square;
+      double* const m = together.data() + i * size;
+      if (d == 1) apsis::formula_maxwellian(grid, s, m);
+      rows.push_back({omega[i].data(), s, m});
+    }
+    // Between two points the coldest cells have a temperature that no row has. A group ends there.
+    const int found = apsis::discrete_maxwellians(grid, rows);
+    for (std::size_t i = 0; i < count; ++i) {
+      const bool nearby = apsis::nearby_maxwellian(grid, states[i], alone.data());
+      const bool exists = nearby || apsis::general_maxwellian(grid, omega[i].data(), alone.data());
+      RC_ASSERT(exists == (static_cast<int>(i) != found));
+      if (!exists) break;
+      ++(nearby ? by_newton : refused);
+      for (std::size_t j = 0; j < size; ++j) RC_ASSERT(same_bits(together[i * size + j], alone[j]));
+    }
+  });
+  EXPECT_GT(refused, 50);
+  EXPECT_GT(by_newton, 50);
+}
+
+TEST(nearby_maxwellian, a_group_ends_before_the_first_row_without_an_equilibrium) {
+  const velocity_grid grid(2, 12, 6.0);
+  const fluid_state s{1.0, {0.1, 0.2, 0.0}, 1.0};
+  const std::array<double, 4> right{1.0, 0.1, 0.2, 1.025}, beyond{1.0, 0.1, 0.2, 100.0};  // |v|²/2 ≤ 36
+  std::vector<row> m(6, row(static_cast<std::size_t>(grid.size())));
+  std::vector<apsis::row_of_state> rows;
+  for (std::size_t i = 0; i < m.size(); ++i) {
+    const bool wrong = i == 4;
+    rows.push_back({wrong ? beyond.data() : right.data(), wrong ? apsis::to_fluid_state(beyond.data(), 2) : s,
+                    m[i].data()});
+  }
+  EXPECT_EQ(apsis::discrete_maxwellians(grid, rows), 4);
+  EXPECT_EQ(apsis::discrete_maxwellians(grid, std::span(rows).first(4)), 4);
+  EXPECT_EQ(apsis::discrete_maxwellians(grid, {}), 0);
 }
 
 TEST(nearby_maxwellian, is_the_row_of_the_general_method) {

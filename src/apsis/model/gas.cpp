@@ -152,25 +152,51 @@ bool gas::equilibrium_of_g(const double* of_g, double* g, line_moments* of_row) 
 }
 
 int gas::equilibria_of_g(const double* of_g, int rows, double* g, std::ptrdiff_t pitch) const {
-  if (dimensions() != 1) {
-    for (int p = 0; p < rows; ++p)
-      if (!equilibrium_of_g(of_g + p * moment_count(), g + p * pitch)) return p;
-    return rows;
+  if (dimensions() == 1 && !grid_.is_polar()) return equilibria_on_line(of_g, rows, g, pitch);
+  std::array<row_of_state, most_line_states> by_newton;  // NOLINT(cppcoreguidelines-pro-type-member-init)
+  for (int first = 0; first < rows; first += most_line_states) {
+    const int some = std::min(most_line_states, rows - first);
+    std::size_t count = 0;
+    std::array<int, most_line_states> places{};
+    int without = some;  // first row without an equilibrium
+    for (int p = 0; p < some && without == some; ++p) {
+      const double* of = of_g + (first + p) * moment_count();
+      double* to = g + (first + p) * pitch;
+      const fluid_state s = to_fluid_state(of, dimensions());
+      if (!s.admissible() || grid_.is_polar() || keeps_formula(s)) {
+        if (!equilibrium_of_g(of, to)) without = p;
+      } else {
+        places[count] = p;
+        by_newton[count++] = {of, s, to};
+      }
+    }
+    const int found = discrete_maxwellians(grid_, {by_newton.data(), count});
+    if (found < static_cast<int>(count)) without = std::min(without, places[static_cast<std::size_t>(found)]);
+    if (without < some) return first + without;
   }
-  std::array<line_state, most_line_states> states;  // NOLINT(cppcoreguidelines-pro-type-member-init)
+  return rows;
+}
+
+int gas::equilibria_on_line(const double* of_g, int rows, double* g, std::ptrdiff_t pitch) const {
+  std::array<line_state, most_line_states> states;       // NOLINT(cppcoreguidelines-pro-type-member-init)
+  std::array<row_of_state, most_line_states> by_newton;  // NOLINT(cppcoreguidelines-pro-type-member-init)
   for (int first = 0; first < rows;) {
     const int some = std::min(most_line_states, rows - first);
     const double* of = of_g + first * 3;
     double* to = g + first * pitch;
-    const int found = formula_maxwellians_on_line(grid_, of, some, to, pitch, states.data());
-    for (int p = 0; p < found; ++p) {
+    const int admissible = formula_maxwellians_on_line(grid_, of, some, to, pitch, states.data());
+    std::size_t count = 0;
+    std::array<int, most_line_states> places{};
+    for (int p = 0; p < admissible; ++p) {
       const line_state& state = states[static_cast<std::size_t>(p)];
-      if (!keeps_formula(state) && !nearby_maxwellian_on_line(grid_, state, to + p * pitch) &&
-          !general_maxwellian(grid_, of + p * 3, to + p * pitch))
-        return first + p;
+      if (keeps_formula(state)) continue;
+      places[count] = p;
+      by_newton[count++] = {of + p * 3, {state.rho, {state.u, 0.0, 0.0}, state.T}, to + p * pitch};
     }
-    first += found;
-    if (found == some) continue;
+    const int found = discrete_maxwellians(grid_, {by_newton.data(), count});
+    if (found < static_cast<int>(count)) return first + places[static_cast<std::size_t>(found)];
+    first += admissible;
+    if (admissible == some) continue;
     if (!equilibrium_of_g(of_g + first * 3, g + first * pitch)) return first;
     ++first;
   }

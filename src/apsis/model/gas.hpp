@@ -73,6 +73,7 @@ class gas {
   double moments_of_g(const double* omega, double* of_g) const;
   bool equilibrium_of_g(const double* of_g, double* g, line_moments* of_row = nullptr) const;
   int equilibria_of_g(const double* of_g, int rows, double* g, std::ptrdiff_t pitch) const;
+  int equilibria_on_line(const double* of_g, int rows, double* g, std::ptrdiff_t pitch) const;
   template <class State>
   bool keeps_formula(const State& state) const;
   std::string row_of(std::span<const double> given, std::span<double> row) const;

@@ -111,7 +111,7 @@ struct grid_equilibrium {
   APSIS_FORMULA bool find_weights(const Group& group, const gas_rows& rows, bool wanted,
                                   double* const* values) {
     using namespace scalar;
-    auto newton = nearby_newton::start(Dimensions, of_g.T);
+    auto newton = nearby_newton<double>::start(Dimensions, of_g.T, __builtin_sqrt(of_g.T));
     for (int k = 0; k < Dimensions; ++k)
       newton.of[k].set_ends(rows.of[k].v[0] - of_g.u[k], rows.of[k].v[rows.of[k].n - 1] - of_g.u[k]);
     bool first = true, running = wanted;
@@ -133,7 +133,7 @@ struct grid_equilibrium {
       first = false;
       running = running && newton.advance();
     }
-    if (!newton.found) return false;
+    if (!(newton.found > 0.0)) return false;
     factor = of_g.rho / (rows.weight * newton.mass());
     moments.known = true;
     for (int k = 0; k < Dimensions; ++k)

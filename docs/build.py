@@ -75,8 +75,8 @@ class Site:
         return os.path.relpath(to, os.path.dirname(place) or ".") + mark + anchor
 
 
-def assemble(site: Site, program: Path, work: Path, cases: list[str] | None, methods: list[str] | None, shown: list[str] | None):
-    """All pages, with pictures of these cases and methods and entries of these rooms; None: of all. doxygen has been run."""
+def assemble(site: Site, program: Path, work: Path, cases: list[str] | None, methods: list[str] | None, shown: list[str]):
+    """All pages, with entries of the rooms `shown` and pictures of these cases and methods; None: of all. doxygen has been run."""
     shutil.copytree(ROOT / "docs" / "_static", site.source / "_static")
     unused = shutil.ignore_patterns("*.mjs", "contrib", "*.ttf", "*.woff")
     shutil.copytree(KATEX, site.source / "_static" / "katex", ignore=unused)
@@ -109,15 +109,15 @@ def with_contents(text: str, site: Site, generated: dict[str, list[str]]) -> str
                           for title, pages in contents.items())
 
 
-def add_interfaces(site: Site, headers: dict[str, Header], shown: list[str] | None):
-    """A page for each room, with all its headers, and one for the Python package."""
+def add_interfaces(site: Site, headers: dict[str, Header], shown: list[str]):
+    """A page for each room, with all its headers and, in the rooms `shown`, their entries; and one for the Python package."""
     listed = ""
     for room in rooms():
         about = (ROOT / "src" / "apsis" / room / "README.md").read_text(encoding="utf-8")
         text = about.replace("\n", "\n\n", 1)
         for name in sorted(name for name in headers if name.startswith(f"apsis/{room}/")):
             text += f"\n## {name.removeprefix(f'apsis/{room}/')}\n\n```cpp\n#include <{name}>\n```\n\n"
-            text += headers[name].directives(name) if shown is None or room in shown else ""
+            text += headers[name].directives(name) if room in shown else ""
         site.add(f"api/{room}.md", text, f"src/apsis/{room}/README.md")
         listed += f"- [{room}]({room}.md): {about.split(chr(10), 1)[1].split('. ')[0].strip().rstrip('.')}.\n"
     site.add("api/index.md", "# C++ interface\n\n`src/apsis` is a sequence of rooms, each a library that links only those "
@@ -146,8 +146,8 @@ def main() -> int:
     parser.add_argument("--work", type=Path, default=ROOT / "build" / "docs")
     parser.add_argument("--cases", nargs="+", help="cases of the gallery; without them all, which takes many minutes")
     parser.add_argument("--methods", nargs="+", help="methods whose pages have pictures; without them all, which takes a minute")
-    parser.add_argument("--rooms", nargs="+", choices=rooms(), metavar="NAME",
-                        help="rooms of the library whose entries are shown; references to others are not checked")
+    parser.add_argument("--rooms", nargs="+", choices=rooms(), default=rooms(), metavar="NAME",
+                        help="rooms of the library whose entries are shown; references are checked if all are")
     given = parser.parse_args()
     build, work = given.build.resolve(), given.work.resolve()
     xml = work / "doxygen" / "xml"
@@ -169,7 +169,7 @@ def main() -> int:
         print(problem, file=sys.stderr)
     shutil.rmtree(work / "html", ignore_errors=True)
     environment = {"APSIS_BUILD": str(build), "APSIS_DOCS": str(work), "PYTHONDONTWRITEBYTECODE": "1"}
-    strict = [] if given.rooms else ["-n"]
+    strict = ["-n"] if set(given.rooms) == set(rooms()) else []
     sphinx = subprocess.run(["/usr/bin/python3", "-m", "sphinx", "-W", "--keep-going", *strict, "-q", "-b", "html", "-d",
                              work / "doctrees", "-c", ROOT / "docs", site.source, work / "html"], env=os.environ | environment)
     if (work / "html" / "_static").is_dir():

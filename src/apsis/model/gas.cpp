@@ -152,7 +152,7 @@ bool gas::equilibrium_of_g(const double* of_g, double* g, line_moments* of_row) 
 }
 
 int gas::equilibria_of_g(const double* of_g, int rows, double* g, std::ptrdiff_t pitch) const {
-  if (dimensions() == 1 && !grid_.is_polar()) return equilibria_on_line(of_g, rows, g, pitch);
+  if (dimensions() == 1) return equilibria_on_line(of_g, rows, g, pitch);
   std::array<row_of_state, most_line_states> by_newton;  // NOLINT(cppcoreguidelines-pro-type-member-init)
   for (int first = 0; first < rows; first += most_line_states) {
     const int some = std::min(most_line_states, rows - first);

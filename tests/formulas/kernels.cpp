@@ -200,7 +200,7 @@ extern "C" void reductions(const double* omega, const double* v, int n, double* 
 extern "C" void targets(const double* u, double* to) {
   apsis::line_moments lines;
   lines.set_gaussian(u[0]);
-  scalar::target_shape shape;
+  apsis::target_shape shape;
   shape.variance = u[0];
   for (int k = 0; k < 3; ++k) shape.of_g.w[k] = u[k];
   to[0] = scalar::moments_of_product<3>(lines).correct(shape) ? 1.0 : 0.0;

@@ -10,6 +10,7 @@
 #include <apsis/model/formulas/line.hpp>
 #include <apsis/model/formulas/relaxation.hpp>
 #include <apsis/model/formulas/target.hpp>
+#include <apsis/model/formulas/target_moments.hpp>
 #include <apsis/model/formulas/velocity.hpp>
 #include <apsis/model/grid_sums.hpp>
 #include <apsis/model/line_powers.hpp>
@@ -102,33 +103,75 @@ TEST(formulas, relaxations_are_those_of_single_numbers) {
   });
 }
 
+namespace {
+
+/// Lines of a row in d directions, with arbitrary velocities.
+struct drawn_lines {
+  std::vector<double> v, across[2];
+  apsis::target_rows::lines_of_row of;
+
+  drawn_lines(int d, int n, int count, random_source& random)
+      : v(drawn(static_cast<std::size_t>(n), random, any_velocity)) {
+    std::sort(v.begin(), v.end());
+    of = {d, 2, {0, 1}, n, count, v.data(), {}, any_velocity(random), {}};
+    for (int k = 0; k < 2; ++k) {
+      across[k] = drawn(static_cast<std::size_t>(count), random, any_velocity);
+      of.v_across[k] = across[k].data();
+      of.u_across[k] = any_velocity(random);
+    }
+  }
+
+  template <int D, class N>
+  scalar::cubic_polynomial<N> polynomial(const apsis::target_polynomial& p, int line) const {
+    const auto at = static_cast<std::size_t>(line);
+    const N c[2] = {N(across[0][at]) - N(of.u_across[0]), N(across[1][at]) - N(of.u_across[1])};
+    return p.is_quadratic() ? scalar::polynomial_on_line<D, false>(p, of.across, of.last, c)
+                            : scalar::polynomial_on_line<D, true>(p, of.across, of.last, c);
+  }
+  template <class N>
+  scalar::cubic_polynomial<N> polynomial(const apsis::target_polynomial& p, int line) const {
+    return of.dimensions == 1   ? polynomial<1, N>(p, line)
+           : of.dimensions == 2 ? polynomial<2, N>(p, line)
+                                : polynomial<3, N>(p, line);
+  }
+};
+
+apsis::target_polynomial drawn_polynomial(bool cubic, random_source& random) {
+  apsis::target_polynomial p;
+  p.k = random.uniform(-1, 1);
+  for (int k = 0; k < 3; ++k) {
+    p.l[k] = random.uniform(-1, 1);
+    if (cubic) p.w[k] = random.uniform(-1, 1);
+    for (int l = 0; l <= k; ++l) p.a[k][l] = p.a[l][k] = random.uniform(-1, 1);
+  }
+  return p;
+}
+
+}  // namespace
+
 TEST(formulas, weighed_targets_are_those_of_single_numbers) {
   check_property("targets", [] {
     random_source random(*rc::gen::arbitrary<std::uint32_t>());
-    const auto n = static_cast<std::size_t>(*rc::gen::inRange(1, 40));
-    constexpr std::size_t lines = 2;
-    const auto m = drawn(lines * n, random, any_size), f = drawn(lines * n, random, any_size),
-               v = drawn(n, random, any_velocity);
-    std::array<apsis::target_rows::cubic, lines> p;
-    for (auto& of : p)
-      of = {random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)};
-    const double u = any_velocity(random);
+    const int n = *rc::gen::inRange(1, 40), count = *rc::gen::inRange(1, 20);
+    const drawn_lines lines(*rc::gen::inRange(1, 4), n, count, random);
+    const auto p = drawn_polynomial(*rc::gen::arbitrary<bool>(), random);
+    const auto size = static_cast<std::size_t>(lines.of.size());
+    const auto m = drawn(size, random, any_size), f = drawn(size, random, any_size);
     for (const double keep : {std::numeric_limits<double>::infinity(), 0.0, 0.3})
       for_each_number([&](auto number, int) {
         using N = decltype(number);
-        std::vector<double> e(lines * n);
-        const bool raised = apsis::target_rows::weigh(m.data(), v.data(), u, p.data(), lines, f.data(), keep,
-                                                      static_cast<int>(n), e.data());
+        std::vector<double> e(size), in_place = m;
+        const bool raised = apsis::target_rows::weigh(m.data(), p, lines.of, f.data(), keep, e.data());
+        apsis::target_rows::weigh(in_place.data(), p, lines.of, f.data(), keep, in_place.data());
         bool of_any = false;
-        for (std::size_t line = 0; line < lines; ++line)
-          for (std::size_t k = 0; k < n; ++k) {
-            const auto at = line * n + k;
-            const auto& c = p[line];
-            const scalar::cubic_polynomial<N> cubic{N(c.k0), N(c.k1), N(c.k2), N(c.k3)};
-            N value = N(m[at]) * cubic(N(v[k]) - N(u));
-            if (std::isfinite(keep)) of_any |= scalar::raise(value, N(keep), N(f[at]));
-            RC_ASSERT(same_bits(e[at], value_of(value)));
-          }
+        for (std::size_t at = 0; at < size; ++at) {
+          const auto k = at % static_cast<std::size_t>(n);
+          const auto cubic = lines.polynomial<N>(p, static_cast<int>(at) / n);
+          N value = N(m[at]) * cubic(N(lines.v[k]) - N(lines.of.u));
+          if (std::isfinite(keep)) of_any |= scalar::raise(value, N(keep), N(f[at]));
+          RC_ASSERT(same_bits(e[at], value_of(value)));
+          RC_ASSERT(same_bits(in_place[at], e[at]));
+        }
         RC_ASSERT(raised == of_any);
       });
   });

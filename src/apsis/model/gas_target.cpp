@@ -1,5 +1,6 @@
 #include <apsis/model/gas_target.hpp>
 
+#include <apsis/exec/aligned.hpp>
 #include <apsis/model/central_sums.hpp>
 #include <apsis/model/formulas/ellipsoidal.hpp>
 #include <apsis/model/formulas/shakhov.hpp>
@@ -14,61 +15,17 @@
 namespace apsis {
 namespace {
 
-/// Number of lines whose polynomials are computed together.
-constexpr int together = 16;
-
-/// P along the last lines of a grid of d dimensions. `Cubic` states whether P has terms of third degree.
-template <int d, bool Cubic>
-class polynomial_on_lines {
- public:
-  polynomial_on_lines(const velocity_grid& grid, const fluid_state& state, const target_polynomial& p)
-      : last_(grid.last_component()), p_(p) {
-    for (int k = 0; k + 1 < d; ++k) {
-      across_[k] = grid.component_across(k);
-      v_[k] = grid.component_of_lines(k);
-      u_[k] = state.u[across_[k]];
-    }
+target_rows::lines_of_row lines_of(const velocity_grid& grid, const fluid_state& state) {
+  const int d = grid.dimensions(), last = grid.last_component();
+  const velocity_line& line = grid.last_line();
+  target_rows::lines_of_row of{d,  last,          {}, line.points(), grid.lines(), line.v().data(),
+                               {}, state.u[last], {}};
+  for (int k = 0; k + 1 < d; ++k) {
+    of.across[k] = grid.component_across(k);
+    of.v_across[k] = grid.component_of_lines(k);
+    of.u_across[k] = state.u[of.across[k]];
   }
-
-  target_rows::cubic operator[](int line) const {
-    double c[d] = {};
-    for (int k = 0; k + 1 < d; ++k) c[k] = v_[k][line] - u_[k];
-    const auto of_line = scalar::polynomial_on_line<d, Cubic>(p_, across_, last_, c);
-    return {of_line.k0, of_line.k1, of_line.k2, of_line.k3};
-  }
-
- private:
-  int last_;
-  target_polynomial p_;
-  int across_[d] = {};
-  const double* v_[d] = {};
-  double u_[d] = {};
-};
-
-/// e ← max(base · P, −keep f) for one set of components. Returns true if a value was raised to its bound.
-template <int d, bool Cubic>
-bool weigh_lines(const velocity_grid& grid, const fluid_state& state, const target_polynomial& p,
-                 const double* base, const double* f, double keep, double* e) {
-  const polynomial_on_lines<d, Cubic> polynomial(grid, state, p);
-  const int n = grid.last_line().points();
-  const double* v = grid.last_line().v().data();
-  const double u = state.u[grid.last_component()];
-  std::array<target_rows::cubic, together> of_lines;  // NOLINT(cppcoreguidelines-pro-type-member-init)
-  bool raised = false;
-  for (int line = 0; line < grid.lines(); line += together) {
-    const int count = std::min(together, grid.lines() - line);
-    for (int i = 0; i < count; ++i) of_lines[static_cast<std::size_t>(i)] = polynomial[line + i];
-    const std::ptrdiff_t first = static_cast<std::ptrdiff_t>(line) * n;
-    raised |= target_rows::weigh(base + first, v, u, of_lines.data(), count, f + first, keep, n, e + first);
-  }
-  return raised;
-}
-
-template <int d>
-bool weigh_lines(const velocity_grid& grid, const fluid_state& state, const target_polynomial& p,
-                 const double* base, const double* f, double keep, double* e) {
-  return p.is_quadratic() ? weigh_lines<d, false>(grid, state, p, base, f, keep, e)
-                          : weigh_lines<d, true>(grid, state, p, base, f, keep, e);
+  return of;
 }
 
 /// Returns body(constant), where the constant is the number of dimensions at compile time.
@@ -82,12 +39,6 @@ bool with_dimensions(int dimensions, const Body& body) {
     default:
       return body(std::integral_constant<int, 3>());
   }
-}
-
-bool weigh(const velocity_grid& grid, const fluid_state& state, const target_polynomial& p,
-           const double* base, const double* f, double keep, double* e) {
-  return with_dimensions(grid.dimensions(),
-                         [&](auto d) { return weigh_lines<d.value>(grid, state, p, base, f, keep, e); });
 }
 
 using scalar::target_defect;
@@ -197,14 +148,24 @@ bool conservative_target(const gas& of, const double* omega, const target_base& 
   const fluid_state state = of.state(omega);
   target_shape shape = given;
   if (!(shape.variance >= scalar::narrowest_target * widest_gap(grid, state))) return false;
+  const bool corrected = correct_by_moments(of, state, base, shape);
+  const target_rows::lines_of_row lines = lines_of(grid, state);
+  const int of_h = of.reduced() ? grid.size() : 0;
+  const double* from = base.row;
   const auto weigh_all = [&](bool with_h) {
-    bool some = weigh(grid, state, shape.of_g, base.row, f, keep, e);
+    bool some = target_rows::weigh(from, shape.of_g, lines, f, keep, e);
     if (of.reduced() && with_h)
-      some |= weigh(grid, state, shape.of_h, base.row + grid.size(), f + grid.size(), keep, e + grid.size());
+      some |= target_rows::weigh(from + of_h, shape.of_h, lines, f + of_h, keep, e + of_h);
     raised |= some;
     return some;
   };
-  if (correct_by_moments(of, state, base, shape) && !weigh_all(true)) return true;
+  if (corrected && !weigh_all(true)) return true;
+  thread_local aligned_vector<double> again;
+  if (from == e) {
+    again.resize(static_cast<std::size_t>(grid.size() + of_h));
+    base.fill(again.data());
+    from = again.data();
+  }
   // If the base is not a Gaussian, each correction reduces the defect about tenfold. Once corrections no
   // longer reduce it, target_accuracy is enough.
   const double ratio = energy_ratio(omega, d, shape.variance),

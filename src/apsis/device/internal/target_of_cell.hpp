@@ -59,10 +59,10 @@ struct stored_base {
 /// third degree.
 template <int Dimensions, bool Cubic, class Base>
 struct target_of_cell {
-  const gas_rows& rows;               ///< rows of the gas
-  const Base& base;                   ///< factor of the polynomials
-  const scalar::target_shape& shape;  ///< polynomials
-  const double* u;                    ///< bulk velocity
+  const gas_rows& rows;       ///< rows of the gas
+  const Base& base;           ///< factor of the polynomials
+  const target_shape& shape;  ///< polynomials
+  const double* u;            ///< bulk velocity
 
   /// Calls apply(component, value) for the components of this lane of a group of eight.
   template <class Group, class Apply>

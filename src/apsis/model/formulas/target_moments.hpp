@@ -9,6 +9,7 @@
 #include <apsis/exec/number.hpp>
 #include <apsis/model/formulas/target.hpp>
 #include <apsis/model/line_moments.hpp>
+#include <apsis/model/target_polynomial.hpp>
 
 APSIS_BEFORE_FORMULAS();
 namespace apsis::APSIS_NUMBERS {
@@ -20,46 +21,28 @@ inline constexpr double narrowest_target = 0.25;
 /// Relative size of a defect that counts as rounding.
 inline constexpr double target_rounding = 4.5e-16;
 
-/// The polynomial P(c) = k + l·c + cᵀA c + (w·c)|c|² in the resolved components c = v − u.
-struct target_polynomial {
-  double k = 1.0;       ///< k
-  double l[3] = {},     ///< l
-      w[3] = {};        ///< w
-  double a[3][3] = {};  ///< A, symmetric
-
-  /// Whether it has no term of third degree.
-  APSIS_FORMULA bool is_quadratic() const { return w[0] == 0.0 && w[1] == 0.0 && w[2] == 0.0; }
-};
-
-/// A target without the correction that restores its moments.
-struct target_shape {
-  target_polynomial of_g,  ///< factor of g
-      of_h;                ///< factor of h
-  double variance = 1.0;   ///< variance of one resolved component of the base
-};
-
-/// Returns P along the last line of a grid of D dimensions. `last` is the direction of the line. `across` are
+/// Returns P along last lines of a grid of D dimensions. `last` is the direction of the lines. `across` are
 /// the directions of the other components c. `Cubic` states whether P has terms of third degree.
-template <int D, bool Cubic>
-APSIS_FORMULA cubic_polynomial<double> polynomial_on_line(const target_polynomial& p, const int* across,
-                                                          int last, const double* c) {
+template <int D, bool Cubic, class N>
+APSIS_FORMULA cubic_polynomial<N> polynomial_on_line(const target_polynomial& p, const int* across, int last,
+                                                     const N* c) {
   // NOLINTNEXTLINE(misc-const-correctness): polynomials of second degree do not change it.
-  double square = 0.0, along = 0.0;
-  cubic_polynomial<double> of_line{p.k, p.l[last], p.a[last][last], p.w[last]};
+  N square(0.0), along(0.0);
+  cubic_polynomial<N> of_line{N(p.k), N(p.l[last]), N(p.a[last][last]), N(p.w[last])};
   for (int k = 0; k + 1 < D; ++k) {
     const int i = across[k];
     if constexpr (Cubic) {
-      square += c[k] * c[k];
-      along += p.w[i] * c[k];
+      square = square + c[k] * c[k];
+      along = along + N(p.w[i]) * c[k];
     }
-    of_line.k0 += p.l[i] * c[k];
-    of_line.k1 += 2.0 * p.a[i][last] * c[k];
-    for (int l = 0; l + 1 < D; ++l) of_line.k0 += p.a[i][across[l]] * c[k] * c[l];
+    of_line.k0 = of_line.k0 + N(p.l[i]) * c[k];
+    of_line.k1 = of_line.k1 + N(2.0 * p.a[i][last]) * c[k];
+    for (int l = 0; l + 1 < D; ++l) of_line.k0 = of_line.k0 + N(p.a[i][across[l]]) * c[k] * c[l];
   }
   if constexpr (Cubic) {
-    of_line.k0 += along * square;
-    of_line.k1 += p.w[last] * square;
-    of_line.k2 += along;
+    of_line.k0 = of_line.k0 + along * square;
+    of_line.k1 = of_line.k1 + N(p.w[last]) * square;
+    of_line.k2 = of_line.k2 + along;
   }
   return of_line;
 }

@@ -1,5 +1,4 @@
 #include <apsis/core/errors.hpp>
-#include <apsis/exec/aligned.hpp>
 #include <apsis/model/correlated_gaussian.hpp>
 #include <apsis/model/formulas/ellipsoidal.hpp>
 #include <apsis/model/gas_model.hpp>
@@ -7,6 +6,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <functional>
 
 namespace apsis {
 namespace {
@@ -95,11 +95,13 @@ class es_bgk_model final : public gas_model {
     const auto target =
         scalar::ellipsoidal_target<d>::of(formula_, state, s, s[pairs()], part, g.degrees_of_freedom() - d);
     if (!target.exists) return false;
-    thread_local aligned_vector<double> base;
-    base.resize(static_cast<std::size_t>(components()));
-    correlated_gaussian(g.grid(), state, widened(target.covariance), widened(target.inverse), base.data());
-    if (g.reduced()) g.fill_h(target.others, base.data());
-    return conservative_target(g, omega, {base.data(), {}, target.others}, target.shape, f, keep, e, raised);
+    const auto fill = [&](double* row) {
+      correlated_gaussian(g.grid(), state, widened(target.covariance), widened(target.inverse), row);
+      if (g.reduced()) g.fill_h(target.others, row);
+    };
+    fill(e);
+    return conservative_target(g, omega, {e, {}, target.others, std::cref(fill)}, target.shape, f, keep, e,
+                               raised);
   }
 
   scalar::ellipsoidal_model formula_;

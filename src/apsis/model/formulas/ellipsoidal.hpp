@@ -102,9 +102,13 @@ struct moments_of_base {
   }
 
  private:
+  // Loops are unrolled, because the exponents are then constants. Most of the time would otherwise pass with
+  // finding the places of the moments.
+
   /// Returns Σ g Π c_k over up to four directions; −1 stands for no direction.
   APSIS_FORMULA double along(int i = -1, int j = -1, int k = -1, int l = -1) const {
     exponents p;
+#pragma GCC unroll 3
     for (int n = 0; n < D; ++n) p.of[n] = (i == n) + (j == n) + (k == n) + (l == n);
     return sums(p.of);
   }
@@ -112,10 +116,12 @@ struct moments_of_base {
   /// Returns ⟨P Π c_k^p_k⟩.
   APSIS_FORMULA double mean(const target_polynomial& polynomial, const exponents& p) const {
     double sum = polynomial.k * sums(p.of);
+#pragma GCC unroll 3
     for (int k = 0; k < D; ++k) {
       exponents with = p;
       ++with.of[k];
       sum += polynomial.l[k] * sums(with.of);
+#pragma GCC unroll 3
       for (int l = 0; l < D; ++l) {
         exponents pair = with;
         ++pair.of[l];
@@ -129,6 +135,7 @@ struct moments_of_base {
     target_defect found;
     found.mass = mean(shape.of_g, {}) - 1.0;
     double energy = contents.others * mean(shape.of_h, {}) - contents.energy;
+#pragma GCC unroll 3
     for (int k = 0; k < D; ++k) {
       exponents p;
       p.of[k] = 1;
@@ -150,11 +157,13 @@ struct moments_of_base {
     products.of[0][0] = along();
     y[0] = found.mass;
     y[energy] = found.energy;
+#pragma GCC unroll 3
     for (int k = 0; k < D; ++k) {
       const int row = k + 1;
       y[row] = found.momentum[k];
       products.of[row][0] = along(k) / speed;
       products.of[energy][0] += 0.5 * along(k, k) / variance;
+#pragma GCC unroll 3
       for (int l = 0; l < D; ++l) {
         products.of[row][l + 1] = along(k, l) / variance;
         products.of[energy][row] += 0.5 * along(k, l, l) / (variance * speed);
@@ -164,6 +173,7 @@ struct moments_of_base {
     cholesky_factor<size>(products).solve(y);
     target_correction by{};
     by.k = -contents.rho * y[0];
+#pragma GCC unroll 3
     for (int k = 0; k < D; ++k) by.l[k] = -contents.rho * y[k + 1] / speed;
     by.a = -contents.rho * 0.5 * y[energy] / variance;
     return by;

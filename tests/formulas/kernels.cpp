@@ -7,6 +7,7 @@
 #include <apsis/model/formulas/grid_sums.hpp>
 #include <apsis/model/formulas/line.hpp>
 #include <apsis/model/formulas/nearby.hpp>
+#include <apsis/model/formulas/plane.hpp>
 #include <apsis/model/formulas/reduction.hpp>
 #include <apsis/model/formulas/relaxation.hpp>
 #include <apsis/model/formulas/shakhov.hpp>
@@ -217,8 +218,11 @@ extern "C" void stresses(const double* u, double* to) {
   auto target = scalar::ellipsoidal_target<3>::of(model, state, u, u[3], 1.0, 0);
   const int across[] = {0, 1};
   const auto of = scalar::conditional_gaussian<3>::of(u[0], target.covariance, target.inverse, 2, across);
-  const auto tables = scalar::correlated_tables::from(of, state.u);
-  to[0] = tables.fit(u) ? tables.across(u[0]).a : tables.along(0, u[0]).u;
+  const auto tables = scalar::correlated_tables::from(of);
+  to[0] = tables.fit(u) ? tables.across.row(u[0], u[1]).a : tables.along[0].row(u[0], u[1]).u;
+  const auto walk = tables.across.walk({4, u[1]}, u[2], u[3]);
+  scalar::walk_over_rows(one_of_eight{3}, walk, u, 6,
+                         [to](int row, int j, double value) { to[row + j] += value; });
   to[1] = of.on_line(u, u[4]).a;
   const auto sums = [u](const int* p) { return u[p[0] + p[1] + p[2]]; };
   const scalar::moments_of_base<3, decltype(sums)> moments{sums, {u[0], u[1], u[2]}};

@@ -2,6 +2,7 @@
 
 #include <apsis/exec/aligned.hpp>
 #include <apsis/model/formulas/correlated.hpp>
+#include <apsis/model/plane_rows.hpp>
 
 #include <algorithm>
 #include <array>
@@ -14,6 +15,10 @@ namespace {
 
 velocity_rows::gaussian curve_of(const scalar::gaussian_of_line& of) {
   return {of.a, of.u, of.T};
+}
+
+bool walks_over(const velocity_line& rows, const scalar::correlated_plane& of, double variance) {
+  return rows.uniform() && of.walks(rows.spacing(), variance);
 }
 
 /// Fills m line by line. One vector exponential computes the heights of several lines.
@@ -42,44 +47,56 @@ void fill_lines(const velocity_grid& grid, const fluid_state& state,
   }
 }
 
-/// rows ← one Gaussian along the direction `along` for each velocity of direction k.
-template <class Curve>
-void find_rows(const velocity_grid& grid, int k, int along, const Curve& curve,
-               aligned_vector<double>& rows) {
-  const auto& v = grid.line(k).v();
-  const int n = grid.line(along).points();
-  rows.resize(v.size() * static_cast<std::size_t>(n));
+/// to ← the plane of the directions k and `along`, row by row. `variance` is that of component k.
+void fill_plane(const velocity_grid& grid, const fluid_state& state, const scalar::correlated_plane& of,
+                int k, int along, double variance, double* to) {
+  const velocity_line &across = grid.line(k), &line = grid.line(along);
+  const int n = line.points();
+  const double u = state.u[along];
+  if (walks_over(across, of, variance))
+    return plane_rows::fill(of.walk({across.points(), across.spacing()}, state.u[k], u), line.v().data(), n,
+                            to);
   thread_local std::vector<velocity_rows::gaussian> curves;
   curves.clear();
-  for (const double at : v) curves.push_back(curve_of(curve(at)));
-  gaussians_on(grid.line(along), curves.data(), static_cast<int>(curves.size()), rows.data(), n);
+  for (const double v : across.v()) curves.push_back(curve_of(of.row(v - state.u[k], u)));
+  gaussians_on(line, curves.data(), across.points(), to, n);
 }
 
-bool fit(const scalar::correlated_tables& tables, const velocity_grid& grid, const fluid_state& state) {
-  double farthest[3];
-  for (int k = 0; k < 3; ++k) {
-    const auto& v = grid.line(k).v();
-    farthest[k] = std::max(std::abs(v.front() - state.u[k]), std::abs(v.back() - state.u[k]));
-  }
-  return tables.fit(farthest);
+double farthest(const velocity_grid& grid, const fluid_state& state, int k) {
+  const auto& v = grid.line(k).v();
+  return std::max(std::abs(v.front() - state.u[k]), std::abs(v.back() - state.u[k]));
 }
 
-void multiply_tables(const scalar::correlated_tables& tables, const velocity_grid& grid, double* m) {
-  thread_local std::array<aligned_vector<double>, 3> of_lines;
-  find_rows(grid, 0, 1, [&](double v) { return tables.across(v); }, of_lines[0]);
-  for (int k = 0; k < 2; ++k)
-    find_rows(
-        grid, k, 2, [&](double v) { return tables.along(k, v); }, of_lines[static_cast<std::size_t>(k) + 1]);
-  const auto n = static_cast<std::size_t>(grid.line(2).points()),
-             rows = static_cast<std::size_t>(grid.line(0).points()),
-             lines = static_cast<std::size_t>(grid.line(1).points());
-  for (std::size_t i = 0; i < rows; ++i)
-    for (std::size_t j = 0; j < lines; ++j, m += n) {
-      const double factor = of_lines[0][i * lines + j];
-      const double *first = of_lines[1].data() + i * n, *second = of_lines[2].data() + j * n;
-#pragma omp simd
-      for (std::size_t k = 0; k < n; ++k) m[k] = factor * first[k] * second[k];
-    }
+/// m ← the Gaussian as a product of tables. Returns false, with m undefined, if they leave the range of
+/// normal numbers.
+bool multiply_tables(const velocity_grid& grid, const fluid_state& state,
+                     const scalar::conditional_gaussian<3>& of, const direction_matrix& covariance,
+                     double* m) {
+  const auto tables = scalar::correlated_tables::from(of);
+  const double ends[] = {farthest(grid, state, 0), farthest(grid, state, 1), farthest(grid, state, 2)};
+  if (!tables.fit(ends)) return false;
+  thread_local std::array<aligned_vector<double>, 3> rows;
+  const int n[] = {grid.line(0).points(), grid.line(1).points(), grid.line(2).points()};
+  const auto fill = [&](aligned_vector<double>& to, const scalar::correlated_plane& plane, int k, int along) {
+    to.resize(static_cast<std::size_t>(n[k]) * static_cast<std::size_t>(n[along]));
+    fill_plane(grid, state, plane, k, along, covariance.of[k][k], to.data());
+  };
+  fill(rows[0], tables.across, 0, 1);
+  fill(rows[1], tables.along[0], 0, 2);
+  fill(rows[2], tables.along[1], 1, 2);
+  plane_rows::multiply({{n[0], n[1], n[2]}, rows[0].data(), rows[1].data(), rows[2].data()}, m);
+  return true;
+}
+
+/// m ← the Gaussian by a walk over its rows. Returns false if this is less accurate than exponentials.
+bool walk_over_plane(const velocity_grid& grid, const fluid_state& state, const scalar::correlated_plane& of,
+                     double variance, double* m) {
+  const double across = farthest(grid, state, 0) + grid.line(0).spacing();
+  if (!(walks_over(grid.line(0), of, variance) &&
+        scalar::are_normal(of.height, of.largest_exponent(across, farthest(grid, state, 1)))))
+    return false;
+  fill_plane(grid, state, of, 0, 1, variance, m);
+  return true;
 }
 
 template <int D>
@@ -97,11 +114,10 @@ void fill(const velocity_grid& grid, const fluid_state& state, const direction_m
   for (int k = 0; k + 1 < D; ++k) across[k] = grid.component_across(k);
   const auto of = scalar::conditional_gaussian<D>::of(state.rho, part_of<D>(covariance), part_of<D>(inverse),
                                                       grid.last_component(), across);
+  if constexpr (D == 2)
+    if (walk_over_plane(grid, state, scalar::plane_of(of), covariance.of[0][0], m)) return;
   if constexpr (D == 3)
-    if (!grid.is_polar()) {
-      const auto tables = scalar::correlated_tables::from(of, state.u);
-      if (fit(tables, grid, state)) return multiply_tables(tables, grid, m);
-    }
+    if (!grid.is_polar() && multiply_tables(grid, state, of, covariance, m)) return;
   fill_lines(grid, state, of, m);
 }
 

@@ -2,6 +2,7 @@
 
 #include <apsis/device/internal/grid_equilibrium.hpp>
 #include <apsis/model/formulas/correlated.hpp>
+#include <apsis/model/formulas/plane.hpp>
 
 namespace apsis::kernels {
 
@@ -27,19 +28,23 @@ struct correlated_rows {
     constexpr int last = Dimensions - 1;
     const int across[] = {0, 1};
     const auto of = conditional_gaussian<Dimensions>::of(state.rho, covariance, inverse, last, across);
-    if constexpr (Dimensions == 3) {
-      const auto by_tables = correlated_tables::from(of, state.u);
-      const bool fits = by_tables.fit(farthest(rows, state).of);
-      if (fits) put_tables(group, rows, by_tables, tables);
-      group.lane.wait();
-      if (fits) {
-        multiply_tables(group, rows, tables, row);
-      } else {
-        put_lines(group, rows, state, of, row);
-      }
-    } else {
-      put_lines(group, rows, state, of, row);
+    const ends most = farthest(rows, state);
+    bool fits = false;
+    if constexpr (Dimensions == 2) {
+      const auto plane = plane_of(of);
+      const double variance = covariance.of[0][0];
+      fits = walks_over(rows.of[0], plane, variance) &&
+             are_normal(plane.height, plane.largest_exponent(most.of[0] + rows.of[0].spacing, most.of[1]));
+      if (fits) put_plane(group, rows, state, plane, 0, 1, variance, row);
     }
+    if constexpr (Dimensions == 3) {
+      const auto by_tables = correlated_tables::from(of);
+      fits = by_tables.fit(most.of);
+      if (fits) put_tables(group, rows, state, by_tables, covariance, tables);
+      group.lane.wait();
+      if (fits) multiply_tables(group, rows, tables, row);
+    }
+    if (!fits) put_lines(group, rows, state, of, row);
     group.lane.wait();
   }
 
@@ -50,7 +55,7 @@ struct correlated_rows {
   /// Returns the largest |c_k| for every k.
   static APSIS_FORMULA ends farthest(const gas_rows& rows, const fluid_state& state) {
     ends found{};
-    for (int k = 0; k < 3; ++k) {
+    for (int k = 0; k < Dimensions; ++k) {
       const auto& of = rows.of[k];
       const double first = __builtin_fabs(of.v[0] - state.u[k]),
                    last = __builtin_fabs(of.v[of.n - 1] - state.u[k]);
@@ -73,17 +78,37 @@ struct correlated_rows {
     }
   }
 
+  static APSIS_FORMULA bool walks_over(const gas_rows::direction& of, const scalar::correlated_plane& plane,
+                                       double variance) {
+    return of.even != 0 && plane.walks(of.spacing, variance);
+  }
+
+  /// to ← the plane of the directions k and `along`, row by row. `variance` is that of component k.
   template <class Group>
-  static APSIS_FORMULA void put_tables(const Group& group, const gas_rows& rows,
-                                       const scalar::correlated_tables& of, double* tables) {
+  static APSIS_FORMULA void put_plane(const Group& group, const gas_rows& rows, const fluid_state& state,
+                                      const scalar::correlated_plane& plane, int k, int along,
+                                      double variance, double* to) {
+    const auto &across = rows.of[k], &line = rows.of[along];
+    const double u = state.u[along];
+    if (walks_over(across, plane, variance)) {
+      const auto walk = plane.walk({across.n, across.spacing}, state.u[k], u);
+      return scalar::walk_over_rows(group, walk, line.v, line.n, [&](int row, int j, double value) {
+        group.store(value, line.n - j, to + static_cast<long>(row) * line.n + j);
+      });
+    }
+    for (int i = 0; i < across.n; ++i)
+      put_gaussian(group, line, plane.row(across.v[i] - state.u[k], u), to + static_cast<long>(i) * line.n);
+  }
+
+  template <class Group>
+  static APSIS_FORMULA void put_tables(const Group& group, const gas_rows& rows, const fluid_state& state,
+                                       const scalar::correlated_tables& of,
+                                       const scalar::small_matrix<Dimensions>& covariance, double* tables) {
     const int n0 = rows.of[0].n, n1 = rows.of[1].n, n2 = rows.of[2].n;
     double *first = tables + n0 * n1, *second = first + n0 * n2;
-    for (int i = 0; i < n0; ++i) {
-      put_gaussian(group, rows.of[1], of.across(rows.of[0].v[i]), tables + i * n1);
-      put_gaussian(group, rows.of[2], of.along(0, rows.of[0].v[i]), first + i * n2);
-    }
-    for (int j = 0; j < n1; ++j)
-      put_gaussian(group, rows.of[2], of.along(1, rows.of[1].v[j]), second + j * n2);
+    put_plane(group, rows, state, of.across, 0, 1, covariance.of[0][0], tables);
+    put_plane(group, rows, state, of.along[0], 0, 2, covariance.of[0][0], first);
+    put_plane(group, rows, state, of.along[1], 1, 2, covariance.of[1][1], second);
   }
 
   template <class Group>

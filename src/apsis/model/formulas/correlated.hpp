@@ -10,9 +10,16 @@
 #include <apsis/model/formulas/exponential.hpp>
 #include <apsis/model/formulas/small_matrix.hpp>
 #include <apsis/model/formulas/velocity_line.hpp>
+#include <apsis/model/plane_walk.hpp>
 
 APSIS_BEFORE_FORMULAS();
 namespace apsis::APSIS_NUMBERS {
+
+/// Whether products of a factor of this height and exponentials stay normal numbers. The exponents have this
+/// sum.
+APSIS_FORMULA bool are_normal(double height, double exponents) {
+  return height > 1e-30 && height < 1e30 && exponents < 600.0;
+}
 
 /// The Gaussian ρ (det 2πΘ)^{−1/2} exp(−½ cᵀΘ⁻¹c) of D components, as a Gaussian a(c') exp(−(c − s·c')²/(2V))
 /// in the component c of the last line. c' are the other components, and a(c') is a Gaussian in them. s are
@@ -72,45 +79,73 @@ struct conditional_gaussian {
   }
 };
 
+/// A Gaussian a exp(−½(A x² + 2Bxy + C y²)) on a plane of velocities. x is the component of a row and y that
+/// along it.
+struct correlated_plane {
+  double height,  ///< a
+      xx, xy,     ///< A, B
+      yy;         ///< C > 0
+
+  /// Returns a bound on the exponents where |x| and |y| are at most these numbers.
+  APSIS_FORMULA double largest_exponent(double x, double y) const {
+    return 0.5 * xx * x * x + __builtin_fabs(xy) * x * y + 0.5 * yy * y * y;
+  }
+  /// Returns the Gaussian along the row at x. The bulk velocity along rows is u.
+  APSIS_FORMULA gaussian_of_line row(double x, double u) const {
+    const double shift = -xy / yy, rest = xx + xy * shift;
+    return {height * exp_of(-0.5 * rest * x * x), u + shift * x, 1.0 / yy};
+  }
+  /// Whether walks over evenly spaced rows are accurate. `variance` is that of x in the whole Gaussian. A
+  /// value k rows away has k²/2 roundings. Ten rows per standard deviation keep these below 40 roundings of
+  /// the largest value.
+  APSIS_FORMULA bool walks(double spacing, double variance) const {
+    const double square = spacing * spacing;
+    return square >= 0.01 * variance && xx * square <= 16.0;
+  }
+  /// Returns the walk over these rows. The bulk velocity across rows is u_across, and that along them u.
+  APSIS_FORMULA plane_walk walk(const spaced_line& rows, double u_across, double u) const {
+    const double h = rows.spacing, at = u_across / h + 0.5 * rows.n;
+    const double inside = at > 0.0 ? at < rows.n - 1.0 ? at : rows.n - 1.0 : 0.0;  // 0 for NaN
+    const int first = static_cast<int>(inside);
+    const double x = distance_to(u_across, h, first + 0.5 - 0.5 * rows.n);
+    const gaussian_of_line start = row(x, u);
+    return {start.a, start.u, start.T, u, -xx * h * (x + 0.5 * h), xy * h, -xx * h * h, rows.n, first};
+  }
+};
+
+/// Returns the plane of a Gaussian of two components.
+template <int D>
+APSIS_FORMULA correlated_plane plane_of(const conditional_gaussian<D>& of) {
+  static_assert(D == 2);
+  const double per = 1.0 / of.variance, slope = of.slope[0];
+  return {of.height, of.outer[0][0] + slope * slope * per, -slope * per, per};
+}
+
 /// A Gaussian of three components as a product of three tables. With s·c' = s₁c₁ + s₂c₂ it is
 ///   a(c') exp((s₁c₁ − s₂c₂)²/(2V)) · exp(−(c − 2s₁c₁)²/(4V)) · exp(−(c − 2s₂c₂)²/(4V)):
-/// one table in c₁ and c₂, one in c₁ and c, and one in c₂ and c. Each table consists of Gaussians on lines.
+/// one table in c₁ and c₂, one in c₁ and c, and one in c₂ and c.
 struct correlated_tables {
-  conditional_gaussian<3> of;
-  double outer[2][2];  ///< coefficients of the exponent of the first table; [1][0] is unused
-  double u[3];         ///< bulk velocity
+  correlated_plane across,  ///< in c₁ and c₂
+      along[2];             ///< in c₁ and c, and in c₂ and c
 
-  static APSIS_FORMULA correlated_tables from(const conditional_gaussian<3>& of, const double* u) {
-    const double per_variance = 1.0 / of.variance;
-    correlated_tables tables{of, {}, {u[0], u[1], u[2]}};
-    for (int k = 0; k < 2; ++k)
-      tables.outer[k][k] = of.outer[k][k] - of.slope[k] * of.slope[k] * per_variance;
-    tables.outer[0][1] = of.outer[0][1] + of.slope[0] * of.slope[1] * per_variance;
+  static APSIS_FORMULA correlated_tables from(const conditional_gaussian<3>& of) {
+    const double per = 1.0 / of.variance, s1 = of.slope[0], s2 = of.slope[1];
+    correlated_tables tables{{of.height, of.outer[0][0] - s1 * s1 * per, of.outer[0][1] + s1 * s2 * per,
+                              of.outer[1][1] - s2 * s2 * per},
+                             {}};
+    for (int k = 0; k < 2; ++k) {
+      const double s = of.slope[k];
+      tables.along[k] = {1.0, 2.0 * s * s * per, -s * per, 0.5 * per};
+    }
     return tables;
   }
 
   /// Whether all values and factors are normal numbers. `farthest` has the largest |c_k| of the velocities.
   APSIS_FORMULA bool fit(const double* farthest) const {
-    constexpr double most = 600.0;  // sum of the exponents
-    const bool bounded = outer[1][1] > 0.0 && outer[0][0] * outer[1][1] > outer[0][1] * outer[0][1];
-    if (!(bounded && of.height > 1e-30 && of.height < 1e30)) return false;
-    double sum = __builtin_fabs(outer[0][1]) * farthest[0] * farthest[1];
-    for (int k = 0; k < 2; ++k) {
-      const double end = farthest[2] + 2.0 * __builtin_fabs(of.slope[k]) * farthest[k];
-      sum += 0.5 * outer[k][k] * farthest[k] * farthest[k] + 0.25 * end * end / of.variance;
-    }
-    return sum < most;
-  }
-
-  /// Returns a(c') exp((s₁c₁ − s₂c₂)²/(2V)) as a Gaussian along the second direction, for the velocity v
-  /// along the first.
-  APSIS_FORMULA gaussian_of_line across(double v) const {
-    const double shift = -outer[0][1] / outer[1][1], rest = outer[0][0] + outer[0][1] * shift, c = v - u[0];
-    return {of.height * exp_of(-0.5 * rest * c * c), u[1] + shift * c, 1.0 / outer[1][1]};
-  }
-  /// Returns exp(−(c − 2s_k c_k)²/(4V)) along the last direction, for the velocity v along direction k.
-  APSIS_FORMULA gaussian_of_line along(int k, double v) const {
-    return {1.0, u[2] + 2.0 * of.slope[k] * (v - u[k]), 2.0 * of.variance};
+    const bool bounded = across.yy > 0.0 && across.xx * across.yy > across.xy * across.xy;
+    return bounded && are_normal(across.height, across.largest_exponent(farthest[0], farthest[1]) +
+                                                    along[0].largest_exponent(farthest[0], farthest[2]) +
+                                                    along[1].largest_exponent(farthest[1], farthest[2]));
   }
 };
 

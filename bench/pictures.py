@@ -77,7 +77,8 @@ def draw_flows(result, path):
     rates.set_xscale("log")
     rates.set_xlabel("point·stages per second")
     rates.set_yticks(range(len(cases)), cases)
-    rates.legend()
+    rates.set_ylim(-0.7, len(cases) - 0.3)
+    rates.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=2, fontsize="small")
     left = [0.0] * len(cases)
     for k, part in enumerate(result["columns"][at["ratio"] + 1:]):
         widths = [float(of_case[case][0][at[part]].split()[0]) for case in cases]
@@ -85,7 +86,7 @@ def draw_flows(result, path):
         left = [a + b for a, b in zip(left, widths)]
     shares.set_xlabel("share of the time in %")
     shares.set_xlim(0.0, 100.0)
-    shares.legend(loc="upper center", bbox_to_anchor=(0.5, 1.08), ncols=6, fontsize="small")
+    shares.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=6, fontsize="small", columnspacing=1.0)
     figure.savefig(path)
     plt.close(figure)
 

@@ -1,7 +1,6 @@
 #include <apsis/semidiscrete/force.hpp>
 
 #include <apsis/core/errors.hpp>
-#include <apsis/core/first_error.hpp>
 #include <apsis/exec/profile.hpp>
 #include <apsis/scheme/limiter.hpp>
 #include <apsis/semidiscrete/block_sweep.hpp>
@@ -21,7 +20,6 @@ namespace {
 
 constexpr int least_points = 5;       // points on which an edge depends
 constexpr double kappa = 1.0 / 12.0;  // CFL number of limited fluxes along velocities
-constexpr int cells_of_task = 16;
 
 std::size_t size(int n) {
   return static_cast<std::size_t>(n);
@@ -82,7 +80,7 @@ lattice_rows::layout force::layout_along(std::size_t direction) const {
   return {equation_.components() / (points * apart), points, apart};
 }
 
-void force::add(double t, const field& u, std::span<const target<field, double>> targets) const {
+void force::prepare(const field& u) const {
   std::size_t most_lines = 0;
   int most_points = 0;
   for (std::size_t k = 0; k < lattice_.points.size(); ++k) {
@@ -94,21 +92,15 @@ void force::add(double t, const field& u, std::span<const target<field, double>>
     here.into_last.resize(most_lines);
     here.scratch.resize(lattice_rows::scratch_size(most_points));
   });
-  first_error failure;
-  failure.run([&] {
-    parallel_blocks(u.cells(), cells_of_task, [&](int begin, int end) {
-      const profile::section timed(kernel::forces, static_cast<double>(end - begin) * u.stride(),
-                                   traffic(targets));
-      for_cells_in(space_->mesh().fluid(), begin, end, [&](int from, int to) {
-        for (int cell = from; cell < to; ++cell) add_cell(t, u, targets, cell, workspaces_->here());
-      });
-    });
-  });
-  integrate();
-  failure.rethrow();
 }
 
-/// Computes the amounts that were given and lost from the sums of all cells.
+void force::add(double t, const field& u, std::span<const target<field, double>> targets, int begin,
+                int end) const {
+  const profile::section timed(kernel::forces, static_cast<double>(end - begin) * u.stride(),
+                               traffic(targets));
+  for (int cell = begin; cell < end; ++cell) add_cell(t, u, targets, cell, workspaces_->here());
+}
+
 void force::integrate() const {
   const std::vector<double> all = global_integrals(*space_, of_cells_, sums_of_cell());
   const auto first_loss = all.begin() + static_cast<std::ptrdiff_t>(invariants_);
@@ -194,14 +186,14 @@ double force::add_direction(const double* row, std::size_t direction, double a, 
 /// Only the first set of functions on the velocities counts: it is the density of the mass.
 double force::mass_into_ends(const lattice_rows::layout& at, bool forward, const double* into_last) const {
   const auto weights = equation_.velocities().weights();
+  const auto velocities = static_cast<int>(weights.size());
   const int last = forward ? at.block() - at.apart : 0;
   double mass = 0.0;
-  for (int block = 0; block < at.blocks; ++block)
-    for (int k = 0; k < at.apart; ++k) {
-      const int component = block * at.block() + last + k;
-      if (component >= equation_.velocities().size()) return mass;
-      mass += weights[size(component)] * into_last[block * at.apart + k];
-    }
+  for (int block = 0; block < at.blocks; ++block) {
+    const int first = block * at.block() + last, count = std::min(at.apart, velocities - first);
+    if (count <= 0) return mass;
+    for (int k = 0; k < count; ++k) mass += weights[size(first + k)] * into_last[block * at.apart + k];
+  }
   return mass;
 }
 

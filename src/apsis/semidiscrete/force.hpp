@@ -32,13 +32,18 @@ class force {
   ~force();
   force(force&&) noexcept;  ///< leaves the moved-from object empty
 
-  /// acc ← acc + β (−a·∇_v u) for every target. Throws numerical_error if a is not finite or
-  /// exceeds its bound.
-  void add(double t, const field& u, std::span<const target<field, double>> targets) const;
-  /// Returns the amounts of the invariants that the last add() gave per unit of time and β.
+  /// Prepares the memory of all threads for add().
+  void prepare(const field& u) const;
+  /// acc ← acc + β (−a·∇_v u) in the cells begin … end−1 for every target, by any thread. Throws
+  /// numerical_error if a is not finite or exceeds its bound.
+  void add(double t, const field& u, std::span<const target<field, double>> targets, int begin,
+           int end) const;
+  /// Computes given() and losses() once add() was called for all cells that are not solid. Collective.
+  void integrate() const;
+  /// Returns the amounts of the invariants that were given per unit of time and β.
   const std::vector<double>& given() const { return given_; }
-  /// Returns the losses at the ends of the lattice and by limited fluxes in the last add(), per unit of time
-  /// and β, in the layout of force_losses.
+  /// Returns the losses at the ends of the lattice and by limited fluxes, per unit of time and β, in the
+  /// layout of force_losses.
   const std::vector<double>& losses() const { return losses_; }
   /// Returns the rate 1/Δt_FE of the force alone: Σ_k |a_k|/Δv with the bounds, and 12 times this rate for
   /// limited fluxes. Between neighbouring velocities f may differ by powers of ten, so that limited fluxes
@@ -68,7 +73,6 @@ class force {
  private:
   struct workspace;
   void set_losses(const std::array<double, 3>& a, double* sums) const;
-  void integrate() const;
   void add_cell(double t, const field& u, std::span<const target<field, double>> targets, int cell,
                 workspace& here) const;
   double add_direction(const double* row, std::size_t direction, double a, bool fresh, workspace& here) const;

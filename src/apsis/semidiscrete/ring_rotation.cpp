@@ -3,7 +3,6 @@
 #include <apsis/core/errors.hpp>
 #include <apsis/exec/profile.hpp>
 #include <apsis/scheme/limiter.hpp>
-#include <apsis/semidiscrete/global_integrals.hpp>
 #include <apsis/semidiscrete/lattice_rows.hpp>
 #include <apsis/semidiscrete/rotation_rows.hpp>
 
@@ -19,8 +18,7 @@
 namespace apsis {
 namespace {
 
-constexpr int cells_of_rotation = 16;  // cells of a task
-constexpr int least_angles = 12;       // for fifth order: with 8 angles, waves between walls grow
+constexpr int least_angles = 12;  // for fifth order: with 8 angles, waves between walls grow
 
 /// Returns the sine of the angle of an edge 0 … M/2. Symmetry gives all other sines and cosines, so that
 /// symmetric rows stay symmetric to the last bit.
@@ -140,21 +138,20 @@ void ring_rotation::limit_for_steps(double step, std::vector<line_speeds>& speed
   }
 }
 
-void ring_rotation::add(const field& u, std::span<const target<field, double>> targets) const {
+void ring_rotation::prepare(const field& u) const {
   const rotation_rows::ring ring{layout_.angles, layout_.apart};
   workspaces_->prepare([&](workspace& here) {
     for (auto& places : here.places) places.resize(ring.places());
     here.values.resize(ring.continued());
     here.change.resize(static_cast<std::size_t>(u.stride()));
   });
-  parallel_blocks(u.cells(), cells_of_rotation, [&](int begin, int end) {
-    const profile::section timed(kernel::forces, static_cast<double>(end - begin) * u.stride(),
-                                 traffic(targets));
-    for_cells_in(space_->mesh().fluid(), begin, end, [&](int from, int to) {
-      for (int cell = from; cell < to; ++cell) add_cell(u, targets, cell, workspaces_->here());
-    });
-  });
-  given_ = global_integrals(*space_, of_cells_, invariants_);
+}
+
+void ring_rotation::add(const field& u, std::span<const target<field, double>> targets, int begin,
+                        int end) const {
+  const profile::section timed(kernel::forces, static_cast<double>(end - begin) * u.stride(),
+                               traffic(targets));
+  for (int cell = begin; cell < end; ++cell) add_cell(u, targets, cell, workspaces_->here());
 }
 
 void ring_rotation::add_cell(const field& u, std::span<const target<field, double>> targets, int cell,

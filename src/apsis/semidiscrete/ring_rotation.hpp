@@ -7,6 +7,7 @@
 #include <apsis/mesh/field.hpp>
 #include <apsis/model/model.hpp>
 #include <apsis/semidiscrete/block_sweep.hpp>
+#include <apsis/semidiscrete/global_integrals.hpp>
 #include <apsis/semidiscrete/limited_reconstruction.hpp>
 
 #include <array>
@@ -37,10 +38,14 @@ class ring_rotation {
   ~ring_rotation();
   ring_rotation(ring_rotation&&) noexcept;  ///< leaves the moved-from object empty
 
-  /// acc ← acc + β (1/r) ∂_ω(v_⊥ sin ω u) for every target.
-  void add(const field& u, std::span<const target<field, double>> targets) const;
-  /// Returns the amounts of the invariants that the last add() gave per unit of time and β: radial
-  /// and azimuthal momentum.
+  /// Prepares the memory of all threads for add().
+  void prepare(const field& u) const;
+  /// acc ← acc + β (1/r) ∂_ω(v_⊥ sin ω u) in the cells begin … end−1 for every target, by any thread.
+  void add(const field& u, std::span<const target<field, double>> targets, int begin, int end) const;
+  /// Computes given() once add() was called for all cells that are not solid. Collective.
+  void integrate() const { given_ = global_integrals(*space_, of_cells_, invariants_); }
+  /// Returns the amounts of the invariants that were given per unit of time and β: radial and azimuthal
+  /// momentum.
   const std::vector<double>& given() const { return given_; }
   /// Returns the rate of each component that limits the step, repeated for as many cells as the speeds,
   ///     q |v_r|/Δr + |v_x|/Δx + (v_⊥/r) s |sin ω_e|/Δω

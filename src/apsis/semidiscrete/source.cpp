@@ -79,19 +79,15 @@ bool source::update(double t, const field& u) {
   return true;
 }
 
-void source::add(double t, const field& u, std::span<const target<field, double>> targets) {
-  update(t, u);
-  constexpr int block = 64;
-  parallel_blocks(values_.cells(), block, [&](int begin, int end) {
-    const profile::section timed(kernel::forces, static_cast<double>(end - begin) * u.stride(),
-                                 traffic(targets));
-    for (const auto& to : targets)
-      for (int cell = begin; cell < end; ++cell) {
-        const double* s = values_.row(cell);
-        double* acc = to.acc->row(cell);
-        for (int k = 0; k < values_.components(); ++k) acc[k] += to.beta * s[k];
-      }
-  });
+void source::add(std::span<const target<field, double>> targets, int begin, int end) const {
+  const profile::section timed(kernel::forces, static_cast<double>(end - begin) * values_.stride(),
+                               traffic(targets));
+  for (const auto& to : targets)
+    for (int cell = begin; cell < end; ++cell) {
+      const double* s = values_.row(cell);
+      double* acc = to.acc->row(cell);
+      for (int k = 0; k < values_.components(); ++k) acc[k] += to.beta * s[k];
+    }
 }
 
 }  // namespace apsis

@@ -22,19 +22,18 @@ class source {
   /// `equation` must outlive the object.
   source(const model& equation, std::shared_ptr<domain> space, source_rate rate, const cell_unknown& unknown);
 
-  /// acc ← acc + β S(t, u) for every target. Throws numerical_error if S is not finite, or negative although
-  /// the unknowns of the model are not.
-  void add(double t, const field& u, std::span<const target<field, double>> targets);
   /// Computes values(), unless S does not change in time and is known. Returns true if they are new. Throws
-  /// the errors of add(). Collective.
+  /// numerical_error if S is not finite, or negative although the unknowns of the model are not. Collective.
   bool update(double t, const field& u);
+  /// acc ← acc + β values() in the cells begin … end−1 for every target, by any thread.
+  void add(std::span<const target<field, double>> targets, int begin, int end) const;
   /// Returns S of the last update().
   const field& values() const { return values_; }
   /// Returns true if S depends on u.
   bool depends_on_state() const { return static_cast<bool>(rate_.growth); }
   /// Returns the largest source_rate::growth of the cells of this process.
   double growth(double t, const field& u) const;
-  /// Returns the amounts of the invariants that the last add() gave per unit of time and β.
+  /// Returns the amounts of the invariants that values() give per unit of time and β.
   const std::vector<double>& given() const { return given_; }
 
  private:

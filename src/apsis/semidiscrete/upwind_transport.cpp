@@ -1,5 +1,6 @@
 #include <apsis/semidiscrete/upwind_transport.hpp>
 
+#include <apsis/core/first_error.hpp>
 #include <apsis/exec/parallel.hpp>
 #include <apsis/exec/profile.hpp>
 #include <apsis/model/vector_math.hpp>
@@ -27,6 +28,8 @@ constexpr int least_columns = 16, least_cells = 16;
 /// Limits on the length of a row and the number of tasks of a loop, so that sums with small numbers
 /// fit into int.
 constexpr int longest_row = 1 << 30, most_tasks = 1 << 30;
+/// Number of cells of a task that adds force, rotation and source after all sweeps.
+constexpr int cells_inside = 16;
 
 /// Returns the first component of column 0 … columns of a row; columns are multiples of vectors.
 int first_component(int width, int columns, int column) {
@@ -150,35 +153,45 @@ bool upwind_transport::add_transport(double t, const field& u, targets_view targ
     add_source(u, targets);
     return false;
   }
-  // Cells are complete box by box only if T consists of sweeps alone.
-  const bool alone = !force_ && !rotation_ && !source_;
-  bool done = false;
   first_error failure;
-  failure.run([&] { done = sweep(t, u, targets, alone ? then : cells_job()); });
-  add_inside(t, u, targets, failure);
-  return done;
+  if (!force_ && !rotation_ && !source_) return sweep(t, u, targets, then);
+  if (force_) force_->prepare(u);
+  if (rotation_) rotation_->prepare(u);
+  if (source_) failure.run([&] { source_->update(t, u); });
+  const auto inside = [&](int begin, int end) {
+    if (force_) force_->add(t, u, targets, begin, end);
+    if (rotation_) rotation_->add(u, targets, begin, end);
+    if (source_) source_->add(targets, begin, end);
+    if (then) then(begin, end);
+  };
+  bool done = false;
+  // Other processes wait for the rows of this one, even if its source has failed.
+  failure.run([&] { done = sweep(t, u, targets, failure ? cells_job() : cells_job::of(inside)); });
+  if (!done && !failure)
+    failure.run([&] {
+      parallel_blocks(u.cells(), cells_inside,
+                      [&](int begin, int end) { for_cells_in(mesh().fluid(), begin, end, inside); });
+    });
+  account_inside();
+  failure.rethrow();
+  return static_cast<bool>(then);
 }
 
-/// Adds force, rotation and source. Their sums are collective, and are computed even if this
-/// process has failed.
-void upwind_transport::add_inside(double t, const field& u, targets_view targets,
-                                  first_error& failure) const {
+/// Adds up the amounts that force, rotation and source gave. Their sums are collective, and are computed even
+/// if this process has failed.
+void upwind_transport::account_inside() const {
   std::vector<double>& given = scratch_->given;
   given.clear();
   if (force_) {
-    failure.run([&] { force_->add(t, u, targets); });
+    force_->integrate();
     given = force_->given();
   }
   if (rotation_) {
-    failure.run([&] { rotation_->add(u, targets); });
+    rotation_->integrate();
     given.insert(given.end(), rotation_->given().begin(), rotation_->given().end());
   }
-  if (source_) {
-    failure.run([&] { source_->add(t, u, targets); });
-    given.insert(given.end(), source_->given().begin(), source_->given().end());
-  }
+  if (source_) given.insert(given.end(), source_->given().begin(), source_->given().end());
   if (force_) given.insert(given.end(), force_->losses().begin(), force_->losses().end());
-  failure.rethrow();
   // A single process stores the amounts that all processes have received.
   if (!space_->processes().is_root()) std::fill(given.begin(), given.end(), 0.0);
   faces_->set_inside(given);

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <apsis/boundary/domain.hpp>
-#include <apsis/core/first_error.hpp>
 #include <apsis/integrate/problem.hpp>
 #include <apsis/model/model.hpp>
 #include <apsis/semidiscrete/block_sweep.hpp>
@@ -49,8 +48,7 @@ class upwind_transport final : public transport {
   bool source_depends_on_state() const override { return source_ && source_->depends_on_state(); }
 
  private:
-  void add_inside(double t, const field& u, std::span<const target<field, double>> targets,
-                  first_error& failure) const;
+  void account_inside() const;
   void add_source(const field& u, std::span<const target<field, double>> targets) const;
   void add_weighted(const field& u, std::span<const target<field, double>> targets,
                     const cells_job& then) const;

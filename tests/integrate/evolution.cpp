@@ -142,6 +142,11 @@ TEST(evolution, refuses_what_its_method_cannot_do) {
              .set_events({2, [](double, const state&, std::span<double>) {}, {1}});
        },
        {"a list of events has 1 entries (there are 2 functions)"}},
+      {[&] { evolution(m, problem, rule::fixed(dt)).set_events({1, {}}); },
+       {"the function of the events is empty"}},
+      {[&] { evolution(m, problem, rule::fixed(dt)).advance(1.0); }, {"start() was not called"}},
+      {[&] { evolution(m, problem, rule::unlimited(), apsis::step_tolerance<state, double>{1e-6, {}}); },
+       {"the tolerance has no distance between states"}},
       {[&] { evolution(m, problem, rule::fixed(dt)).start(std::nan(""), {2, 0}); },
        {"the initial time is not finite"}},
       {[&] {

@@ -56,6 +56,9 @@ class independent_march final : public any_march<State, Real> {
   independent_march(March march, const std::optional<tolerance>& tolerated, int order)
       : march_(std::move(march)), tolerated_(tolerated) {
     if (!tolerated) return;
+    if (!tolerated->distance)
+      throw input_error(
+          "the tolerance has no distance between states (it measures errors of steps); give a function");
     control_.emplace(tolerated->tolerance, order, find_step_law(tolerated->controller));
     if (tolerated->first_step) control_->start_with(*tolerated->first_step);
   }
@@ -101,7 +104,7 @@ class dependent_march final : public any_march<State, Real> {
 /// @endcond
 
 /// Returns the march of a method of one step, which need not be registered. `p` must outlive it. Throws
-/// input_error if the problem lacks a function that the method needs.
+/// input_error if the problem lacks a function that the method needs, or a tolerance its distance.
 template <problem P>
 std::unique_ptr<any_march<typename P::state, typename P::real>> make_march(
     const method& m, P& p,

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <concepts>
+#include <cstddef>
 #include <span>
 #include <string>
 #include <type_traits>
@@ -86,6 +87,20 @@ inline void require_finite(const Row& row, const char* what) {
   real none(0);
   for (size_type i = 0; i < row.size(); ++i) none += row[i] - row[i];
   if (!(none == real(0))) throw_not_finite(row, what);
+}
+
+/// Throws the error of require_size(). Out of line like throw_not_finite().
+[[noreturn, gnu::noinline, gnu::cold]] inline void throw_wrong_size(std::size_t found, std::size_t needed,
+                                                                    const char* function) {
+  throw input_error(std::string(function) + " gives " + std::to_string(found) + " numbers (the state has " +
+                    std::to_string(needed) + "); set one number for each unknown");
+}
+
+/// Throws input_error unless a function of a problem has set as many numbers as the state has.
+template <class Row, class State>
+inline void require_size(const Row& row, const State& u, const char* function) {
+  if (row.size() != u.size())
+    throw_wrong_size(static_cast<std::size_t>(row.size()), static_cast<std::size_t>(u.size()), function);
 }
 
 }  // namespace apsis

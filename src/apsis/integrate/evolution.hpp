@@ -69,8 +69,10 @@ class evolution {
       : rule_(rule), march_(make_march(m, p, tolerated)) {}
 
   /// Sets the functions of events, and the observers that are called at events in the order of time. Throws
-  /// input_error if a list does not have an entry for each function.
+  /// input_error if a list does not have an entry for each function, or if there is no function.
   void set_events(functions events, event_observer observe = {}) {
+    if (events.count > 0 && !events.evaluate)
+      throw input_error("the function of the events is empty (events are its zeros); give one");
     for (const std::size_t length : {events.directions.size(), events.ends.size()})
       if (length != 0 && length != events.count)
         throw input_error(
@@ -98,8 +100,11 @@ class evolution {
   }
 
   /// Integrates from the time reached to t1, or to the first event that ends the integration. Throws like
-  /// integrate(); time and state are then those of the last accepted step. Requires start().
+  /// integrate(); time and state are then those of the last accepted step. Throws input_error without
+  /// start().
   evolution_end advance(real t1, const observer& observe = {}) {
+    if (std::isnan(t_))
+      throw input_error("the integration has no initial state (start() was not called); call it first");
     try {
       const auto first = std::upper_bound(stops_.begin(), stops_.end(), t_);
       for (auto stop = first; stop != stops_.end() && *stop < t1; ++stop) {

@@ -94,11 +94,14 @@ class newton_problem {
     return *this;
   }
 
-  /// Required by `problem`, with T = F.
+  /// Required by `problem`, with T = F. Throws input_error if F has another size than u, numerical_error if
+  /// it is not finite.
   void add_transport(real t, const State& u, std::span<const target<State, real>> targets) {
     accumulate<State>(targets, u, [&]() -> const State& {
       work_ = u;
       f_(t, u, work_);
+      require_size(work_, u, "the transport");
+      require_finite(work_, "the transport");  // stages of explicit methods have no other check
       divide_by_mass(work_);
       return work_;
     });
@@ -112,6 +115,7 @@ class newton_problem {
       equation_.field.value(v_, equation_.g);
       work_ = u;
       unload(equation_.g, work_);
+      require_finite(work_, "the collision");
       divide_by_mass(work_);
       return work_;
     });
@@ -122,11 +126,13 @@ class newton_problem {
     accumulate<State>(targets, u, [&]() -> const State& {
       work_ = u;
       f_(t, u, work_);
+      require_size(work_, u, "the transport");
       load(u);
       equation_.field.set_time(t, real(0));
       equation_.field.value(v_, equation_.g);
       using size_type = decltype(u.size());
       for (std::size_t i = 0; i < v_.size(); ++i) work_[static_cast<size_type>(i)] += equation_.g[i];
+      require_finite(work_, "the sum of transport and collision");
       divide_by_mass(work_);
       return work_;
     });
@@ -160,6 +166,7 @@ class newton_problem {
     } else {
       work_ = u;
       f_(t, u, work_);
+      require_size(work_, u, "the transport");
       return !is_zero(work_);
     }
   }

@@ -71,11 +71,14 @@ class relaxation_problem {
   /// Required by `problem_with_admissible_set`; true unless a predicate is given.
   bool is_admissible(const State& u) const { return !admissible_ || admissible_(u); }
 
-  /// Required by `problem`.
+  /// Required by `problem`. Throws input_error if T has another size than u, numerical_error if it is not
+  /// finite.
   void add_transport(real t, const State& u, std::span<const target<State, real>> targets) {
     accumulate<State>(targets, u, [&]() -> const State& {
       match_size(u);
       transport_(t, u, work_);
+      require_size(work_, u, "the transport");
+      require_finite(work_, "the transport");  // stages of explicit methods have no other check
       return work_;
     });
   }
@@ -110,6 +113,7 @@ class relaxation_problem {
       const real k = finite_relaxation(u);
       using size_type = decltype(u.size());
       for (size_type i = 0; i < u.size(); ++i) work_[i] = relaxation_of(i, k) * (work_[i] - u[i]);
+      require_finite(work_, "the collision");
       return work_;
     });
   }
@@ -120,8 +124,10 @@ class relaxation_problem {
       const real k = finite_relaxation(u);
       if (flow_.size() != u.size()) flow_ = u;
       transport_(t, u, flow_);
+      require_size(flow_, u, "the transport");
       using size_type = decltype(u.size());
       for (size_type i = 0; i < u.size(); ++i) flow_[i] += relaxation_of(i, k) * (work_[i] - u[i]);
+      require_finite(flow_, "the sum of transport and collision");
       return flow_;
     });
   }
@@ -138,6 +144,7 @@ class relaxation_problem {
     } else {
       match_size(u);
       transport_(t, u, work_);
+      require_size(work_, u, "the transport");
       return !is_zero(work_);
     }
   }
@@ -161,6 +168,7 @@ class relaxation_problem {
     if constexpr (many_rates) {
       if (rates_.size() != u.size()) rates_ = u;
       rate_(omega, rates_);
+      require_size(rates_, u, "the rate");
       real largest(0);
       using size_type = decltype(u.size());
       for (size_type i = 0; i < u.size(); ++i) largest = std::max(largest, checked_rate(rates_[i]));
@@ -230,6 +238,7 @@ class relaxation_problem {
     const real rate = largest_rate(omega, u);
     match_size(u);
     equilibrium_(omega, work_);
+    require_size(work_, u, "the equilibrium");
     if (unchecked_ > 0) {
       --unchecked_;
       real size(0);

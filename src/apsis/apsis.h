@@ -1,7 +1,8 @@
 /// The C interface of Apsis: methods, and time integration of u' = T(t, u) + Q(u) over arrays of doubles.
 ///
-/// The transport T is explicit; the collision Q is stiff, implicit, and does not depend on t. All quantities
-/// are dimensionless. docs/linking.md has an example, and states what later versions preserve.
+/// The transport T is explicit; the collision Q is stiff and implicit. It may depend on t if it has a rate
+/// (apsis_set_timed_rate()). All quantities are dimensionless. docs/linking.md has an example, and states
+/// what later versions preserve.
 ///
 /// Functions that return an int return one of apsis_status, and never end the program. Errors are negative;
 /// apsis_error_message() describes the last error of the calling thread. There is no global state: threads

@@ -305,6 +305,8 @@ TEST(c_integrators, refuse_bad_settings) {
   bad_input::expect_refused({
       {[&] { rethrow(apsis_new_integrator(find("md-imex-6-3").get(), 0, &none)); },
        {"there are no unknowns"}},
+      {[&] { rethrow(apsis_new_integrator(find("md-imex-6-3").get(), static_cast<size_t>(-1), &none)); },
+       {"more than memory has addresses"}},
       {[&] { rethrow(apsis_new_integrator(nullptr, 1, &none)); }, {"the method is NULL"}},
       {[&] { rethrow(apsis_set_step(nullptr, 1)); }, {"the integrator is NULL"}},
       {[&] { rethrow(apsis_set_step(s.get(), -1)); }, {"dt is -1"}},

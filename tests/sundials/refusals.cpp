@@ -54,6 +54,7 @@ TEST(sundials_refusals, state_their_reason) {
   const auto not_finite = serial({std::nan(""), 1});
   auto without_a_sum = serial({1, 0});
   without_a_sum->ops->nvlinearsum = nullptr;
+  const auto longer = serial({1, 0, 0});
   const int wrong[] = {2};
   const double decreasing[] = {0.5, 0.2};
   bad_input::expect_refused(
@@ -90,6 +91,15 @@ TEST(sundials_refusals, state_their_reason) {
        {[&] { rethrow(apsis_sundials_evolve(s.get(), -1.0, nullptr, nullptr)); },
         {"end of the integration is -1"}},
        {[&] { rethrow(apsis_sundials_state_at(s.get(), 0.5, y.get())); }, {"not in the last step"}},
+       {[&] { rethrow(apsis_sundials_evolve(s.get(), 1.0, longer.get(), nullptr)); },
+        {"a vector has 3 elements (the state has 2)"}},
+       {[&] { rethrow(apsis_sundials_one_step(s.get(), 1.0, longer.get(), nullptr)); },
+        {"a vector has 3 elements"}},
+       {[&] { rethrow(apsis_sundials_state_at(s.get(), 0.0, longer.get())); }, {"a vector has 3 elements"}},
+       {[&] { rethrow(apsis_sundials_reset(s.get(), 0.0, longer.get())); }, {"a vector has 3 elements"}},
+       {[&] { rethrow(apsis_sundials_set_constraints(s.get(), longer.get())); }, {"a vector has 3 elements"}},
+       {[&] { rethrow(apsis_sundials_set_tolerances(s.get(), 1.0, longer.get())); },
+        {"a vector has 3 elements"}},
        {[&] {
           size_t k = 0;
           double t = 0;

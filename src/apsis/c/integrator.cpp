@@ -7,6 +7,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <limits>
 #include <span>
 #include <string>
 
@@ -107,6 +109,10 @@ int apsis_new_integrator(const apsis_method* method, size_t n, apsis_integrator*
     require(integrator, "the place of the integrator") = nullptr;
     const auto& m = require(method, "the method");
     if (n == 0) throw apsis::input_error("there are no unknowns (n = 0); give n ≥ 1");
+    // A negative int becomes a number like this.
+    if (n > std::numeric_limits<std::ptrdiff_t>::max() / sizeof(double))
+      throw apsis::input_error(fmt::format(
+          "n = {} is more than memory has addresses (n is the number of unknowns); give fewer", n));
     *integrator = new apsis_integrator{.method = m.integrator, .n = n};
     (*integrator)->of.block_size = n;
     return APSIS_OK;

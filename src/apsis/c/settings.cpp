@@ -41,11 +41,11 @@ int set(apsis_integrator* integrator, const Change& change) {
 void set_tolerances(apsis_integrator& s, double relative, numbers absolute) {
   if (!(relative >= 0.0) || !std::isfinite(relative))
     throw input_error(fmt::format(
-        "the relative tolerance is {} (it is at least 0 and finite); give such a number", relative));
+        "the relative tolerance is {} (it must be finite and at least 0); give for example 1e-6", relative));
   for (const double one : absolute)
     if (!(one > 0.0) || !std::isfinite(one))
       throw input_error(
-          fmt::format("an absolute tolerance is {} (it is above 0 and finite); give such a number", one));
+          fmt::format("an absolute tolerance is {} (it must be finite and above 0); change it", one));
   s.limits.relative = relative;
   s.limits.absolute = std::move(absolute);
 }

@@ -101,6 +101,7 @@ int advance(apsis_sundials& s, double t1, bool once) {
 int integrate(apsis_sundials* integrator, double t1, N_Vector y, double* reached, bool once) {
   const in_use kept(integrator);
   apsis_sundials& s = *kept;
+  if (y != nullptr) require_length(s, y);
   const auto copy_out = [&] {
     if (reached != nullptr) *reached = apsis_sundials_time(&s);
     if (y != nullptr) N_VScale(1.0, (s.running ? s.running->solution.u() : s.u).get(), y);
@@ -117,6 +118,7 @@ int integrate(apsis_sundials* integrator, double t1, N_Vector y, double* reached
 
 /// Writes dense output. Without a step of the present settings, only the state at the time reached is known.
 int write_state(apsis_sundials& s, double t, N_Vector out) {
+  require_length(s, out);
   if (!s.running && t != s.t)
     throw input_error(
         fmt::format("the time {:.10g} is not in the last step (none has the present settings); give the time "
@@ -134,6 +136,13 @@ apsis_sundials& idle(apsis_sundials* integrator) {
   apsis_sundials& s = c::require(integrator, handle);
   require_free(!s.busy);
   return s;
+}
+
+void require_length(const apsis_sundials& s, N_Vector y) {
+  const sunindextype found = N_VGetLength(y), needed = N_VGetLength(s.u.get());
+  if (found != needed)
+    throw input_error(fmt::format(
+        "a vector has {} elements (the state has {}); give a clone of the initial state", found, needed));
 }
 
 void end_run(apsis_sundials& s) {
@@ -187,6 +196,7 @@ int apsis_sundials_reset(apsis_sundials* integrator, sunrealtype t, N_Vector y) 
   return guarded([=] {
     apsis_sundials& s = idle(integrator);
     require(y, "the initial state");
+    require_length(s, y);
     require_finite_start(t, y);
     nvector u(y);
     s.running.reset();

@@ -27,12 +27,12 @@ int set(apsis_sundials* integrator, const Change& change) {
 void require_relative(double relative) {
   if (!(relative >= 0.0) || !std::isfinite(relative))
     throw input_error(fmt::format(
-        "the relative tolerance is {} (it is at least 0 and finite); give such a number", relative));
+        "the relative tolerance is {} (it must be finite and at least 0); give for example 1e-6", relative));
 }
 
 void require_positive(const char* name, double value) {
   if (!(value > 0.0) || !std::isfinite(value))
-    throw input_error(fmt::format("{} is {} (it is above 0 and finite); give such a number", name, value));
+    throw input_error(fmt::format("{} is {} (it must be finite and above 0); change it", name, value));
 }
 
 /// Throws input_error for pairs that linear_systems cannot use.
@@ -170,10 +170,11 @@ int apsis_sundials_set_tolerances(apsis_sundials* integrator, sunrealtype relati
   return set(integrator, [=](auto& s) {
     require_relative(relative);
     apsis::c::require(absolute, "the vector of absolute tolerances");
+    require_length(s, absolute);
     nvector all(absolute);
     if (!is_finite(all.get()) || !(N_VMin(all.get()) > 0.0))
       throw input_error(
-          "an absolute tolerance is not positive and finite (every unknown needs one); give such numbers");
+          "an absolute tolerance is not positive and finite (every unknown needs one); change it");
     s.accuracy.relative = relative;
     s.accuracy.absolute.swap(all);
   });
@@ -187,6 +188,7 @@ int apsis_sundials_set_controller(apsis_sundials* integrator, const char* name) 
 
 int apsis_sundials_set_constraints(apsis_sundials* integrator, N_Vector constraints) {
   return set(integrator, [=](auto& s) {
+    if (constraints != nullptr) require_length(s, constraints);
     nvector all(constraints);
     if (all && !(N_VMaxNorm(all.get()) <= 2.0))
       throw input_error("a constraint is not -2, -1, 0, 1 or 2 (ARKODE defines them so); give one of these");

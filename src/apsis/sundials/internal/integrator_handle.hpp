@@ -50,6 +50,9 @@ apsis_sundials& idle(apsis_sundials* integrator);
 /// Copies time, state and counts from the run and ends it, because other settings need another one.
 void end_run(apsis_sundials& s);
 
+/// Throws input_error unless a vector has as many elements as the state.
+void require_length(const apsis_sundials& s, N_Vector y);
+
 }  // namespace apsis::sundials
 
 struct apsis_sundials {

@@ -23,6 +23,10 @@ foreach(part IN LISTS apsis_parts)
   if(part STREQUAL c)
     install(FILES ${PROJECT_SOURCE_DIR}/src/apsis/apsis.h ${PROJECT_SOURCE_DIR}/src/apsis/apsis.f90
             DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/apsis COMPONENT development)
+    # The prefix is relative, so that an installation may move.
+    file(RELATIVE_PATH apsis_prefix_of_pc /${CMAKE_INSTALL_LIBDIR}/pkgconfig /)
+    configure_file(${PROJECT_SOURCE_DIR}/cmake/apsis_c.pc.in ${PROJECT_BINARY_DIR}/apsis_c.pc @ONLY)
+    install(FILES ${PROJECT_BINARY_DIR}/apsis_c.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT development)
   elseif(part IN_LIST apsis_c_components)
     install(FILES ${PROJECT_SOURCE_DIR}/src/apsis/apsis_${part}.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/apsis
             COMPONENT development)

@@ -140,7 +140,7 @@ def run(case: Case, *overrides: str, out: str | Path | None = None, restart: str
 
         overrides   "key=value", such as "space.cells=80"
         out         folder for the results
-        restart     checkpoint to continue from
+        restart     checkpoint to continue from, such as "results/one/checkpoint.h5"
         wall        limit of the wall time in seconds
         progress    called as progress(step, steps, t, smallest) about 20 times a second; False ends the run, with a checkpoint in out
         initial     initial data in place of those of the case
@@ -157,7 +157,8 @@ def run(case: Case, *overrides: str, out: str | Path | None = None, restart: str
     arguments, with arrays [velocities], and return an array [velocities]. Functions are averaged over cells like formulas, exactly
     between their `jumps`. Results and restarts name the data `from = "python"`; a restart takes the state of the checkpoint.
 
-    Releases the GIL. Raises InputError, NumericalError, FileError and KeyboardInterrupt, on all processes."""
+    Releases the GIL. Raises InputError, NumericalError, FileError and KeyboardInterrupt, on all processes. After KeyboardInterrupt,
+    and after an exception of `progress`, `out` has a checkpoint and the results so far."""
     handle = _handle(comm)
     try:
         arguments = (*_arguments(case, overrides, out, restart, wall, threads, device, progress, initial, jumps), handle)

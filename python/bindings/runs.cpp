@@ -238,8 +238,7 @@ py::object run_on(const std::shared_ptr<communicator>& processes, const std::opt
   how.wall = wall;
   first_error failure;
   how.watch = [&](const simulation& run) {
-    if (processes->is_single()) return asks.watch(run);
-    // The others stop at the same step.
+    // The run ends with a checkpoint, on all processes at the same step, before the exception leaves.
     failure.run([&] { asks.watch(run); });
     if (failure) asks.stop();
   };

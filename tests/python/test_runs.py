@@ -71,7 +71,7 @@ def test_progress_is_told_and_can_end_the_run(tmp_path):
     assert np.array_equal(again.f, whole.f)
 
 
-def test_other_threads_run_meanwhile_and_control_c_ends_a_run():
+def test_other_threads_run_meanwhile_and_control_c_ends_a_run_with_a_checkpoint(tmp_path):
     ticks, started = [], threading.Event()
     def interrupt():
         started.wait()
@@ -82,9 +82,21 @@ def test_other_threads_run_meanwhile_and_control_c_ends_a_run():
     thread = threading.Thread(target=interrupt)
     thread.start()
     with pytest.raises(KeyboardInterrupt):
-        apsis.run("paper/bgk-mixed", "time.end=5000.0", progress=lambda *_: started.set())
+        apsis.run("paper/bgk-mixed", "time.end=5000.0", out=tmp_path / "o", progress=lambda *_: started.set())
     thread.join()
     assert len(ticks) == 20
+    so_far = apsis.open(tmp_path / "o")
+    assert so_far.summary["t"] > 0
+    end = 1.01 * so_far.summary["t"]
+    assert apsis.run("paper/bgk-mixed", f"time.end={end!r}", restart=tmp_path / "o" / "checkpoint.h5").state == "complete"
+
+
+def test_an_exception_of_progress_keeps_the_results_so_far(tmp_path):
+    def fail(*_):
+        raise RuntimeError("mine")
+    with pytest.raises(RuntimeError, match="mine"):
+        apsis.run("paper/bgk-mixed", "time.end=50.0", out=tmp_path / "o", progress=fail)
+    assert (tmp_path / "o" / "checkpoint.h5").is_file()
 
 
 def test_errors_are_those_of_the_program(tmp_path):

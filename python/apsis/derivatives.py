@@ -211,7 +211,7 @@ def as_square_matrix(subject: str, found: Any, n: int) -> Any:
     """`found`, an array or a sparse matrix, as one of n × n real numbers. Raises InputError if it is not: "{subject} an array of …"."""
     if not hasattr(found, "tocsr"):
         found = np.asarray(found)
-    if found.dtype.kind not in "biuf" or (found.shape != (n, n) and (hasattr(found, "tocsr") or found.size != n ** 2)):
+    if found.dtype.kind not in "biuf" or (found.shape != (n, n) and (hasattr(found, "tocsr") or n > 1 or found.size != 1)):
         raise InputError(f"{subject} an array of shape {found.shape} and type {found.dtype} (real numbers of shape ({n}, {n}) are needed); "
                          "give such")
     return found.tocsr().astype(np.float64) if hasattr(found, "tocsr") else found.astype(np.float64).reshape(n, n)

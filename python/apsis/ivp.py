@@ -3,6 +3,7 @@ from __future__ import annotations
 
 import math
 import warnings
+from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any, Callable, Sequence
 
 import numpy as np
@@ -20,11 +21,12 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 Function = Callable[..., Any]
+SCIPY_METHODS = ("RK45", "RK23", "Radau", "BDF", "LSODA")  # the library has dop853
 
 
-def solve_ivp(transport: Function | None, collision: Function | None, t_span: Sequence[float], y0: ArrayLike, *, method: str | Method = "auto",
+def solve_ivp(transport: Function | None, collision: Function | None, t_span: Sequence[float], y0: ArrayLike | None = None, *, method: str | Method = "auto",
               t_eval: ArrayLike | None = None, dense_output: bool = False, events: Function | Sequence[Function] | None = None,
-              args: Sequence[Any] = (), rtol: ArrayLike = 1e-3, atol: ArrayLike = 1e-6, jac: Any = None, jac_sparsity: Any = None,
+              args: Sequence[Any] | None = (), rtol: ArrayLike = 1e-3, atol: ArrayLike = 1e-6, jac: Any = None, jac_sparsity: Any = None,
               vectorized: bool = False, first_step: float | None = None, max_step: float = math.inf, dt: float | None = None,
               forward_euler_step: Function | None = None, admissible: Function | None = None, solver: str = "dense",
               controller: str = "predictive", mass: Any = None) -> OptimizeResult:
@@ -65,8 +67,11 @@ def solve_ivp(transport: Function | None, collision: Function | None, t_span: Se
 
     Raises InputError for arguments that cannot be used, and exceptions of the functions."""
     scipy = _scipy()
+    if y0 is None:
+        raise InputError("y0 is missing (the arguments are transport, collision, t_span, y0); for solve_ivp(fun, t_span, y0) of SciPy write "
+                         "solve_ivp(None, fun, t_span, y0)")
     listed = _event_functions(events)
-    problem = System(transport, collision, forward_euler_step, admissible, listed, tuple(args), bool(vectorized))
+    problem = System(transport, collision, forward_euler_step, admissible, listed, _extra(args), bool(vectorized))
     span, start = _interval(t_span), _state(y0)
     wanted = None if t_eval is None else _times(t_eval, span)
     relative, absolute = _tolerance("rtol", rtol), _tolerance("atol", atol)
@@ -159,11 +164,22 @@ def _scipy() -> Any:
     return scipy
 
 
+def _extra(args: Sequence[Any] | None) -> tuple[Any, ...]:
+    if args is None:
+        return ()
+    try:
+        return tuple(args)
+    except TypeError:
+        raise InputError(f"args is a {type(args).__name__} (it lists the extra arguments of the functions); write args=({args!r},)") from None
+
+
 def _integrator(method: str | Method, bounded: bool, tolerance: float | None) -> tuple[Method, str]:
     if isinstance(method, Method):
         return method, ""
     if not isinstance(method, str):
         raise InputError(f"method is a {type(method).__name__} (it must be a name, a file or an apsis.Method); see apsis.methods()")
+    if method in SCIPY_METHODS:
+        raise InputError(f"method '{method}' is one of SciPy's (methods here have other names); leave method out, or see apsis.methods()")
     if method != "auto":
         return find_method(method), ""
     name, reason = _core.choose_method(False, True, bounded, False, tolerance, None)
@@ -174,7 +190,9 @@ def _interval(t_span: Sequence[float]) -> tuple[float, float]:
     times = real_array("t_span", t_span)
     if times.shape != (2,) or not np.all(np.isfinite(times)):
         raise InputError("t_span is not two finite times (the integration begins and ends there); give (t0, t1)")
-    if not times[0] < times[1]:
+    if times[0] == times[1]:
+        raise InputError(f"t_span is empty (it begins and ends at {times[0]:g}); give t0 < t1")
+    if times[0] > times[1]:
         raise InputError("t_span does not increase (steps go forward in time); for t1 < t0 integrate -f in the time -t")
     return float(times[0]), float(times[1])
 
@@ -191,8 +209,12 @@ def _state(y0: ArrayLike) -> Array:
 
 def _times(t_eval: ArrayLike, span: tuple[float, float]) -> list[float]:
     times = real_array("t_eval", t_eval)
-    if times.ndim != 1 or np.any(np.diff(times) <= 0) or not np.all((times >= span[0]) & (times <= span[1])):
-        raise InputError("t_eval is not an increasing list of times of t_span (they are taken in their order); sort and limit them")
+    if times.ndim != 1:
+        raise InputError(f"t_eval has the shape {times.shape} (it is a list of times); give an array of shape (m,)")
+    if not np.all((times >= span[0]) & (times <= span[1])):  # also NaN
+        raise InputError(f"t_eval has a time outside t_span (from {span[0]:g} to {span[1]:g}); remove it")
+    if np.any(np.diff(times) <= 0):
+        raise InputError("t_eval does not increase (the solution is found in this order); sort it, each time once")
     return [float(x) for x in times]
 
 
@@ -226,10 +248,17 @@ def _is_krylov(solver: str, problem: System, n: int, integrator: Method) -> bool
 
 
 def _event_functions(events: Function | Sequence[Function] | None) -> list[Function]:
+    if events is not None and not callable(events) and not isinstance(events, Iterable):
+        raise InputError(f"events is a {type(events).__name__} (it must be a function or a list of functions); give functions of t and y")
     listed = [] if events is None else [events] if callable(events) else list(events)
     for k, event in enumerate(listed):
         if not callable(event):
             raise InputError(f"event {k} is a {type(event).__name__} (it must be callable); give a function of t and y")
+        for attribute, meaning in (("direction", "1, -1 or 0"), ("terminal", "True, False or a number of zeros")):
+            value = getattr(event, attribute, 0)
+            whole = isinstance(value, (bool, int, float, np.integer, np.floating, np.bool_)) and float(value).is_integer()
+            if not whole or (attribute == "terminal" and value < 0):
+                raise InputError(f"event {k} has {attribute} = {value!r} (it must be {meaning}); change it")
     return listed
 
 

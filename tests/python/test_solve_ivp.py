@@ -315,6 +315,28 @@ def test_units_of_equations_do_not_matter_to_a_mass_matrix():
     np.testing.assert_allclose(ends[0], ends[1], rtol=1e-9)  # roundings of another order of elimination
 
 
+def with_attributes(**attributes):
+    def event(t, y):
+        return y[0]
+    vars(event).update(attributes)
+    return event
+
+
+def test_a_jacobian_has_the_shape_of_a_matrix():
+    with pytest.raises(apsis.InputError, match=r"jac returned an array of shape \(4,\)"):
+        apsis.solve_ivp(None, lambda t, y: -y, (0, 1), [1.0, 2.0], jac=lambda t, y: np.array([-1.0, 0.0, 0.0, -1.0]))
+
+
+def test_an_explicit_method_that_overflows_fails():
+    for t_end in (1, 10):
+        found = apsis.solve_ivp(None, lambda t, y: -1e8 * (y - 1), (0, t_end), [0.0], method="kutta-4", dt=0.01)
+        assert found.status == -1 and "is not finite" in found.message, found.message
+    with pytest.raises(apsis.NumericalError, match="is not finite"):
+        apsis.integrate(apsis.GeneralProblem(lambda u: -1e8 * (u - 1)), [0.0], (0, 10), "kutta-4", dt=0.1)
+    with pytest.raises(apsis.NumericalError, match="is not finite"):
+        apsis.integrate(apsis.GeneralProblem(lambda u: 0 * u, transport=lambda t, u: -1e8 * (u - 1)), [0.0], (0, 10), "kutta-4", dt=0.1)
+
+
 REFUSED = [
     (dict(mass=[[0.0]]), "the mass matrix is singular to working precision"),
     (dict(mass=[[math.nan]]), "the mass matrix has an entry nan in row 0 and column 0"),
@@ -325,8 +347,15 @@ REFUSED = [
     (dict(y0=[[1.0]]), r"y0 has the shape \(1, 1\)"),
     (dict(y0=[math.nan]), "y0 has a number that is not finite"),
     (dict(y0=[1j]), "y0 is an array of type complex128"),
-    (dict(t_eval=[0.5, 0.2]), "t_eval is not an increasing list"),
-    (dict(t_eval=[2.0]), "t_eval is not an increasing list"),
+    (dict(t_span=(1, 1)), "t_span is empty"),
+    (dict(t_eval=[0.5, 0.2]), "t_eval does not increase"),
+    (dict(t_eval=[0.5, 0.5]), "t_eval does not increase"),
+    (dict(t_eval=[2.0]), "t_eval has a time outside t_span"),
+    (dict(t_eval=[float("nan")]), "t_eval has a time outside t_span"),
+    (dict(t_eval=0.5), r"t_eval has the shape \(\)"),
+    (dict(y0=None), r"write solve_ivp\(None, fun, t_span, y0\)"),
+    (dict(args=10.0), r"write args=\(10.0,\)"),
+    (dict(method="Radau"), "leave method out"),
     (dict(rtol=-1), "a tolerance of unknown 0 is negative"),
     (dict(rtol=0, atol=0), "unknown 0 has no tolerance"),
     (dict(atol=[1, 2]), "2 tolerances and 1 unknowns"),
@@ -336,9 +365,13 @@ REFUSED = [
     (dict(controller="pi", dt=0.1), "dt and a controller are given"),
     (dict(dt=0.0), "dt = 0 is not a positive number"),
     (dict(max_step=0.1, forward_euler_step=lambda t, y: 1), "forward_euler_step and dt or max_step are given"),
-    (dict(method="Radau"), "unknown method 'Radau'"),
+    (dict(method="Rada"), "unknown method 'Rada'"),
     (dict(method=3), "method is a int"),
     (dict(events=[1]), "event 0 is a int"),
+    (dict(events=3), "events is a int"),
+    (dict(events=with_attributes(direction="up")), "event 0 has direction = 'up'"),
+    (dict(events=with_attributes(terminal=-1)), "event 0 has terminal = -1"),
+    (dict(events=with_attributes(terminal=1.5)), "event 0 has terminal = 1.5"),
     (dict(events=lambda t, y: None), "event 0 returned None"),
     (dict(jac=[[1.0, 2.0]]), r"jac is an array of shape \(1, 2\)"),
     (dict(jac_sparsity=[[1.0], [1.0]]), "jac_sparsity is an array of shape"),

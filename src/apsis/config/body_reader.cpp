@@ -78,10 +78,9 @@ class reader_of_bodies {
         taken_.insert(key);
       }
     }
-    body.shape = read_shape(path, dimensions());
-    std::vector<std::string> names = {"name", "kind", "shape"};
-    names.insert(names.end(), variables.begin(), variables.end());
-    check_all_taken(path, body.shape, names);
+    std::vector<std::string> of_wall = {"name", "kind"};
+    of_wall.insert(of_wall.end(), variables.begin(), variables.end());
+    body.shape = read_shape(path, dimensions(), of_wall);
     std::vector<std::string> earlier;
     for (const auto& solid : config_.solids) earlier.push_back(solid.name);
     for (const auto& other : config_.bodies) earlier.push_back(other.name);
@@ -107,7 +106,10 @@ class reader_of_bodies {
     return table != text_.tables.end() ? table->second : place_of_emitter(config_, path);
   }
 
-  shape_table read_shape(const std::string& path, int dimensions) {
+  /// Reads a shape and checks that it has all other keys of its table. `of_wall` has the keys of the wall of
+  /// a body; shapes within a shape have none.
+  shape_table read_shape(const std::string& path, int dimensions,
+                         const std::vector<std::string>& of_wall = {}) {
     shape_table table;
     const auto kind = text_at(path + ".shape");
     if (!kind)
@@ -126,6 +128,7 @@ class reader_of_bodies {
         table.values[key.name] = value_of(*raw, of_key, key);
     }
     std::erase_if(table.parts, [](const auto& one) { return one.second.empty(); });
+    check_all_taken(path, table, dimensions, of_wall);
     return table;
   }
 
@@ -177,15 +180,17 @@ class reader_of_bodies {
     return constant_numbers(raw, path, config_.constants);
   }
 
-  void check_all_taken(const std::string& path, const shape_table& shape,
-                       const std::vector<std::string>& of_body) const {
+  void check_all_taken(const std::string& path, const shape_table& shape, int dimensions,
+                       const std::vector<std::string>& of_wall) const {
     for (const auto& [other, raw] : text_.values) {
       if (other.rfind(path + ".", 0) != 0 || taken_.contains(other)) continue;
-      std::vector<std::string> names = of_body;
-      for (const shape_key& key : keys_of(find_shape(shape.shape), dimensions())) names.push_back(key.name);
-      throw input_error(raw.place,
-                        fmt::format("unknown key '{}' (shape '{}' and its wall have no such key); {}",
-                                    shown(other), shape.shape, suggest(last_of(other), names)));
+      std::vector<std::string> names = {"shape"};
+      names.insert(names.end(), of_wall.begin(), of_wall.end());
+      for (const shape_key& key : keys_of(find_shape(shape.shape), dimensions)) names.push_back(key.name);
+      throw input_error(
+          raw.place,
+          fmt::format("unknown key '{}' (shape '{}'{} such key); {}", shown(other), shape.shape,
+                      of_wall.empty() ? " has no" : " and its wall have no", suggest(last_of(other), names)));
     }
   }
 

@@ -36,11 +36,13 @@ std::optional<data_variable> variable_of(const std::string& kind, const model& e
 namespace {
 
 /// Throws input_error if a required variable has no value.
-void check_absence(const std::string& kind, const data_variable& variable, const face_quantities& values) {
+void check_absence(const std::string& kind, const data_variable& variable, const face_quantities& values,
+                   const std::string& surface) {
   if (variable.value || values.contains(variable.alternative)) return;
-  throw input_error(fmt::format(
-      "boundary '{}' has no value of '{}' (it is the {}); give one{}", kind, variable.name, variable.doc,
-      variable.alternative.empty() ? "" : fmt::format(", or '{}'", variable.alternative)));
+  throw input_error(
+      fmt::format("boundary '{}'{} has no value of '{}' (it is the {}); give one{}", kind,
+                  surface.empty() ? "" : " of " + surface, variable.name, variable.doc,
+                  variable.alternative.empty() ? "" : fmt::format(", or '{}'", variable.alternative)));
 }
 
 /// Throws input_error if a variable and its alternative both have values.
@@ -64,7 +66,7 @@ std::shared_ptr<const boundary> make_boundary(const std::string& name) {
 }
 
 std::shared_ptr<const boundary> make_boundary(const std::string& name, const model& equation,
-                                              const face_quantities& values) {
+                                              const face_quantities& values, const std::string& surface) {
   const boundary_entry& entry = find_boundary(name);
   const auto variables =
       entry.variables != nullptr ? entry.variables(equation) : std::vector<data_variable>{};
@@ -82,7 +84,7 @@ std::shared_ptr<const boundary> make_boundary(const std::string& name, const mod
     if (given != values.end()) from.given.push_back(variable.name);
     const auto size = static_cast<std::size_t>(variable.size);
     if (given == values.end()) {
-      check_absence(name, variable, values);
+      check_absence(name, variable, values, surface);
       from.values.insert(from.values.end(), size, face_quantity(variable.value.value_or(0.0)));
     } else if (given->second.size() == size || given->second.size() == 1) {
       from.values.insert(from.values.end(), given->second.begin(), given->second.end());

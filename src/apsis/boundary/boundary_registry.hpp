@@ -106,12 +106,14 @@ std::optional<data_variable> variable_of(const std::string& kind, const model& e
 std::shared_ptr<const boundary> make_boundary(const std::string& name);
 
 /// Returns the boundary of a kind for a model, with values of its variables. A vector with one value has this
-/// value along x and zeros otherwise. Throws input_error in these cases:
+/// value along x and zeros otherwise. `surface` names the boundary in messages about missing values, as in
+/// "[boundary.left]". Throws input_error in these cases:
 /// - the kind does not exist, or the model does not allow it,
 /// - a variable is unknown, missing or of another size,
 /// - both a variable and its alternative have values.
 std::shared_ptr<const boundary> make_boundary(const std::string& name, const model& equation,
-                                              const face_quantities& values = {});
+                                              const face_quantities& values = {},
+                                              const std::string& surface = "");
 
 /// Returns a domain with the same kind of boundary, without variables, at every face. Throws input_error
 /// as make_boundary() does.

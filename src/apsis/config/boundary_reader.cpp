@@ -85,7 +85,8 @@ std::shared_ptr<const boundary> make_wall(const case_config& config, const model
       compiled[name].push_back(compile(formula, at, config, equation, variable_of(kind, equation, name)));
       compiled[name].back().set_origin({at, surface, equation.space_dimensions()});
     }
-  return at_place(place_of_emitter(config, path), [&] { return make_boundary(kind, equation, compiled); });
+  return at_place(place_of_emitter(config, path),
+                  [&] { return make_boundary(kind, equation, compiled, surface); });
 }
 
 void read_boundary_values(const case_text& text, const model& equation, case_config& config) {

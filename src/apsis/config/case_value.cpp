@@ -11,6 +11,7 @@
 #include <cmath>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace apsis {
 
@@ -58,6 +59,16 @@ double finite_number(const raw_value& raw, const std::string& path, const std::s
 }
 
 namespace {
+
+/// Returns the suggestion for a value that should be a text, one of `names` unless there are none.
+std::string advice_for_text(const raw_value& raw, const std::string& path,
+                            const std::vector<std::string>& names) {
+  const bool several = raw.what == "a table" || std::holds_alternative<raw_value::list>(raw.value);
+  if (several && path == "space.boundary")
+    return "give one kind in quotes, or a table for each face, such as [boundary.left]";
+  if (!names.empty()) return fmt::format("write a name in quotes, valid: {}", fmt::join(names, ", "));
+  return several ? "write one text in quotes" : type_advice(key_type::text);
+}
 
 void check_range(const case_key& key, const raw_value& raw, double x) {
   const bool low = key.lowest_excluded ? x > key.lowest : x >= key.lowest;
@@ -184,7 +195,9 @@ std::vector<std::vector<double>> points(const case_key& key, const raw_value& ra
 std::string to_text(const model_option& text, const raw_value& raw, const formula_constants& constants) {
   const std::string path = "model." + text.name;
   const auto* value = std::get_if<std::string>(&raw.value);
-  if (value == nullptr) refuse(raw, path, "a text is needed", type_advice(key_type::text));
+  if (value == nullptr)
+    refuse(raw, path, "a text is needed",
+           advice_for_text(raw, path, text.variable.empty() ? text.choices : std::vector<std::string>{}));
   if (std::find(text.choices.begin(), text.choices.end(), *value) != text.choices.end()) return *value;
   const std::string advice = suggest(*value, text.choices);
   if (text.variable.empty()) refuse(raw, path, "there is no such name", advice);
@@ -284,7 +297,9 @@ case_value to_value(const case_key& key, const raw_value& raw, const case_config
       return number(key, raw, key.path);
     case key_type::text:
       if (!std::holds_alternative<std::string>(raw.value))
-        refuse(raw, key.path, type_text(key.type) + " is needed", type_advice(key.type));
+        refuse(
+            raw, key.path, type_text(key.type) + " is needed",
+            advice_for_text(raw, key.path, key.choices ? key.choices(so_far) : std::vector<std::string>{}));
       check_choice(key, raw, so_far);
       return std::get<std::string>(raw.value);
     case key_type::quantity:

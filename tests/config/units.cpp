@@ -122,11 +122,18 @@ TEST(quantities, formulas_are_no_quantities) {
 
 TEST(quantities, wrong_ones_are_refused) {
   const auto parse = [](const std::string& text) { parse_quantity(text, {"c.toml", 3, 4}); };
-  for (const auto& [wrong, reason] :
-       std::vector<std::pair<std::string, std::string>>{{"3", "c.toml:3:4: '3' is not a quantity"},
-                                                        {"3 pa", "did you mean 'Pa'?"},
-                                                        {"3 W/degC", "degC is part of a unit"},
-                                                        {"1e300 MPa MPa", "is not finite"}})
+  for (const auto& [wrong, reason] : std::vector<std::pair<std::string, std::string>>{
+           {"3", "c.toml:3:4: '3' is not a quantity"},
+           {"3 pa", "did you mean 'Pa'?"},
+           {"77 C",
+            "c.toml:3:4: unknown unit 'C' (no such symbol, with or without a prefix); did you mean 'degC'? "
+            "valid: m, "},
+           {"30 deg",
+            "c.toml:3:4: unknown unit 'deg' (angles are in degrees and have no unit); write the number "
+            "alone"},
+           {"80 %", "c.toml:3:4: '80 %' is a percentage (a share is a number from 0 to 1); write 0.8"},
+           {"3 W/degC", "degC is part of a unit"},
+           {"1e300 MPa MPa", "is not finite"}})
     bad_input::expect_refused({
         {[&, &text = wrong] { parse(text); }, {reason}},
     });

@@ -138,14 +138,24 @@ class unit_parser {
       if (name.substr(0, prefix.name.size()) == prefix.name)
         for (const auto& one : symbols)
           if (one.name == name.substr(prefix.name.size())) return {prefix.factor * one.factor, one.unit};
+    refuse_symbol(name);
+  }
+
+  [[noreturn]] void refuse_symbol(std::string_view name) const {
+    if (name == "deg" || name == "\u00b0")
+      throw input_error(place_,
+                        fmt::format("unknown unit '{}' (angles are in degrees and have no unit); write "
+                                    "the number alone",
+                                    name));
+    if (is_celsius(name))
+      throw input_error(place_,
+                        "degC is part of a unit (its zero is not that of K); give the temperature in K");
     std::vector<std::string> known;
     for (const auto& one : symbols) known.emplace_back(one.name);
     known.emplace_back("degC");
-    throw input_error(place_,
-                      is_celsius(name)
-                          ? "degC is part of a unit (its zero is not that of K); give the temperature in K"
-                          : fmt::format("unknown unit '{}' (no such symbol, with or without a prefix); {}",
-                                        shown(name), suggest(std::string(name), known)));
+    throw input_error(
+        place_, fmt::format("unknown unit '{}' (no such symbol, with or without a prefix); {}", shown(name),
+                            suggest(name == "C" ? "degC" : std::string(name), known)));
   }
 
   /// Refuses exponents that no unit has. Larger ones would overflow in nested powers.
@@ -177,6 +187,10 @@ struct number_and_unit {
   std::string_view unit;  ///< "" if the text is not of this form
 };
 
+bool is_percent(std::string_view unit) {
+  return unit == "%";
+}
+
 number_and_unit split(std::string_view text) {
   while (!text.empty() && text.front() == ' ') text.remove_prefix(1);
   while (!text.empty() && text.back() == ' ') text.remove_suffix(1);
@@ -185,9 +199,10 @@ number_and_unit split(std::string_view text) {
   const auto [stop, problem] = std::from_chars(begin, end, parts.number);
   if (problem != std::errc() || !std::isfinite(parts.number)) return {};
   text.remove_prefix(static_cast<std::size_t>(stop - begin));
-  if (text.empty() || text.front() != ' ') return {};
+  if (text.empty() || (text.front() != ' ' && !is_percent(text))) return {};
   while (text.front() == ' ') text.remove_prefix(1);
-  if (in_symbol(text.front()) || text.front() == '1' || text.front() == '(') parts.unit = text;
+  if (in_symbol(text.front()) || text.front() == '1' || text.front() == '(' || is_percent(text))
+    parts.unit = text;
   return parts;
 }
 
@@ -197,12 +212,30 @@ bool looks_like_quantity(const std::string& text) {
   return !split(text).unit.empty();
 }
 
+std::string with_missing_space(const std::string& text) {
+  double number = 0.0;
+  const char* const end = text.data() + text.size();
+  const auto [stop, problem] = std::from_chars(text.data(), end, number);
+  if (problem != std::errc() || stop == end || !in_symbol(*stop)) return "";
+  const auto length = static_cast<std::size_t>(stop - text.data());
+  std::string spaced = text.substr(0, length) + " " + text.substr(length);
+  try {
+    parse_quantity(spaced, {});
+  } catch (const input_error&) {
+    return "";  // a formula, whose own message is better
+  }
+  return spaced;
+}
+
 quantity parse_quantity(const std::string& text, const source_place& place) {
   const auto [number, unit] = split(text);
   if (unit.empty())
     throw input_error(place, fmt::format("'{}' is not a quantity (a number, a space and a unit are needed); "
                                          "write for example \"10 Pa\"",
                                          shown(text)));
+  if (is_percent(unit))
+    throw input_error(place, fmt::format("'{}' is a percentage (a share is a number from 0 to 1); write {:g}",
+                                         shown(text), number / 100.0));
   quantity all = is_celsius(unit) ? quantity{number + 273.15, dimensions::temperature}
                                   : unit_parser(unit, place).parse();
   if (!is_celsius(unit)) all.value *= number;

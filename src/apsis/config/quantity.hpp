@@ -13,8 +13,12 @@ struct quantity {
   dimension unit = {};  ///< physical dimension
 };
 
-/// Returns whether a text is a number, spaces, and the beginning of a unit, not of an operator.
+/// Returns whether a text is a number, spaces, and the beginning of a unit, not of an operator. A percentage
+/// counts too, so that parse_quantity() refuses it.
 bool looks_like_quantity(const std::string& text);
+
+/// Returns "350 K" for "350K"; "" if the text is not a number followed by a unit.
+std::string with_missing_space(const std::string& text);
 
 /// Returns the quantity of a text. Units are products and quotients of powers of m, g, s, K, Pa, bar, atm,
 /// Torr, N, J, W and u (the atomic mass unit). Prefixes such as k, m, u or µ are allowed; "degC" stands

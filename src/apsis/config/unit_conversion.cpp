@@ -110,7 +110,10 @@ class unit_remover {
       return;
     }
     const auto* text = std::get_if<std::string>(&raw.value);
-    if (text == nullptr || !looks_like_quantity(*text)) return;
+    if (text == nullptr) return;
+    if (const std::string spaced = with_missing_space(*text); !spaced.empty())
+      refuse(raw, path, "a space is missing between number and unit", fmt::format("write \"{}\"", spaced));
+    if (!looks_like_quantity(*text)) return;
     quantity given = parse_quantity(*text, raw.place);
     if (!scales_)
       refuse(raw, path, "a unit needs the scales of a gas",

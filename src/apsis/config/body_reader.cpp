@@ -6,9 +6,9 @@
 #include <apsis/config/boundary_reader.hpp>
 #include <apsis/config/case_value.hpp>
 #include <apsis/config/list_of_tables.hpp>
+#include <apsis/config/suggest_variable.hpp>
 #include <apsis/config/surface_names.hpp>
 #include <apsis/core/index.hpp>
-#include <apsis/core/suggest.hpp>
 #include <apsis/mesh/hidden_body.hpp>
 #include <apsis/model/expression.hpp>
 
@@ -187,10 +187,10 @@ class reader_of_bodies {
       std::vector<std::string> names = {"shape"};
       names.insert(names.end(), of_wall.begin(), of_wall.end());
       for (const shape_key& key : keys_of(find_shape(shape.shape), dimensions)) names.push_back(key.name);
-      throw input_error(
-          raw.place,
-          fmt::format("unknown key '{}' (shape '{}'{} such key); {}", shown(other), shape.shape,
-                      of_wall.empty() ? " has no" : " and its wall have no", suggest(last_of(other), names)));
+      throw input_error(raw.place,
+                        fmt::format("unknown key '{}' (shape '{}'{} such key); {}", shown(other), shape.shape,
+                                    of_wall.empty() ? " has no" : " and its wall have no",
+                                    suggest_variable(last_of(other), names)));
     }
   }
 

@@ -4,6 +4,7 @@
 #include <apsis/config/at_place.hpp>
 #include <apsis/config/case_value.hpp>
 #include <apsis/config/space_time_formula.hpp>
+#include <apsis/config/suggest_variable.hpp>
 #include <apsis/core/suggest.hpp>
 
 #include <algorithm>
@@ -118,7 +119,7 @@ void read_boundary_values(const case_text& text, const model& equation, case_con
     if (std::find(names.begin(), names.end(), name) == names.end()) {
       names.emplace_back("kind");
       throw input_error(raw.place, fmt::format("unknown key '{}' (boundary '{}' has no such variable); {}",
-                                               shown(path), kind, suggest(name, names)));
+                                               shown(path), kind, suggest_variable(name, names)));
     }
     table.values[name] = formula_texts(raw, path);
   }

@@ -87,13 +87,14 @@ void case_checks::check_dimensions() const {
   const auto check = [&](const std::string& path, std::size_t given, const char* what) {
     if (given == wanted) return;
     const raw_value* raw = text_.find(path);
-    throw input_error(raw != nullptr ? raw->place : text_.place_of_missing(path, file_),
-                      fmt::format("'{}' has {} {} (model '{}' has {} space dimension{}); give {}", path,
-                                  given, what, model_.name, wanted, wanted == 1 ? "" : "s", wanted));
+    throw input_error(
+        raw != nullptr ? raw->place : text_.place_of_missing(path, file_),
+        fmt::format("'{}' has {} {}{} (model '{}' has {} space dimension{}); give {}", path, given, what,
+                    given == 1 ? "" : "s", model_.name, wanted, wanted == 1 ? "" : "s", wanted));
   };
-  check("space.cells", config_.space.cells.size(), "numbers");
-  check("space.domain", config_.space.domain.size(), "intervals");
-  if (config_.space.blocks) check("space.blocks", config_.space.blocks->size(), "numbers");
+  check("space.cells", config_.space.cells.size(), "number");
+  check("space.domain", config_.space.domain.size(), "interval");
+  if (config_.space.blocks) check("space.blocks", config_.space.blocks->size(), "number");
   for (std::size_t k = 0; config_.space.blocks && k < wanted; ++k)
     if ((*config_.space.blocks)[k] > config_.space.cells[k])
       refuse(*text_.find("space.blocks"), "space.blocks",
@@ -106,8 +107,10 @@ void case_checks::check_interval(const interval& ends, int cells) const {
   const raw_value* raw = text_.find("space.domain");
   const double width = upper - lower;
   if (raw != nullptr && !(width > 0.0))
-    refuse(*raw, "space.domain", fmt::format("[{}, {}] is not lower < upper", lower, upper),
-           "give the lower end first");
+    throw input_error(raw->place,
+                      fmt::format("'space.domain' has the interval [{}, {}] (its lower end is not below its "
+                                  "upper end); give the lower end first",
+                                  lower, upper));
   const double scale = std::max(std::abs(lower), std::abs(upper));
   if (raw != nullptr && (!std::isfinite(width) || width / cells < 1e-12 * scale))
     refuse(*raw, "space.domain",

@@ -126,10 +126,25 @@ class resolver {
     for (const auto& [name, place] : text_.tables)
       if (std::find(names.begin(), names.end(), name.substr(0, name.find('.'))) == names.end())
         throw input_error(place, fmt::format("unknown table [{}] (a case has no such table); {}", shown(name),
-                                             suggest(name, names)));
+                                             suggest_table(name, names)));
     for (const auto& name : names)
       if (const raw_value* raw = find(name))
         refuse(*raw, name, "it is a table", fmt::format("write [{}]", name));
+  }
+
+  /// Suggests the whole name of a table within another one, such as [[space.body]] for "body".
+  static std::string suggest_table(const std::string& name, const std::vector<std::string>& names) {
+    if (const std::string nested = nested_table(name); !nested.empty())
+      return fmt::format("did you mean {}?", nested);
+    return suggest(name, names);
+  }
+
+  static std::string nested_table(const std::string& name) {
+    for (const char* list :
+         {"space.body", "space.solid", "output.probe", "output.slice", "initial.region", "initial.part"})
+      if (std::string(list).ends_with("." + name)) return fmt::format("[[{}]]", list);
+    const bool face = std::find(face_names.begin(), face_names.end(), name) != face_names.end();
+    return face ? fmt::format("[boundary.{}]", name) : "";
   }
 
   void find_the_model() {
@@ -163,8 +178,11 @@ class resolver {
         if (key.path == path)
           throw input_error(raw.place, fmt::format("key '{}' is not used (model '{}' {}); remove it", path,
                                                    model_->name, unused_because(key.scope)));
-      throw input_error(raw.place, fmt::format("unknown key '{}' (no such key for model '{}'); {}",
-                                               shown(path), model_->name, suggest_path(path, valid)));
+      throw input_error(
+          raw.place, fmt::format("unknown key '{}' ({}); {}", shown(path),
+                                 is_in(path, "gas") ? "the table [gas] has no such key"
+                                                    : fmt::format("no such key for model '{}'", model_->name),
+                                 suggest_path(path, valid)));
     }
   }
 
@@ -177,7 +195,10 @@ class resolver {
   }
 
   // Suggests keys of the same table only; `apsis show case` lists all.
-  static std::string suggest_path(const std::string& path, const std::vector<std::string>& valid) {
+  std::string suggest_path(const std::string& path, const std::vector<std::string>& valid) const {
+    if (find("parameters." + path) != nullptr) return fmt::format("did you mean 'parameters.{}'?", path);
+    if (const std::string nested = nested_table(path); !nested.empty())
+      return fmt::format("did you mean {}?", nested);
     std::vector<std::string> same_table;
     const std::string table = path.substr(0, path.find('.') + 1);
     for (const auto& candidate : valid)
@@ -194,13 +215,19 @@ class resolver {
     if (raw == nullptr) {
       if (key.required && !(key.optional && key.optional(config_)))
         throw input_error(table_place(key.path),
-                          fmt::format("key '{}' is missing ({}); add it, for example: {}", key.path,
+                          fmt::format("key '{}' is missing ({}); add it, for example: {}{}", key.path,
                                       model_ == nullptr ? "every case needs it"
                                                         : fmt::format("model '{}' needs it", model_->name),
-                                      example(key)));
+                                      example(key), instead_of(key)));
       return;
     }
     key.store(config_, to_value(key, *raw, config_));
+  }
+
+  /// Returns the alternative to a missing key; "" if there is none.
+  std::string instead_of(const case_key& key) const {
+    const bool steady = key.path == "time.end" && prototype(*model_).as_relaxation() != nullptr;
+    return steady ? ", or add a table [steady] for a steady state" : "";
   }
 
   std::string example(const case_key& key) const {

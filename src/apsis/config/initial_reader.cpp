@@ -2,7 +2,7 @@
 
 #include <apsis/config/case_value.hpp>
 #include <apsis/config/list_of_tables.hpp>
-#include <apsis/core/suggest.hpp>
+#include <apsis/config/suggest_variable.hpp>
 
 #include <algorithm>
 #include <optional>
@@ -160,7 +160,7 @@ class reader_of_initial_state {
     std::sort(valid.begin(), valid.end());
     valid.erase(std::unique(valid.begin(), valid.end()), valid.end());
     throw input_error(raw.place, fmt::format("unknown key '{}' (no such variable of model '{}'); {}",
-                                             shown(path), model_name_, suggest(word, valid)));
+                                             shown(path), model_name_, suggest_variable(word, valid)));
   }
 
   const case_text& text_;

@@ -4,8 +4,8 @@
 #include <apsis/config/boundary_reader.hpp>
 #include <apsis/config/case_value.hpp>
 #include <apsis/config/list_of_tables.hpp>
+#include <apsis/config/suggest_variable.hpp>
 #include <apsis/config/surface_names.hpp>
-#include <apsis/core/suggest.hpp>
 #include <apsis/model/expression.hpp>
 
 #include <algorithm>
@@ -27,7 +27,8 @@ std::string path_of(std::size_t box) {
 std::vector<double> corner(const raw_value& raw, const std::string& path, const case_config& config) {
   const std::size_t given = formula_texts(raw, path).size(), wanted = config.space.cells.size();
   if (given != wanted)
-    refuse(raw, path, fmt::format("it has {} numbers, the space {} dimensions", given, wanted),
+    refuse(raw, path,
+           fmt::format("it has {} number{}, the space {} dimensions", given, given == 1 ? "" : "s", wanted),
            fmt::format("give {}", wanted));
   return constant_numbers(raw, path, config.constants);
 }
@@ -92,7 +93,7 @@ class reader_of_solids {
     if (std::find(names.begin(), names.end(), key) == names.end()) {
       names.insert(names.end(), {"name", "from", "to", "kind"});
       throw input_error(raw.place, fmt::format("unknown key '{}' (boundary '{}' has no such variable); {}",
-                                               shown(path), here.kind, suggest(key, names)));
+                                               shown(path), here.kind, suggest_variable(key, names)));
     }
     here.values[key] = formula_texts(raw, path);
   }

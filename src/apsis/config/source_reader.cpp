@@ -2,7 +2,7 @@
 
 #include <apsis/config/case_value.hpp>
 #include <apsis/config/space_time_formula.hpp>
-#include <apsis/core/suggest.hpp>
+#include <apsis/config/suggest_variable.hpp>
 #include <apsis/model/gas_model.hpp>
 
 #include <algorithm>
@@ -237,7 +237,7 @@ void read_source_values(const case_text& text, const model& equation, case_confi
     for (const auto& function : functions_of(equation)) names.push_back(function);
     if (std::find(names.begin(), names.end(), name) == names.end())
       throw input_error(raw.place, fmt::format("unknown key '{}' (a source has no such variable); {}",
-                                               shown(path), suggest(name, names)));
+                                               shown(path), suggest_variable(name, names)));
     config.source_term[name] = formula_texts(raw, path);
   }
 }

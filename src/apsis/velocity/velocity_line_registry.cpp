@@ -31,8 +31,11 @@ bool take_number(std::string_view& text, double& value) {
 template <class Item>
 const Item& item_of(const std::vector<Item>& list, std::size_t k, int dimensions, const char* key) {
   if (list.size() != 1 && list.size() != static_cast<std::size_t>(dimensions))
-    throw input_error(fmt::format("{} has {} entries (the model has {} velocity dimension{}); give 1 or {}",
-                                  key, list.size(), dimensions, dimensions == 1 ? "" : "s", dimensions));
+    throw input_error(fmt::format("{} has {} entries (the model has {} velocity dimension{}); give 1{}", key,
+                                  list.size(), dimensions, dimensions == 1 ? "" : "s",
+                                  dimensions == 1
+                                      ? fmt::format(", or set model.velocity_dimensions = {}", list.size())
+                                      : fmt::format(" or {}", dimensions)));
   return list.size() == 1 ? list.front() : list[k];
 }
 

@@ -1,5 +1,7 @@
 #include <apsis/config/force_reader.hpp>
 
+#include <apsis/config/checked_model.hpp>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -66,6 +68,7 @@ std::optional<acceleration> make_acceleration(const case_config& config, const m
   constexpr double margin = 1.01;  // for values between the samples
   if (!constant)
     for (double& bound : of.largest) bound *= margin;
+  with_place_of_key(config, [&] { check_velocities(of, equation.lattice()); });
   return of;
 }
 

@@ -16,4 +16,10 @@ struct acceleration {
   std::array<double, 3> largest{};
 };
 
+struct velocity_lattice;
+
+/// Throws input_error unless the velocities along each direction of the acceleration are at least five with
+/// equal distances. The message begins with the key of a case that must change.
+void check_velocities(const acceleration& of, const velocity_lattice& lattice);
+
 }  // namespace apsis

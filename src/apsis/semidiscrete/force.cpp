@@ -18,7 +18,6 @@
 namespace apsis {
 namespace {
 
-constexpr int least_points = 5;       // points on which an edge depends
 constexpr double kappa = 1.0 / 12.0;  // CFL number of limited fluxes along velocities
 
 std::size_t size(int n) {
@@ -50,12 +49,7 @@ force::force(const model& equation, std::shared_ptr<domain> space, acceleration 
   if (lattice_.points.empty())
     throw input_error(
         "a force has no meaning (the velocities of the model are no lattice); use a model of a gas");
-  for (std::size_t k = 0; k < lattice_.points.size(); ++k)
-    if (acceleration_.largest[k] > 0.0 && (lattice_.points[k] < least_points || lattice_.spacing[k] == 0.0))
-      throw input_error(fmt::format(
-          "a force acts along velocity direction {} (its {} velocities are not at least {} with equal "
-          "distances); use the set \"uniform\" there",
-          k + 1, lattice_.points[k], least_points));
+  check_velocities(acceleration_, lattice_);
   for (const double bound : acceleration_.largest)
     if (!(bound >= 0.0) || std::isinf(bound))
       throw input_error(

@@ -182,6 +182,15 @@ TEST(gas, units_become_dimensionless_numbers) {
   EXPECT_EQ(c.model.parameters.at("degrees_of_freedom"), 3.0);
 }
 
+TEST(gas, accelerations_have_the_unit_of_speed_per_time) {
+  const case_config c = parse(in_argon + "[force]\nacceleration = [0, \"1e6 m/s^2\"]\n");
+  const double R = 1.380649e-23 / 66.3e-27, expected = 1e6 * 1e-3 / (R * 300.0);
+  ASSERT_EQ(c.force.acceleration->size(), 2U);
+  EXPECT_NEAR(number(c.force.acceleration->back()), expected, 1e-12 * expected);
+  const case_config from_override = parse(in_argon, {"force.acceleration=[0, \"1e6 m/s^2\"]"});
+  EXPECT_EQ(from_override.force.acceleration, c.force.acceleration);
+}
+
 TEST(gas, a_resolved_case_reads_back_unchanged) {
   const std::string once = to_toml(parse(in_argon)), twice = to_toml(parse(once));
   EXPECT_EQ(once, twice);

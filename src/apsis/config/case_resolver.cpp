@@ -13,6 +13,7 @@
 #include <apsis/config/limiter_of_case.hpp>
 #include <apsis/config/method_of_case.hpp>
 #include <apsis/config/output_reader.hpp>
+#include <apsis/config/parameter_use.hpp>
 #include <apsis/config/prescribed_data.hpp>
 #include <apsis/config/reference_reader.hpp>
 #include <apsis/config/solid_reader.hpp>
@@ -281,6 +282,7 @@ class resolver {
                                                  shown(name), why));
       config_.constants[name] = finite_number(raw, path, type_text(key_type::number));
     }
+    check_overridden_parameters(text_);
   }
 
   void take_parameters() {

@@ -51,12 +51,25 @@ std::map<std::string, dimension> measures_of_variables(const model& equation, co
   return dims;
 }
 
+/// Returns the dimensions of the parameters that have a unit, by name.
+std::map<std::string, dimension> dimensions_of_parameters(const case_text& text) {
+  const std::string head = "parameters.";
+  std::map<std::string, dimension> dims;
+  for (const auto& [path, raw] : text.values) {
+    const auto* value = std::get_if<std::string>(&raw.value);
+    if (begins_with(path, head.c_str()) && value != nullptr && looks_like_quantity(*value))
+      dims[path.substr(head.size())] = parse_quantity(*value, raw.place).unit;
+  }
+  return dims;
+}
+
 class unit_remover {
  public:
   unit_remover(const model_entry& model, const std::optional<gas_scales>& scales, const case_text& text)
       : model_(model),
         scales_(scales),
-        variables_(measures_of_variables(prototype(model), dimension_of_area(text))) {}
+        variables_(measures_of_variables(prototype(model), dimension_of_area(text))),
+        parameters_(dimensions_of_parameters(text)) {}
 
   void convert(const std::string& path, raw_value& raw) const {
     if (begins_with(path, "parameters.")) return convert(path, raw, nullptr);
@@ -111,6 +124,7 @@ class unit_remover {
     }
     const auto* text = std::get_if<std::string>(&raw.value);
     if (text == nullptr) return;
+    if (dims != nullptr) check_parameter(path, raw, *text, *dims);
     if (const std::string spaced = with_missing_space(*text); !spaced.empty())
       refuse(raw, path, "a space is missing between number and unit", fmt::format("write \"{}\"", spaced));
     if (!looks_like_quantity(*text)) return;
@@ -120,19 +134,33 @@ class unit_remover {
              "add a table [gas], or give a dimensionless number");
     if (dims != nullptr && *dims == dimensions::density && given.unit == dimensions::number_density)
       given = {given.value * scales_->gas().mass, dimensions::density};
-    // No viscosity is converted here: its dimension is that of a mass flow in the plane.
     if (dims != nullptr && given.unit != *dims)
-      refuse(raw, path, fmt::format("its unit is that of {}", unit_of(given.unit)),
-             *dims == dimensions::none
-                 ? "give a number without a unit"
-                 : fmt::format("give it in {}",
-                               *dims == dimensions::viscosity ? unit_of_amount(*dims, 1) : unit_of(*dims)));
+      refuse(raw, path, fmt::format("its unit is that of {}", unit_of(given.unit)), advice(*dims));
     raw.value = given.value / scales_->unit(given.unit);
+  }
+
+  /// Refuses a value that is a parameter with the unit of another dimension. Formulas are not checked: their
+  /// operations may change the dimension.
+  void check_parameter(const std::string& path, const raw_value& raw, const std::string& name,
+                       const dimension& dims) const {
+    const auto found = parameters_.find(name);
+    if (found != parameters_.end() && found->second != dims)
+      refuse(raw, path,
+             fmt::format("the unit of the parameter '{}' is that of {}", name, unit_of(found->second)),
+             advice(dims));
+  }
+
+  /// Returns the suggestion for a value whose unit has another dimension than its key.
+  static std::string advice(const dimension& dims) {
+    if (dims == dimensions::none) return "give a number without a unit";
+    // No viscosity is converted here: its dimension is that of a mass flow in the plane.
+    return fmt::format("give it in {}",
+                       dims == dimensions::viscosity ? unit_of_amount(dims, 1) : unit_of(dims));
   }
 
   const model_entry& model_;
   const std::optional<gas_scales>& scales_;
-  std::map<std::string, dimension> variables_;
+  std::map<std::string, dimension> variables_, parameters_;
 };
 
 }  // namespace

@@ -8,8 +8,9 @@ std::vector<case_key> force_keys() {
       key("force.acceleration", [](auto& c) -> auto& { return c.force.acceleration; },
           {.type = key_type::formulas,
            .scope = key_scope::velocity,
+           .dimension = dimensions::velocity / dimensions::time,
            .doc = "Acceleration of the molecules, one formula for each velocity dimension; those that are "
-                  "left out are 0."})};
+                  "left out are 0. With a table [gas] they may have units, \"1e6 m/s^2\"."})};
 }
 
 }  // namespace

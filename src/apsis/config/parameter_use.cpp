@@ -19,7 +19,7 @@ bool in_name(char c) {
   return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_';
 }
 
-/// Adds all words of a value, of which some are names of constants.
+/// Adds all words of a value. Some are names of constants.
 void add_words(const raw_value& raw, std::set<std::string>& words) {
   if (const auto* list = std::get_if<raw_value::list>(&raw.value))
     for (const raw_value& item : *list) add_words(item, words);

@@ -2,6 +2,7 @@
 #include "interrupt.hpp"
 #include "option_values.hpp"
 #include "processes.hpp"
+#include "usage_error.hpp"
 
 #include <apsis/core/errors.hpp>
 #include <apsis/core/printable.hpp>
@@ -9,7 +10,6 @@
 #include <apsis/core/version.hpp>
 #include <apsis/exec/memory.hpp>
 
-#include <algorithm>
 #include <csignal>
 #include <cstdio>
 #include <exception>
@@ -29,28 +29,6 @@ std::vector<std::string> command_names(const CLI::App& program) {
   std::vector<std::string> names;
   for (const CLI::App* command : program.get_subcommands({})) names.push_back(command->get_name());
   return names;
-}
-
-std::vector<std::string> option_names(const CLI::App& command) {
-  std::vector<std::string> names;
-  for (const CLI::Option* option : command.get_options())
-    for (const auto& name : option->get_lnames()) names.push_back("--" + name);
-  return names;
-}
-
-// Adds a suggestion to the message in which CLI11 reports what it did not understand.
-[[noreturn]] void usage_error(const CLI::App& program, const CLI::ParseError& problem) {
-  const auto chosen = program.get_subcommands();
-  const CLI::App& place = chosen.empty() ? program : *chosen.front();
-  std::string message = problem.what();
-  std::replace(message.begin(), message.end(), '\n', ' ');
-  const std::string name = chosen.empty() ? "apsis" : "apsis " + place.get_name();
-  std::string advice = fmt::format("see: {} --help", name);
-  const auto dash = message.find(" -");
-  if (dynamic_cast<const CLI::ExtrasError*>(&problem) != nullptr && dash != std::string::npos)
-    advice = suggest(message.substr(dash + 1, message.find_first_of(" =", dash + 1) - dash - 1),
-                     option_names(place));
-  throw input_error(fmt::format("command line: {} ({}); {}", message, name, advice));
 }
 
 int run_program(int argc, char** argv) {
@@ -77,15 +55,12 @@ int run_program(int argc, char** argv) {
   check_option_values(program);
   const std::vector<std::string> names = command_names(program);
   if (argc < 2) throw input_error("command line: no command (one of them is needed); " + suggest("", names));
-  const std::string first = argv[1];
-  if (first[0] != '-' && std::find(names.begin(), names.end(), first) == names.end())
-    throw input_error(fmt::format("command line: unknown command '{}' (apsis has no such command); {}",
-                                  first.substr(0, 60), suggest(first, names)));
+  check_command(argv[1], names);
   try {
     program.parse(argc, argv);
   } catch (const CLI::ParseError& problem) {
     if (problem.get_exit_code() == 0) return program.exit(problem);
-    usage_error(program, problem);
+    refuse_usage(program, problem);
   }
   return chosen();
 }

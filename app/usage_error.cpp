@@ -90,7 +90,8 @@ void refuse_usage(const CLI::App& program, const CLI::ParseError& problem) {
   const bool required = dynamic_cast<const CLI::RequiredError*>(&problem) != nullptr && missing != nullptr;
   throw input_error(
       fmt::format("command line: {} ({}); {}", message, name,
-                  required ? "give " + missing->get_description() : fmt::format("see: {} --help", name)));
+                  required ? fmt::format("give {}: {}", missing->get_name(), missing->get_description())
+                           : fmt::format("see: {} --help", name)));
 }
 
 }  // namespace apsis::app

@@ -25,8 +25,8 @@ struct reader {
 };
 
 const std::vector<reader> readers = {
-    {{"run", "FILE"}, input, output, input},
-    {{"converge", "FILE", "--vary", "time.dt=0.1,0.05"}, input, output, input},
+    {{"run", "FILE"}, input, input, input},
+    {{"converge", "FILE", "--vary", "time.dt=0.1,0.05"}, input, input, input},
     {{"check", "FILE"}, input, output, input},
     {{"show", "FILE"}, input, input, input},
     {{"plot", "FILE"}, input, output, input},

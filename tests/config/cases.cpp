@@ -89,9 +89,15 @@ TEST(cases, numbers_of_overrides_may_lack_digits_on_one_side_of_the_point) {
 
 TEST(cases, a_missing_case_is_an_input_error_with_the_nearest_name) {
   bad_input::expect_refused({
-      {[] { load_case("paper/bgk-mixd"); }, {"did you mean 'paper/bgk-mixed'?"}},
+      {[] { load_case("paper/bgk-mixd"); },
+       {"no case 'paper/bgk-mixd' (no file and no built-in case has this name); did you mean "
+        "'paper/bgk-mixed'? see: apsis list cases"}},
+      {[] { load_case("cylinder.toml"); }, {"did you mean 'gas/cylinder'? see: apsis list cases"}},
+      {[] { load_case("cases/gas/cylinder.toml"); }, {"did you mean 'gas/cylinder'? see: apsis list cases"}},
+      {[] { load_case("help"); },
+       {"no case 'help' (no file and no built-in case has this name); see: apsis list cases"}},
+      {[] { load_case("/"); }, {"'/' is not a case file (it is a folder); give a file"}},
   });
-  EXPECT_THROW(load_case("/"), io_error);
 }
 
 TEST(cases, resolved_text_reads_back_to_the_same_case) {

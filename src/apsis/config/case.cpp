@@ -8,13 +8,10 @@
 #include <apsis/config/case_value.hpp>
 #include <apsis/config/quantity.hpp>
 #include <apsis/config/solid_reader.hpp>
-#include <apsis/core/embedded.hpp>
-#include <apsis/core/suggest.hpp>
-#include <apsis/core/text_file.hpp>
+#include <apsis/core/errors.hpp>
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 
 #include <fmt/format.h>
 
@@ -107,19 +104,48 @@ void erase_alternatives(case_text& text, const std::string& path) {
   }
 }
 
+bool is_open_list(const std::string& text) {
+  return std::count(text.begin(), text.end(), '[') > std::count(text.begin(), text.end(), ']');
+}
+
+/// Returns the override that begins with a word and that the shell split at spaces.
+std::string joined_override(const std::vector<std::string>& words, std::size_t first) {
+  std::string whole = words[first];
+  for (std::size_t k = first + 1; k < words.size(); ++k) {
+    const bool around_equals = whole.ends_with('=') || words[k].starts_with('=');
+    if (!around_equals && !is_open_list(whole)) break;
+    whole += (around_equals ? "" : " ") + words[k];
+  }
+  return whole;
+}
+
+/// Refuses a word that is not of the form key=value. Its neighbours may be parts of the same override.
+[[noreturn]] void refuse_form(const std::vector<std::string>& words, std::size_t at,
+                              const source_place& place) {
+  const bool ends_another = at > 0 && (words[at - 1].ends_with('=') || is_open_list(words[at - 1]));
+  const std::size_t first = ends_another ? at - 1 : at;
+  const std::string whole = joined_override(words, first);
+  if (whole == words[first])
+    throw input_error(
+        place, "not of the form key=value (an override sets one key); write for example space.cells=80");
+  const bool has_space = whole.find(' ') != std::string::npos;
+  throw input_error(place, fmt::format("not of the form key=value (the shell splits it at spaces); {}",
+                                       has_space ? fmt::format("quote all of it: '{}'", shown(whole))
+                                                 : fmt::format("write {} without spaces", shown(whole))));
+}
+
 void apply_overrides(case_text& text, const std::vector<std::string>& overrides) {
   struct key_and_value {
     std::string path, value;
     source_place place;
   };
   std::vector<key_and_value> all;
-  for (const auto& item : overrides) {
+  for (std::size_t k = 0; k < overrides.size(); ++k) {
+    const std::string& item = overrides[k];
     const source_place place{fmt::format("override '{}'", shown(item)), 0, 0};
     const auto equals = item.find('=');
     const std::string path = trimmed(item.substr(0, equals));
-    if (equals == std::string::npos || path.empty())
-      throw input_error(
-          place, "not of the form key=value (an override sets one key); write for example space.cells=80");
+    if (equals == std::string::npos || path.empty()) refuse_form(overrides, k, place);
     all.push_back({path, trimmed(item.substr(equals + 1)), place});
   }
   for (const auto& item : all) erase_alternatives(text, item.path);
@@ -133,16 +159,6 @@ case_config parse_case(std::string_view text, const std::string& file,
   case_text flat = read_case_text(text, file);
   apply_overrides(flat, overrides);
   return resolve_case(std::move(flat), file);
-}
-
-std::string read_case(const std::string& name_or_path) {
-  for (const auto& built_in : embedded::cases())
-    if (built_in.name == name_or_path) return std::string(built_in.text);
-  std::error_code ignored;
-  if (!std::filesystem::exists(name_or_path, ignored))
-    throw input_error(fmt::format("no case '{}' (neither a file nor a built-in case); {}",
-                                  shown(name_or_path), suggest(name_or_path, case_names())));
-  return read_text_file(name_or_path, longest_case_file, "case file");
 }
 
 case_config load_case(const std::string& name_or_path, const std::vector<std::string>& overrides) {
@@ -202,13 +218,6 @@ grid make_mesh(const case_config& config) {
   const grid mesh = config.is_axisymmetric() ? plain.about_axis() : plain;
   const grid with_boxes = config.solids.empty() ? mesh : mesh.with_solids(solid_boxes(config, mesh));
   return config.bodies.empty() ? with_boxes : with_boxes.with_cut_cells(cut_cells_of(config, with_boxes));
-}
-
-std::vector<std::string> case_names() {
-  std::vector<std::string> names;
-  for (const auto& built_in : embedded::cases()) names.emplace_back(built_in.name);
-  std::sort(names.begin(), names.end());
-  return names;
 }
 
 }  // namespace apsis

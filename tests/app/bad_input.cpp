@@ -40,6 +40,7 @@ void write_files(const work_folder& folder) {
                                          "ELF\x02\x01\x01\0\0\0",
                                          10));
   folder.file("empty.toml", "");
+  folder.file("README.md", "# A title\n\nApsis computes flows.\n");
   folder.file("m.toml", good_method);
   std::string wrong = good_method;
   wrong.replace(wrong.find("-1/2"), 4, "-1/3");

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <filesystem>
 #include <optional>
 #include <system_error>
 
@@ -125,8 +126,17 @@ std::optional<double> bare_decimal(std::string_view value) {
   return decimal(value.substr(value.front() == '+' ? 1 : 0));
 }
 
-std::string syntax_message(std::string_view description) {
-  return fmt::format("not valid TOML ({}); correct the syntax here", shown(description, 200));
+/// Returns the message about a text that is not TOML; `file` is its path or name.
+std::string syntax_message(std::string_view description, const std::string& file) {
+  // The parser reports an unclosed quote as a character of the line end, or as the end of the file.
+  const bool of_text = description.find("parsing string") != std::string_view::npos;
+  const bool unclosed = of_text && (description.find("unescaped control") != std::string_view::npos ||
+                                    description.find("end-of-file") != std::string_view::npos);
+  const std::string ending = std::filesystem::path(file).extension().string();
+  std::string advice = "correct the syntax here";
+  if (unclosed) advice = "add the closing quote if it is missing";
+  if (!ending.empty() && ending != ".toml") advice = "is it the case file you meant?";
+  return fmt::format("not valid TOML ({}); {}", shown(description, 200), advice);
 }
 
 }  // namespace
@@ -174,7 +184,7 @@ case_text read_case_text(std::string_view text, const std::string& file) {
       }
     }
   } catch (const toml::parse_error& e) {
-    throw input_error(place_of(e.source(), file), syntax_message(e.description()));
+    throw input_error(place_of(e.source(), file), syntax_message(e.description(), file));
   }
   return out;
 }

@@ -1,4 +1,5 @@
 #include "command_registry.hpp"
+#include "file_kind.hpp"
 #include "integrator_report.hpp"
 #include "interrupt.hpp"
 #include "method_report.hpp"
@@ -19,7 +20,6 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
-#include <sstream>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -30,13 +30,10 @@ namespace {
 
 /// Throws input_error with a message of its own if the text is a case instead of a method.
 void refuse_case(const std::string& text, const std::string& path) {
-  std::istringstream lines(text);
-  std::string line;
-  for (int number = 1; std::getline(lines, line); ++number)
-    if (line.rfind("[model]", 0) == 0)
-      throw input_error(
-          {path, number, 1},
-          "a case is no method (it has a table [model]); apsis run checks a case before its first step");
+  if (const int line = line_of_model(text); line > 0)
+    throw input_error(
+        {path, line, 1},
+        "a case is no method (it has a table [model]); apsis run checks a case before its first step");
 }
 
 struct options {

@@ -1,5 +1,6 @@
 #include "command_registry.hpp"
 #include "drawing.hpp"
+#include "file_kind.hpp"
 #include "interrupt.hpp"
 #include "method_document.hpp"
 
@@ -29,8 +30,35 @@ std::string described(const drawing& pictures, std::size_t place, const method& 
   return pictures.add(fmt::format("method-{}.json", place), method_document(m, "json"));
 }
 
+/// Refuses what is neither a result nor a method, before Python starts.
+void check_what(const std::string& what) {
+  const fs::path path(what);
+  std::error_code ignored;
+  if (fs::is_directory(path, ignored)) {
+    if (has_results(path)) return;
+    throw input_error(fmt::format(
+        "cannot draw '{:.200}' (not a folder of results); give the folder of apsis run --out", what));
+  }
+  if (path.extension() == ".json" || is_method_name(what)) return;
+  if (!fs::is_regular_file(path, ignored))
+    throw input_error(fmt::format("cannot draw '{}' (no folder, file or method of this name); {}",
+                                  what.substr(0, 60),
+                                  suggest_from_list(what, method_names(), "apsis list methods")));
+  const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
+  if (path.extension() != ".toml" && has_results(folder))
+    throw input_error(
+        fmt::format("cannot draw '{:.200}' (it is one file of a folder of results); give the folder {}", what,
+                    folder.string()));
+  if (is_case_file(what))
+    throw input_error(
+        fmt::format("cannot draw '{:.200}' (it is a case); apsis run {:.200} --out DIR, then apsis plot DIR",
+                    what, what));
+}
+
 int plot(const options& given) {
   watch_for_interrupts("the end of the drawing");
+  if (given.compare.empty())
+    for (const auto& what : given.what) check_what(what);
   const drawing pictures;
   std::vector<std::string> arguments;
   for (std::size_t k = 0; k < given.what.size(); ++k) {
@@ -39,11 +67,8 @@ int plot(const options& given) {
       arguments.push_back(what);
     else if (fs::is_regular_file(what))
       arguments.push_back(described(pictures, k, load_method_file(what)));
-    else if (is_method_name(what))
-      arguments.push_back(described(pictures, k, find_method(what)));
     else
-      throw input_error(fmt::format("cannot draw '{}' (no folder, file or method of this name); {}",
-                                    what.substr(0, 60), suggest(what, method_names())));
+      arguments.push_back(described(pictures, k, find_method(what)));
   }
   arguments.insert(arguments.end(), {"--format", given.format});
   if (!given.out.empty()) arguments.insert(arguments.end(), {"--out", given.out});

@@ -1,4 +1,5 @@
 #include "command_registry.hpp"
+#include "file_kind.hpp"
 #include "method_document.hpp"
 #include "print.hpp"
 
@@ -68,6 +69,9 @@ int show(const options& given) {
     print(method_document(find_method(given.what), given.format.empty() ? "text" : given.format));
   } else if (contains(names_of_several_steps(), given.what)) {
     show_several_steps(given);
+  } else if (is_case_file(given.what)) {
+    only_text(given);
+    print(read_case(given.what));
   } else if (std::filesystem::is_regular_file(given.what)) {
     print(method_document(load_method_file(given.what), given.format.empty() ? "text" : given.format));
   } else {
@@ -77,15 +81,17 @@ int show(const options& given) {
     for (const auto& file : embedded::surfaces()) all.push_back(fmt::format("{}.stl", file.name));
     all.emplace_back("case");
     throw input_error(
-        fmt::format("nothing is called '{}' (no method, built-in case, STL file or method file); {}",
-                    given.what.substr(0, 60), suggest(given.what, all)));
+        fmt::format("nothing is called '{}' (no method, case, STL file or file has this name); {}",
+                    given.what.substr(0, 60),
+                    suggest_from_list(given.what, all, "apsis list methods, apsis list cases")));
   }
   return 0;
 }
 
 action define(CLI::App& command) {
   auto given = std::make_shared<options>();
-  command.add_option("WHAT", given->what, "a method, a method file, a built-in case or STL file, or: case")
+  command
+      .add_option("WHAT", given->what, "a method or a case, by name or file, a built-in STL file, or: case")
       ->required();
   command.add_option("--format", given->format, "format for a method: text, json, latex or toml")
       ->check(CLI::IsMember({"text", "json", "latex", "toml"}));

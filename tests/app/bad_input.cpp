@@ -59,6 +59,7 @@ void write_files(const work_folder& folder) {
   folder.file("long.toml", good_method + "#" + std::string(1'100'000, 'x') + "\n");
   std::filesystem::create_directory(folder.path() / "damaged");
   folder.file("damaged/manifest.json", "{");
+  folder.file("damaged/fields.csv", "x,rho\n");
   folder.file("no-method.toml", "name = \"x\"\n");
   folder.file("not_hdf5.h5", "this is no HDF5 file");
 }
@@ -112,6 +113,7 @@ TEST(bad_input, the_files_of_the_table_are_good_where_they_should_be) {
   write_files(folder);
   EXPECT_EQ(run_apsis(folder, {"run", "good.toml"}).code, 0);
   EXPECT_EQ(run_apsis(folder, {"check", "m.toml"}).code, 0);
+  EXPECT_EQ(run_apsis(folder, {"show", "good.toml"}).out, good_case);
 }
 
 TEST(bad_input, a_method_file_cut_at_any_byte_never_crashes) {

@@ -29,7 +29,7 @@ const std::vector<reader> readers = {
     {{"converge", "FILE", "--vary", "time.dt=0.1,0.05"}, input, input, input},
     {{"check", "FILE"}, input, output, input},
     {{"show", "FILE"}, input, input, input},
-    {{"plot", "FILE"}, input, output, input},
+    {{"plot", "FILE"}, input, input, input},
     {{"report", "FILE"}, output, output, output},
 #if APSIS_HAS_DESIGN
     {{"design", "--order", "2", "--stages", "3", "--out", "d.toml", "--from", "FILE"}, input, output, input},

@@ -61,6 +61,12 @@ TEST(suggest, does_not_suggest_distant_words) {
   EXPECT_EQ(suggest("foo", {"cos", "sin"}), "valid: cos, sin");
 }
 
+TEST(suggest, names_the_command_that_prints_a_long_list) {
+  EXPECT_EQ(apsis::suggest_from_list("coz", {"cos", "sin"}, "apsis list x"),
+            "did you mean 'cos'? see: apsis list x");
+  EXPECT_EQ(apsis::suggest_from_list("foo", {"cos", "sin"}, "apsis list x"), "see: apsis list x");
+}
+
 TEST(suggest, single_slip_in_three_or_more_letters_finds_the_word_or_one_equally_close) {
   for (const auto& word : functions) {
     if (word.size() < 3) continue;

@@ -72,4 +72,10 @@ std::string suggest(const std::string& word, const std::vector<std::string>& can
          fmt::format("valid: {}", fmt::join(candidates, ", "));
 }
 
+std::string suggest_from_list(const std::string& word, const std::vector<std::string>& candidates,
+                              const std::string& command) {
+  const std::string closest = nearest_word(word, candidates);
+  return (closest.empty() ? std::string() : fmt::format("did you mean '{}'? ", closest)) + "see: " + command;
+}
+
 }  // namespace apsis

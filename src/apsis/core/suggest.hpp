@@ -15,4 +15,9 @@ std::string nearest_word(const std::string& word, const std::vector<std::string>
 /// candidate is close.
 std::string suggest(const std::string& word, const std::vector<std::string>& candidates);
 
+/// Returns "did you mean 'x'? see: command", or only "see: command" if no candidate is close. This is for
+/// lists that are too long for a message; `command` prints the list.
+std::string suggest_from_list(const std::string& word, const std::vector<std::string>& candidates,
+                              const std::string& command);
+
 }  // namespace apsis

@@ -45,19 +45,22 @@ folder_lock::folder_lock(std::filesystem::path folder) : path_(std::move(folder)
   }
 }
 
-void folder_lock::refuse(const std::string& why) const {
-  throw io_error(fmt::format("cannot write '{}' ({}); choose another folder with --out or free some space",
-                             path_.string(), why));
+void folder_lock::refuse(const std::string& why, int code) const {
+  throw io_error(fmt::format("cannot write '{}' ({}); choose another folder with --out{}", path_.string(),
+                             why, code == ENOSPC ? " or free some space" : ""));
 }
 
 void folder_lock::take() {
   while (true) {
     file_ = open(path_.c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC, 0666);
-    if (file_ < 0) refuse(why_not_written(path_.string(), errno));
+    if (file_ < 0) {
+      const int why = errno;
+      refuse(why_not_written(path_.string(), why), why);
+    }
     // Others may have planted the name as a link to another file of the user, which must not be overwritten.
     struct stat found = {};
     if (fstat(file_, &found) != 0 || !S_ISREG(found.st_mode) || found.st_nlink > 1)
-      refuse("another file may have this name too, or it is not a file");
+      refuse("another file may have this name too, or it is not a file", EEXIST);
     if (flock(file_, LOCK_EX | LOCK_NB) != 0) {
       const int why = errno;
       if (why == EWOULDBLOCK)
@@ -76,7 +79,7 @@ void folder_lock::take() {
   if (ftruncate(file_, 0) != 0 || pwrite(file_, me.data(), me.size(), 0) != static_cast<ssize_t>(me.size())) {
     const int why = errno;
     unlink(path_.c_str());
-    refuse(why_not_written(path_.string(), why));
+    refuse(why_not_written(path_.string(), why), why);
   }
 }
 

@@ -20,7 +20,7 @@ class folder_lock {
 
  private:
   void take();
-  [[noreturn]] void refuse(const std::string& why) const;
+  [[noreturn]] void refuse(const std::string& why, int code) const;
 
   std::filesystem::path path_;
   int file_ = -1;

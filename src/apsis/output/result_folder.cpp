@@ -26,11 +26,17 @@ constexpr std::array<const char*, 4> series_names = {"snapshots", "probes", "sli
 
 constexpr const char* advice = "choose another folder with --out or free some space";
 
-[[noreturn]] void cannot(const std::string& verb, const fs::path& path, const std::string& why) {
-  throw io_error(fmt::format("cannot {} '{}' ({}); {}", verb, path.string(), why, advice));
+/// Returns the advice for an error; only a full disk needs space.
+const char* advice_for(const std::error_code& why) {
+  return why == std::errc::no_space_on_device ? advice : "choose another folder with --out";
+}
+
+[[noreturn]] void cannot(const std::string& verb, const fs::path& path, const std::string& why,
+                         const char* suggestion) {
+  throw io_error(fmt::format("cannot {} '{}' ({}); {}", verb, path.string(), why, suggestion));
 }
 [[noreturn]] void cannot(const std::string& verb, const fs::path& path, const std::error_code& why) {
-  cannot(verb, path, why_not_written(path.string(), why.value()));
+  cannot(verb, path, why_not_written(path.string(), why.value()), advice_for(why));
 }
 
 /// Returns whether the path is a folder and not a link to one, because files are not written through links.
@@ -61,7 +67,8 @@ result_folder::result_folder(fs::path path) : path_(std::move(path)) {
   fs::create_directories(path_, problem);
   if (problem || !fs::is_directory(path_)) {
     discard();
-    cannot("create the folder", path_, problem ? problem.message() : "a file has this name");
+    cannot("create the folder", path_, problem ? problem.message() : "a file has this name",
+           advice_for(problem));
   }
   const fs::path probe = temporary("probe");
   try {

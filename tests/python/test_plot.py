@@ -1,6 +1,8 @@
 """Content of the pictures of runs and methods, from results with known numbers."""
 import json
 import math
+import re
+from dataclasses import replace
 
 import apsis
 import h5py
@@ -120,6 +122,19 @@ def test_runs_with_equally_many_cells_are_lines_and_are_compared_with_the_last(t
     assert [line.get_linestyle() for line in comparison_figure(runs).axes[0].lines] == ["-", "--"]
     distance = np.abs(one.fields["rho"][-1] - two.fields["rho"][-1]).max()
     assert differences(runs)[0].startswith(f"1e-2 against 1: rho {distance:.2e}, ")
+
+
+def test_a_comparison_of_different_units_is_refused(tmp_path):
+    run(tmp_path / "a", "paper/broadwell", "space.cells=10")
+    plain = read_result(tmp_path / "a")
+    si = replace(plain, manifest={**plain.manifest, "units": {"rho": "kg/m^3"}})
+    message = re.escape("'a' and 'b' cannot be compared (the unit of rho is dimensionless in one, kg/m^3 in the other); "
+                        "run both with the same output.units")
+    for refused in (comparison_figure, differences):
+        with pytest.raises(PictureError, match=f"^{message}$") as problem:
+            refused([("a", plain), ("b", si)])
+        assert problem.value.exit_code == 2
+    comparison_figure([("a", si), ("b", si)])
 
 
 def test_a_comparison_of_different_models_is_refused(tmp_path):

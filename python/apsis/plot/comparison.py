@@ -24,6 +24,7 @@ def comparisons(runs: Runs, slice_at: str | None = None) -> Iterator[tuple[str, 
 
 def comparison_figure(runs: Runs, slice_at: str | None = None) -> Any:
     """Draws the fields that all runs have: on a line a panel of each, in several dimensions a row of maps of each. Raises PictureError."""
+    check_units(runs)
     names = shared_fields(runs)
     return lines(runs, names) if maps.dimensions(runs[0][1]) == 1 else rows_of_maps(runs, names, slice_at)
 
@@ -38,6 +39,16 @@ def shared_fields(runs: Runs) -> list[str]:
     if not names:
         raise PictureError("nothing to compare (the runs share no field over x); give runs of one model")
     return names
+
+
+def check_units(runs: Runs) -> None:
+    """Raises PictureError if a field, x or t has different units in two runs."""
+    first_label, first = runs[0]
+    for label, run in runs[1:]:
+        for name in ("x", "t", *first.fields):
+            if (name in ("x", "t") or name in run.fields) and run.unit(name) != first.unit(name):
+                raise PictureError(f"'{first_label}' and '{label}' cannot be compared (the unit of {name} is {first.unit(name)} in one, "
+                                   f"{run.unit(name)} in the other); run both with the same output.units", 2)
 
 
 def lines(runs: Runs, names: list[str]) -> Any:
@@ -98,7 +109,8 @@ def averaged(values: Array, shape: tuple[int, ...]) -> Array | None:
 
 def differences(runs: Runs) -> list[str]:
     """Returns the largest differences between every run and the finest one, whose values are averaged over the coarser cells. Cells
-    in a solid box of either run are omitted."""
+    in a solid box of either run are omitted. Raises PictureError if units differ."""
+    check_units(runs)
     finest = finest_of(runs)
     label_of_finest, fine = runs[finest]
     found = []

@@ -61,6 +61,8 @@ void write_files(const work_folder& folder) {
   folder.file("damaged/manifest.json", "{");
   folder.file("damaged/fields.csv", "x,rho\n");
   folder.file("no-method.toml", "name = \"x\"\n");
+  std::filesystem::create_directory(folder.path() / "stopped");
+  folder.file("stopped/checkpoint.h5", "");
   folder.file("not_hdf5.h5", "this is no HDF5 file");
 }
 

@@ -35,7 +35,7 @@ const std::vector<reader> readers = {
     {{"design", "--order", "2", "--stages", "3", "--out", "d.toml", "--from", "FILE"}, input, output, input},
     {{"design", "--out", "d.toml", "--embedded", "FILE"}, input, output, input},
 #endif
-    {{"run", "paper/ode", "--restart", "FILE"}, output, output, output},
+    {{"run", "paper/ode", "--restart", "FILE"}, input, input, input},
     {{"run", "paper/ode", "time.method=FILE"}, input, output, input},
 };
 

@@ -104,8 +104,11 @@ def test_errors_are_those_of_the_program(tmp_path):
         apsis.run("paper/bgk-mixed", "space.cell=3")
     with pytest.raises(apsis.InputError, match="case:"):
         apsis.run({"model": {"name": "none"}})
-    with pytest.raises(apsis.FileError):
+    with pytest.raises(apsis.InputError, match="no checkpoint '.*none.h5' "):
         apsis.run("paper/bgk-mixed", *SMALL, restart=tmp_path / "none.h5")
+    (tmp_path / "empty.h5").touch()
+    with pytest.raises(apsis.FileError):
+        apsis.run("paper/bgk-mixed", *SMALL, restart=tmp_path / "empty.h5")
     class Mine(Exception):
         pass
     def fail(*_):

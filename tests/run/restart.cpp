@@ -216,6 +216,48 @@ TEST(a_checkpoint, of_another_kind_or_version_is_refused_with_the_reason) {
                               4}});
 }
 
+TEST(a_checkpoint, that_is_missing_or_another_file_is_an_input_error_before_the_run) {
+  const test_folder folder;
+  const auto c = parse_case(small_case(find_model("ode"), "md-imex-3-2", ""), "case");
+  run(c, folder / "o", 1000);
+  const auto restart = [&](const std::string& name) { run(c, folder / "p", 1000, folder / name); };
+  write_bytes(folder / "square.toml", "[model]\n");
+  std::filesystem::create_directory(folder / "other");
+  bad_input::expect_refused(
+      {{[&] { restart("none.h5"); },
+        {"no checkpoint '" + (folder / "none.h5") +
+         "' (there is no such file); give a checkpoint.h5 written by apsis"}},
+       {[&] { restart("o"); },
+        {"'" + (folder / "o") + "' is not a checkpoint (it is a folder); give " +
+         (folder / "o/checkpoint.h5")}},
+       {[&] { restart("other"); },
+        {"'" + (folder / "other") +
+         "' is not a checkpoint (it is a folder); give a checkpoint.h5 written by apsis"}},
+       {[&] { restart("square.toml"); },
+        {"'" + (folder / "square.toml") +
+         "' is not a checkpoint (it is not an HDF5 file); give a checkpoint.h5 written by apsis"}}});
+  EXPECT_FALSE(std::filesystem::exists(folder / "p"));
+}
+
+TEST(a_checkpoint, of_a_later_time_is_refused_with_both_times_in_seconds_if_the_results_are_in_si_units) {
+  const test_folder folder;
+  const auto ode = [](const std::string& end) {
+    return parse_case(small_case(find_model("ode"), "md-imex-3-2", ""), "case", {"time.end=" + end});
+  };
+  const auto gas = [](const std::string& end) {
+    return load_case("gas/micro-channel",
+                     {"output.units=SI", "time.end=" + end, "space.cells=12", "velocity.points=16"});
+  };
+  run(ode("0.0625"), folder / "ode", 1000);
+  run(gas("200 ps"), folder / "gas", 1000);
+  bad_input::expect_refused(
+      {{[&] { run(ode("0.03125"), folder / "ode", 1000, folder / "ode/checkpoint.h5"); },
+        {"ode/checkpoint.h5' is already at t = 0.0625 (time.end is 0.03125); give a later time.end"}},
+       {[&] { run(gas("100 ps"), folder / "gas", 1000, folder / "gas/checkpoint.h5"); },
+        {"gas/checkpoint.h5' is already at t = 0.00", ", or 2e-10 s (time.end is 0.00",
+         ", or 1e-10 s); give a later time.end"}}});
+}
+
 TEST(a_checkpoint, of_another_commit_is_accepted_with_a_warning) {
   const test_folder folder;
   const std::string path = some_checkpoint(folder);

@@ -5,11 +5,14 @@
 #include <apsis/core/log.hpp>
 #include <apsis/core/version.hpp>
 #include <apsis/exec/agreement.hpp>
+#include <apsis/output/sealed_file.hpp>
 #include <apsis/run/distribution_rows.hpp>
 #include <apsis/run/setup.hpp>
 #include <apsis/run/shared_files.hpp>
 
 #include <algorithm>
+#include <filesystem>
+#include <fstream>
 #include <sstream>
 
 #include <fmt/format.h>
@@ -52,7 +55,32 @@ void check_same_case(const case_config& mine, const std::string& saved_text, con
         path, there, here));
 }
 
+/// Whether the file may be a damaged checkpoint or another HDF5 file: it is empty, or begins as one of them.
+bool may_be_hdf5(const std::string& path) {
+  const std::string signature = "\x89HDF\r\n\x1a\n";
+  std::string begin(seal_length + signature.size(), '\0');
+  std::ifstream file(path, std::ios::binary);
+  file.read(begin.data(), static_cast<std::streamsize>(begin.size()));
+  return file.gcount() == 0 || begin.starts_with("apsis ") || begin.starts_with(signature) ||
+         begin.ends_with(signature);
+}
+
 }  // namespace
+
+void check_is_checkpoint(const std::string& path) {
+  const char* const advice = "give a checkpoint.h5 written by apsis";
+  std::error_code ignored;
+  if (!std::filesystem::exists(path, ignored))
+    throw input_error(fmt::format("no checkpoint '{}' (there is no such file); {}", path, advice));
+  if (std::filesystem::is_directory(path, ignored)) {
+    const auto inside = std::filesystem::path(path) / "checkpoint.h5";
+    const bool found = std::filesystem::exists(inside, ignored);
+    throw input_error(fmt::format("'{}' is not a checkpoint (it is a folder); {}", path,
+                                  found ? "give " + inside.string() : advice));
+  }
+  if (!may_be_hdf5(path))
+    throw input_error(fmt::format("'{}' is not a checkpoint (it is not an HDF5 file); {}", path, advice));
+}
 
 std::pair<std::string, std::string> first_difference(const std::string& a, const std::string& b) {
   std::istringstream of_a(a), of_b(b);

@@ -11,6 +11,10 @@
 
 namespace apsis {
 
+/// Throws input_error if the path is missing, a folder, or a file of another kind than HDF5. It does not look
+/// for damage.
+void check_is_checkpoint(const std::string& path);
+
 /// Returns the first line of each text that differs from the same line of the other. Both lines are
 /// empty for equal texts.
 std::pair<std::string, std::string> first_difference(const std::string& a, const std::string& b);

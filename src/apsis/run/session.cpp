@@ -72,6 +72,9 @@ void log_unused_times(const case_config& config) {
 /// checkpoint and solution.h5 if results are written. Logs the memory that the run needs.
 std::unique_ptr<run_setup> setup_with_room_for_results(const case_config& configured,
                                                        const session_options& options) {
+  run_collectively(*options.processes, [&] {
+    if (options.restart && options.processes->is_root()) check_is_checkpoint(*options.restart);
+  });
   const case_config config =
       with_method_of(options.restart, with_chosen_method(configured), *options.processes);
   if (!config.time.method_reason.empty() && !config.steady_state.tolerance)
@@ -120,6 +123,14 @@ const case_config& same_on_all(const case_config& mine, const session_options& o
 state_source start_of(const case_config& config, const session_options& options) {
   if (!options.restart) return options.initial;
   return config.prescribed.given_elsewhere() ? state_of_checkpoint(*options.restart) : state_source{};
+}
+
+/// Returns a time of the case, and in seconds if results are in SI units: "14.36, or 0.0125 s".
+std::string time_text(double t, const case_config& config) {
+  const result_units units(config);
+  if (!units.are_si()) return fmt::format("{}", t);
+  return fmt::format("{}, or {:.6g}{}", t, t * units.factor(dimensions::time),
+                     units.suffix(dimensions::time));
 }
 
 std::string duration(double seconds) {
@@ -198,7 +209,8 @@ void run_session::resume(const std::string& path) {
                                   path, state.march.t, simulation_.config().steady_state.iterations));
   if (!(state.march.t < simulation_.config().time.end))
     throw input_error(fmt::format("'{}' is already at t = {} (time.end is {}); give a later time.end", path,
-                                  state.march.t, simulation_.config().time.end));
+                                  time_text(state.march.t, simulation_.config()),
+                                  time_text(simulation_.config().time.end, simulation_.config())));
   simulation_.restore(state);
   records_ = std::make_unique<run_records>(simulation_, saved);
 }

@@ -156,7 +156,11 @@ TEST(formulas, weighed_targets_are_those_of_single_numbers) {
     const drawn_lines lines(*rc::gen::inRange(1, 4), n, count, random);
     const auto p = drawn_polynomial(*rc::gen::arbitrary<bool>(), random);
     const auto size = static_cast<std::size_t>(lines.of.size());
-    const auto m = drawn(size, random, any_size), f = drawn(size, random, any_size);
+    const auto m = drawn(size, random, any_size);
+    auto f = drawn(size, random, any_size);
+    // Bounds of signed data may be positive.
+    if (*rc::gen::arbitrary<bool>())
+      f[static_cast<std::size_t>(*rc::gen::inRange(0, static_cast<int>(size)))] *= -1.0;
     for (const double keep : {std::numeric_limits<double>::infinity(), 0.0, 0.3})
       for_each_number([&](auto number, int) {
         using N = decltype(number);

@@ -96,6 +96,16 @@ HWY_INLINE bool weigh_line(const double* m, const cubic_polynomial<pack<wide>>& 
   return raised;
 }
 
+bool is_nonnegative(const double* f, long n) {
+  using N = pack<wide>;
+  const long length = static_cast<long>(hn::Lanes(wide()));
+  N least(0.0);
+  long k = 0;
+  for (; k + length <= n; k += length) least = minimum(least, N::load(f + k));
+  if (k < n) least = minimum(least, load_some(f + k, static_cast<int>(n - k)));
+  return !any<N>(least < N(0.0));
+}
+
 template <int D, bool Cubic>
 HWY_INLINE bool weigh_lines(const double* m, const target_polynomial& p, const lines_of_row& of,
                             const double* f, double keep, double* e) {
@@ -105,13 +115,14 @@ HWY_INLINE bool weigh_lines(const double* m, const target_polynomial& p, const l
   const int n = of.n, lines = of.count;
   const double* const v = of.v;
   const N u(of.u), kept(keep);
+  // Positive values of e are above the bounds −keep f unless f is negative somewhere.
+  const bool positive_is_enough = !bounded || is_nonnegative(f, of.size());
   bool raised = false;
   eight_polynomials all;  // NOLINT(cppcoreguidelines-pro-type-member-init)
   for (int first = 0; first < lines; first += most_lanes) {
     all.find<D, Cubic>(p, of, first);
     const int some = std::min(most_lanes, lines - first);
-    // Positive values need no bound, and reading f to find it takes time.
-    if (some == most_lanes && (!bounded || all.all_positive)) {
+    if (some == most_lanes && (!bounded || (positive_is_enough && all.all_positive))) {
       weigh_eight<Cubic>(m, all, v, u, n, e);
       m += most_lanes * n;
       f += most_lanes * n;
@@ -120,7 +131,7 @@ HWY_INLINE bool weigh_lines(const double* m, const target_polynomial& p, const l
     }
     for (int line = 0; line < some; ++line, m += n, f += n, e += n) {
       const cubic_polynomial<N> on_line{N(all.k0[line]), N(all.k1[line]), N(all.k2[line]), N(all.k3[line])};
-      if (bounded && !(all.least[line] > 0.0)) {
+      if (bounded && !(positive_is_enough && all.least[line] > 0.0)) {
         raised |= weigh_line<true>(m, on_line, v, u, n, f, kept, e);
       } else {
         weigh_line<false>(m, on_line, v, u, n, f, kept, e);

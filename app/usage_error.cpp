@@ -18,7 +18,7 @@ std::vector<std::string> option_names(const CLI::App& command) {
   return names;
 }
 
-/// Returns the option that users of other programs mean by a word; "" if there is none of this command.
+/// Returns the option that users of other programs mean by a word, or "" if this command lacks it.
 std::string usual_option(const std::string& word, const std::vector<std::string>& names) {
   const bool output = word == "--output" || (word.rfind("-o", 0) == 0);
   const bool has_out = std::find(names.begin(), names.end(), "--out") != names.end();
@@ -61,7 +61,7 @@ std::vector<std::string> unexpected(const CLI::App& program) {
                                 plural, list, name, name));
 }
 
-/// Returns the first positional argument that is required and missing; nullptr if there is none.
+/// Returns the first positional argument that is required and missing, or nullptr.
 const CLI::Option* missing_argument(const CLI::App& command) {
   for (const CLI::Option* option : command.get_options())
     if (option->get_positional() && option->get_required() && option->count() == 0) return option;

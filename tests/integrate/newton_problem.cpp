@@ -301,32 +301,6 @@ TEST(newton_problem, reports_nan_with_its_component) {
   });
 }
 
-TEST(newton_problem, explicit_methods_end_where_the_solution_overflows) {
-  const auto stiff = [](const auto& u, auto& out) { out[0] = -1e8 * (u[0] - 1.0); };
-  const auto explicit_part = [](double, const row& u, row& out) { out[0] = -1e8 * (u[0] - 1.0); };
-  apsis::newton_problem as_collision{no_transport{}, stiff};
-  apsis::newton_problem as_transport{explicit_part, [](const auto&, auto& out) { out[0] = 0.0; }};
-  const auto run = [](auto& problem) {
-    apsis::stepper stepper(apsis::find_method("kutta-4"), problem);
-    row u{0};
-    apsis::integrate(stepper, u, 0.0, 10.0, apsis::step_rule<double>::fixed(0.1));
-  };
-  bad_input::expect_refused({{[&] { run(as_collision); }, {"is not finite", "[step "}, 3},
-                             {[&] { run(as_transport); }, {"is not finite", "[step "}, 3}});
-}
-
-TEST(newton_problem, refuses_a_transport_that_changes_the_number_of_unknowns) {
-  apsis::newton_problem problem{[](double, const row&, row& out) { out = {0}; },
-                                [](const auto& u, auto& out) {
-                                  out[0] = -u[0];
-                                  out[1] = -u[1];
-                                }};
-  row u{1, 1};
-  bad_input::expect_refused(
-      {{[&] { apsis::stepper(apsis::find_method("md-imex-6-3"), problem).step(0.0, 0.1, u); },
-        {"the transport gives 1 numbers (the state has 2)"}}});
-}
-
 TEST(newton_problem, throws_at_the_iteration_limit) {
   newton_options few;
   few.max_iterations = 3;

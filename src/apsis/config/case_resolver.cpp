@@ -225,7 +225,7 @@ class resolver {
     key.store(config_, to_value(key, *raw, config_));
   }
 
-  /// Returns the alternative to a missing key; "" if there is none.
+  /// Returns the alternative to a missing key, or "".
   std::string instead_of(const case_key& key) const {
     const bool steady = key.path == "time.end" && prototype(*model_).as_relaxation() != nullptr;
     return steady ? ", or add a table [steady] for a steady state" : "";

@@ -22,7 +22,7 @@ std::string last_part(const std::string& name_or_path) {
   return (path.extension() == ".toml" ? path.stem() : path.filename()).string();
 }
 
-/// Returns the built-in case with a similar name or last part; "" if there is none.
+/// Returns the built-in case with a similar name or last part, or "".
 std::string nearest_case(const std::string& word) {
   const std::vector<std::string> names = case_names();
   if (std::string whole = nearest_word(word, names); !whole.empty()) return whole;

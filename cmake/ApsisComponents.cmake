@@ -114,7 +114,7 @@ set(apsis_packages_sundials "SUNDIALS COMPONENTS ${apsis_sundials_core}")
 set(apsis_packages_petsc "PETSc ${apsis_petsc_versions}")
 # Libraries that only sources use: users of static libraries link them.
 set(apsis_link_packages_integrate tomlplusplus)
-set(apsis_link_packages_kinetic tomlplusplus muparser "HDF5 COMPONENTS C")
+set(apsis_link_packages_kinetic tomlplusplus muparser "HDF5 COMPONENTS C" "Boost 1.74 COMPONENTS context")
 set(apsis_link_packages_design Ipopt)
 if(apsis_mpi)
   set(apsis_link_packages_exec "MPI COMPONENTS C")

@@ -36,12 +36,12 @@ apsis::problem_builder builder_of(const apsis::model& equation, bool between_wal
   return builder;
 }
 
-/// Takes three steps of an integrator.
+/// Takes two steps of a method of one step, and one more of a method of several steps than its starter takes.
 void take_steps(const apsis::time_integrator& of, apsis::semidiscrete_problem& problem, field& u) {
   if (of.starter().kind == apsis::method_kind::explicit_only) problem.treat_collision_explicitly();
   const double r = of.ssp_coefficient > 0.0 ? of.ssp_coefficient : 1.0;
   const double dt = 0.5 * r * problem.forward_euler_step(0.0, u);
-  apsis::time_marcher<double> march(0.0, 3.0 * dt, dt);
+  apsis::time_marcher<double> march(0.0, (of.steps + 1) * dt, dt);
   const auto stepper = apsis::make_stepper(of, problem);
   while (!march.done()) {
     const double step = march.next(dt);
@@ -69,13 +69,15 @@ bit_differences differences(const apsis::time_integrator& steps, bool between_wa
 
 /// Exact collisions have no kernel, and implicit methods have no transport.
 TEST(device_problem, steps_of_every_integrator_have_the_bits_of_the_host) {
+  bool between_walls = false;
   for (const std::string& name : apsis::integrator_names()) {
     const apsis::time_integrator& integrator = apsis::find_integrator(name);
     if (integrator.needs.exact_collision || integrator.starter().kind == apsis::method_kind::implicit_only)
       continue;
-    for (const bool between_walls : {false, true})
-      EXPECT_EQ(differences(integrator, between_walls), 0)
-          << name << (between_walls ? " between walls" : " in a periodic domain");
+    // The kernels are the same for all integrators, so that every other one suffices for each kind of ends.
+    EXPECT_EQ(differences(integrator, between_walls), 0)
+        << name << (between_walls ? " between walls" : " in a periodic domain");
+    between_walls = !between_walls;
   }
 }
 

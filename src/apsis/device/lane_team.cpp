@@ -1,39 +1,55 @@
 #include <apsis/device/lane_team.hpp>
 
 #include <algorithm>
-#include <cerrno>
-#include <cstdint>
 #include <limits>
+#include <new>
 #include <numeric>
 #include <stdexcept>
-#include <system_error>
+#include <utility>
 
+#include <boost/context/fiber.hpp>
 #include <fmt/format.h>
 #include <sys/mman.h>
-#include <ucontext.h>
 
 namespace apsis {
 
-/// The stacks of the lanes. The system provides their pages on first use.
+using boost::context::fiber;
+
+/// The lanes as fibers, with stacks that are reused. The system provides their pages on first use.
 struct lane_team::stacks {
   static constexpr std::size_t bytes = std::size_t{256} << 10;
 
-  explicit stacks(std::size_t lanes) : contexts(lanes), ended(lanes) {
+  explicit stacks(std::size_t lanes) : contexts(lanes) {
     memory =
         mmap(nullptr, size(), PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
     if (memory == MAP_FAILED) throw std::bad_alloc();
   }
-  ~stacks() { munmap(memory, size()); }
+  /// Unwinds lanes that have not ended, which use the memory.
+  ~stacks() {
+    contexts.clear();
+    munmap(memory, size());
+  }
   stacks(const stacks&) = delete;
   stacks& operator=(const stacks&) = delete;
 
   std::size_t size() const { return bytes * contexts.size(); }
-  void* of(std::size_t lane) const { return static_cast<char*>(memory) + bytes * lane; }
+
+  /// Provides the stack of a lane to its fiber, which does not free it.
+  struct allocator {
+    void* top;
+    boost::context::stack_context allocate() const {
+      boost::context::stack_context all;
+      all.size = bytes;
+      all.sp = top;
+      return all;
+    }
+    void deallocate(boost::context::stack_context&) const noexcept {}
+  };
+  allocator of(std::size_t lane) const { return {static_cast<char*>(memory) + bytes * (lane + 1)}; }
 
   void* memory;
-  ucontext_t scheduler{};
-  std::vector<ucontext_t> contexts;
-  std::vector<char> ended;
+  fiber scheduler;
+  std::vector<fiber> contexts;  ///< empty once their lane has ended
 };
 
 int team_lane::count() const {
@@ -49,7 +65,8 @@ double* team_lane::shared() const {
   return team_->shared_.data();
 }
 void team_lane::wait() const {
-  swapcontext(&team_->stacks_->contexts[static_cast<std::size_t>(index_)], &team_->stacks_->scheduler);
+  fiber& scheduler = team_->stacks_->scheduler;
+  scheduler = std::move(scheduler).resume();
 }
 
 lane_team::lane_team(int lanes, std::size_t shared_numbers, lane_order order)
@@ -73,27 +90,17 @@ void lane_team::order_lanes() {
   }
 }
 
-/// Runs the body of a lane. Contexts pass only numbers of type int, so that a pointer comes in two parts.
-void lane_team::enter(unsigned high, unsigned low) {
-  // NOLINTNEXTLINE(performance-no-int-to-ptr): makecontext() takes only int.
-  auto* team = reinterpret_cast<lane_team*>((static_cast<std::uintptr_t>(high) << 32) | low);
-  const int lane = team->running_;
-  (*team->body_)(team->lanes_[static_cast<std::size_t>(lane)]);
-  team->stacks_->ended[static_cast<std::size_t>(lane)] = 1;
-  ++team->ended_;
-}
-
-/// Prepares the context of a lane. It is a separate function because the compiler assumes that getcontext()
-/// may return more than once.
+/// Prepares the fiber of a lane. The lane begins when the fiber is resumed. A lane that did not end in the
+/// last block is unwound before its stack is used again.
 void lane_team::prepare(std::size_t lane) {
-  const auto self = reinterpret_cast<std::uintptr_t>(this);
-  ucontext_t& context = stacks_->contexts[lane];
-  if (getcontext(&context) != 0) throw std::system_error(errno, std::generic_category());
-  context.uc_stack.ss_sp = stacks_->of(lane);
-  context.uc_stack.ss_size = stacks::bytes;
-  context.uc_link = &stacks_->scheduler;
-  makecontext(&context, reinterpret_cast<void (*)()>(&lane_team::enter), 2, static_cast<unsigned>(self >> 32),
-              static_cast<unsigned>(self));
+  stacks_->contexts[lane] = fiber();
+  stacks_->contexts[lane] =
+      fiber(std::allocator_arg, stacks_->of(lane), [this, lane](fiber&& scheduler) -> fiber {
+        stacks_->scheduler = std::move(scheduler);
+        (*body_)(lanes_[lane]);
+        ++ended_;
+        return std::move(stacks_->scheduler);
+      });
 }
 
 void lane_team::run(int block, int blocks, const std::function<void(const team_lane&)>& body) {
@@ -102,14 +109,13 @@ void lane_team::run(int block, int blocks, const std::function<void(const team_l
   body_ = &body;
   ended_ = 0;
   std::fill(shared_.begin(), shared_.end(), std::numeric_limits<double>::quiet_NaN());
-  std::fill(stacks_->ended.begin(), stacks_->ended.end(), 0);
   for (std::size_t k = 0; k < lanes_.size(); ++k) prepare(k);
   const int all = static_cast<int>(lanes_.size());
   while (ended_ < all) {
     order_lanes();
     for (const int lane : turn_) {
-      running_ = lane;
-      swapcontext(&stacks_->scheduler, &stacks_->contexts[static_cast<std::size_t>(lane)]);
+      fiber& next = stacks_->contexts[static_cast<std::size_t>(lane)];
+      if (next) next = std::move(next).resume();
     }
     if (ended_ > 0 && ended_ < all)
       throw std::logic_error(

@@ -55,7 +55,6 @@ class lane_team {
 
   void order_lanes();
   void prepare(std::size_t lane);
-  static void enter(unsigned high, unsigned low);
 
   std::unique_ptr<stacks> stacks_;
   lane_order order_;
@@ -64,7 +63,7 @@ class lane_team {
   std::vector<double> shared_;
   std::vector<team_lane> lanes_;
   const std::function<void(const team_lane&)>* body_ = nullptr;
-  int block_ = 0, blocks_ = 1, running_ = 0, ended_ = 0;
+  int block_ = 0, blocks_ = 1, ended_ = 0;
 };
 
 }  // namespace apsis

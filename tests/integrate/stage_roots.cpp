@@ -1,5 +1,7 @@
 // Stage equations with second derivatives have several roots: for u' = (w − u²)/ε, w' = −u' also one near
 // u = −1/2, where G' vanishes. Stages lead to the root of short steps.
+#include "support/catalogue.hpp"
+
 #include <apsis/integrate/error_control.hpp>
 #include <apsis/integrate/integrate.hpp>
 #include <apsis/integrate/newton_problem.hpp>
@@ -37,15 +39,11 @@ double equilibrium(double sum) {
 }
 
 std::vector<std::string> methods_with_second_derivatives() {
-  std::vector<std::string> names;
-  for (const std::string& name : apsis::method_names()) {
-    const apsis::method& one = apsis::find_method(name);
-    if (one.kind == apsis::method_kind::explicit_only || apsis::solves_exactly(one.kind)) continue;
-    const auto form = one.coefficients<double>();
-    if (std::any_of(form.ddot.begin(), form.ddot.end(), [](double x) { return x != 0.0; }))
-      names.push_back(name);
-  }
-  return names;
+  return methods_where([](const apsis::method& m) {
+    const auto& ddot = m.exact.ddot;
+    return !apsis::solves_exactly(m.kind) &&
+           std::any_of(ddot.begin(), ddot.end(), [](const std::string& x) { return x != "0"; });
+  });
 }
 
 /// The start has u = 0, where R' is negative for long steps, and other values at both sides of it.

@@ -10,15 +10,25 @@
 
 #include <gtest/gtest.h>
 
+/// Returns the one-step methods of the catalogue, parsed once and not certified.
+inline const std::vector<apsis::method>& parsed_methods() {
+  static const auto all = [] {
+    std::vector<apsis::method> methods;
+    for (const auto& file : apsis::embedded::methods())
+      methods.push_back(apsis::parse_any_method(file.text, std::string(file.name)));
+    std::erase_if(methods, [](const apsis::method& m) { return m.steps != 1; });
+    return methods;
+  }();
+  return all;
+}
+
 /// Returns the one-step methods of the catalogue whose files satisfy a condition. Does not certify them,
 /// because every process that runs a single test builds these lists.
 template <class Condition>
 std::vector<std::string> methods_where(const Condition& condition) {
   std::vector<std::string> names;
-  for (const auto& file : apsis::embedded::methods()) {
-    const apsis::method m = apsis::parse_any_method(file.text, std::string(file.name));
-    if (m.steps == 1 && condition(m)) names.emplace_back(file.name);
-  }
+  for (const apsis::method& m : parsed_methods())
+    if (condition(m)) names.push_back(m.name);
   return names;
 }
 

@@ -71,6 +71,12 @@ void find_ssp_of_exact_collisions(const shu_osher_form<mp_real>& form, const but
   c.explicit_radius = monotonicity_radius(b.A_hat, zero, c.ssp_coefficient);
 }
 
+bool any_in_column(const matrix<mp_real>& m, std::size_t j) {
+  for (std::size_t i = 0; i < m.rows(); ++i)
+    if (m(i, j) != 0) return true;
+  return false;
+}
+
 void find_ssp(const butcher_form<mp_real>& b, const mp_real& zero, certificate& c) {
   if (c.kind == method_kind::explicit_only) {
     c.ssp_coefficient = c.explicit_radius = monotonicity_radius(b.A_hat, zero);
@@ -83,14 +89,10 @@ void find_ssp(const butcher_form<mp_real>& b, const mp_real& zero, certificate& 
   c.limiting_entry = analysis.forbids;
   // r is a lower bound of the radius of the explicit part, and often equal to it.
   if (c.kind == method_kind::imex) c.explicit_radius = monotonicity_radius(b.A_hat, zero, c.ssp_coefficient);
-  if (c.kind == method_kind::implicit_only && !analysis.exists)
+  bool derivatives = false;
+  for (std::size_t j = 0; j < b.stages(); ++j) derivatives = derivatives || any_in_column(b.A_dot, j);
+  if (c.kind == method_kind::implicit_only && !analysis.exists && !derivatives)
     c.radius_of_implicit_part = monotonicity_radius(b.A, zero);
-}
-
-bool any_in_column(const matrix<mp_real>& m, std::size_t j) {
-  for (std::size_t i = 0; i < m.rows(); ++i)
-    if (m(i, j) != 0) return true;
-  return false;
 }
 
 void find_structure(const method& m, const shu_osher_form<mp_real>& form, const butcher_form<mp_real>& b,

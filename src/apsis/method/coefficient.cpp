@@ -2,6 +2,9 @@
 
 #include <cctype>
 #include <cstddef>
+#include <utility>
+
+#include <fmt/format.h>
 
 namespace apsis {
 namespace {
@@ -69,6 +72,26 @@ int decimals(const std::string& text) {
 
 mp_real residual_tolerance(int decimals) {
   return decimals > 0 ? pow(mp_real(10), 3 - decimals) : mp_real(1e-50);
+}
+
+std::string coefficient_text(const mp_real& x, int decimals) {
+  const mp_real rounding("1e-50");
+  if (abs(x) < rounding) return "0";
+  // Convergents p/q of the continued fraction of |x|.
+  constexpr long most = 1'000'000;
+  mp_real rest = abs(x);
+  long p = 1, q = 0, previous_p = 0, previous_q = 1;
+  while (rest < most) {
+    const long whole = floor(rest + rounding).convert_to<long>();
+    const long next_p = whole * p + previous_p, next_q = whole * q + previous_q;
+    if (next_q > most || next_p > most) break;
+    previous_p = std::exchange(p, next_p);
+    previous_q = std::exchange(q, next_q);
+    if (abs(abs(x) * q - p) < rounding * q)
+      return fmt::format("{}{}{}", x < 0 ? "-" : "", p, q == 1 ? "" : fmt::format("/{}", q));
+    rest = 1 / (rest - whole);
+  }
+  return x.str(decimals, std::ios_base::fixed);
 }
 
 std::string short_text(const mp_real& x) {

@@ -16,6 +16,10 @@ mp_real coefficient_value(const std::string& text);
 /// Returns −x of a valid coefficient, with the same digits.
 std::string negated(const std::string& text);
 
+/// Returns a computed coefficient as text: the rational p/q with q ≤ 10⁶ that it equals to 50 decimals, or
+/// else a decimal with so many decimals.
+std::string coefficient_text(const mp_real& x, int decimals);
+
 /// Returns a number with 12 significant digits, for messages.
 std::string short_text(const mp_real& x);
 

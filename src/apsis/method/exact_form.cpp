@@ -83,6 +83,40 @@ std::optional<shu_osher_form<std::string>> increments(const butcher_form<std::st
   return e;
 }
 
+/// Returns the form with R = ḊȦ⁻¹, in which u_j replaces Q̇(u_j) in later stages, or nothing if the diagonal
+/// of Ȧ has a zero above an entry that is not 0.
+std::optional<shu_osher_form<mp_real>> without_earlier_derivatives(const butcher_form<mp_real>& b,
+                                                                   const mp_real& zero) {
+  const std::size_t s = b.stages();
+  auto inverse = matrix<mp_real>::identity(s);
+  for (std::size_t j = 0; j < s; ++j) {
+    const bool own = abs(b.A_dot(j, j)) > zero;
+    for (std::size_t i = j + 1; i < s; ++i) {
+      if (own)
+        inverse(i, j) = b.A_dot(i, j) / b.A_dot(j, j);
+      else if (abs(b.A_dot(i, j)) > zero)
+        return std::nullopt;
+    }
+  }
+  return to_shu_osher(b, inverse_lower(inverse), mp_real(1));
+}
+
+shu_osher_form<std::string> to_texts(const shu_osher_form<mp_real>& form, int decimals) {
+  const std::size_t s = form.stages();
+  shu_osher_form<std::string> e;
+  e.P = e.W = e.D = zero_coefficients(s);
+  e.r = coefficient_text(form.r, decimals);
+  for (std::size_t i = 0; i < s; ++i) {
+    e.ddot.push_back(coefficient_text(form.ddot[i], decimals));
+    for (std::size_t j = 0; j <= i; ++j) {
+      e.P(i, j) = coefficient_text(form.P(i, j), decimals);
+      e.W(i, j) = coefficient_text(form.W(i, j), decimals);
+      e.D(i, j) = coefficient_text(form.D(i, j), decimals);
+    }
+  }
+  return e;
+}
+
 }  // namespace
 
 matrix<std::string> zero_coefficients(std::size_t s) {
@@ -98,9 +132,12 @@ std::optional<shu_osher_form<std::string>> exact_shu_osher(const butcher_form<st
   const mp_real zero = digits > 0 ? pow(mp_real(10), 3 - digits) : mp_real(1e-50);
   const butcher_form<mp_real> numbers{
       values(b.A_hat), values(kind == method_kind::explicit_only ? b.A_hat : b.A), values(b.A_dot)};
+  const int written = digits > 0 ? std::min(digits, 50) : 50;
   if (const auto convex = convex_form(numbers, kind, zero, reason))
-    return to_decimals(*convex, kind, digits > 0 ? std::min(digits, 50) : 50);
-  return increments(b, kind);
+    return to_decimals(*convex, kind, written);
+  if (auto sums = increments(b, kind)) return sums;
+  if (const auto form = without_earlier_derivatives(numbers, zero)) return to_texts(*form, written);
+  return std::nullopt;
 }
 
 }  // namespace apsis

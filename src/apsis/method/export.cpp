@@ -57,16 +57,39 @@ bool has_derivative(const method& m) {
   return !std::all_of(m.exact.ddot.begin(), m.exact.ddot.end(), is_zero);
 }
 
-/// Returns Ȧ = diag(ḋ) of a form with R = I.
-matrix<std::string> derivative_of(const method& m) {
-  matrix<std::string> a(m.stages(), m.stages());
-  for (std::size_t i = 0; i < m.stages(); ++i)
-    for (std::size_t j = 0; j < m.stages(); ++j) a(i, j) = i == j ? m.exact.ddot[i] : "0";
-  return a;
+/// Whether R = I, so that W = Â, D = A and Ȧ is diagonal.
+bool is_sum_of_increments(const shu_osher_form<std::string>& form) {
+  for (std::size_t i = 0; i < form.stages(); ++i)
+    for (std::size_t j = 0; j < i; ++j)
+      if (coefficient_value(form.P(i, j)) + coefficient_value(form.W(i, j)) != 0) return false;
+  return true;
 }
 
-/// Formats the table [butcher] of a method whose Shu–Osher form is its tableau (R = I: W = Â, D = A).
+/// Returns the Butcher form of a tableau: its coefficients if R = I, and otherwise computed ones.
+butcher_form<std::string> tableau_of(const method& m) {
+  const std::size_t s = m.stages();
+  butcher_form<std::string> texts{m.exact.W, m.exact.D, matrix<std::string>(s, s)};
+  if (is_sum_of_increments(m.exact)) {
+    for (std::size_t i = 0; i < s; ++i)
+      for (std::size_t j = 0; j < s; ++j) texts.A_dot(i, j) = i == j ? m.exact.ddot[i] : "0";
+    return texts;
+  }
+  const auto numbers = to_butcher(m.coefficients<mp_real>());
+  const auto text = [&m](const mp_real& x) {
+    return coefficient_text(x, m.precision() > 0 ? std::min(m.precision(), 50) : 50);
+  };
+  for (std::size_t i = 0; i < s; ++i)
+    for (std::size_t j = 0; j < s; ++j) {
+      texts.A_hat(i, j) = text(numbers.A_hat(i, j));
+      texts.A(i, j) = text(numbers.A(i, j));
+      texts.A_dot(i, j) = text(numbers.A_dot(i, j));
+    }
+  return texts;
+}
+
+/// Formats the table [butcher] of a tableau.
 std::string butcher_table(const method& m) {
+  const auto b = tableau_of(m);
   const bool update = m.ends_with_update();
   const std::size_t rows = update ? m.stages() - 1 : m.stages();
   std::string out = "\n[butcher]\n";
@@ -75,9 +98,9 @@ std::string butcher_table(const method& m) {
     out += fmt::format("{} = {}\n", name, triangle(a, diagonal, rows));
     if (update) out += fmt::format("{} = {}\n", weights, list(entries(a, rows, rows)));
   };
-  if (m.kind == method_kind::imex) part("A_hat", "b_hat", m.exact.W, 0);
-  part("A", "b", m.exact.D, 1);
-  if (has_derivative(m)) part("A_dot", "b_dot", derivative_of(m), 1);
+  if (m.kind == method_kind::imex) part("A_hat", "b_hat", b.A_hat, 0);
+  part("A", "b", b.A, 1);
+  if (has_derivative(m)) part("A_dot", "b_dot", b.A_dot, 1);
   return out;
 }
 
@@ -175,9 +198,10 @@ std::string to_latex(const method& m, int digits) {
   };
   std::vector<std::string> parts;
   if (m.is_tableau()) {
-    if (m.kind == method_kind::imex) parts.push_back(array("\\hat A", s, s, of(e.W)));
-    parts.push_back(array("A", s, s, of(e.D)));
-    if (has_derivative(m)) parts.push_back(array("\\dot A", s, s, of(derivative_of(m))));
+    const auto b = tableau_of(m);
+    if (m.kind == method_kind::imex) parts.push_back(array("\\hat A", s, s, of(b.A_hat)));
+    parts.push_back(array("A", s, s, of(b.A)));
+    if (has_derivative(m)) parts.push_back(array("\\dot A", s, s, of(b.A_dot)));
   } else {
     if (m.kind != method_kind::implicit_only) parts.push_back("r &= " + number(e.r, digits));
     parts.push_back(array("P", s, s, of(e.P)));

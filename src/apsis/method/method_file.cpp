@@ -212,7 +212,7 @@ void read_butcher(const toml::table& table, const std::string& file, method& m) 
   const auto exact = exact_shu_osher(b, m.kind, reason);
   if (!exact)
     form.fail(first, fmt::format("[butcher] cannot be read (no convex Shu-Osher form: {}, and Qdot of a "
-                                 "stage enters another one); "
+                                 "stage enters another one but not the stage itself); "
                                  "give [shu_osher]",
                                  reason));
   m.exact = *exact;

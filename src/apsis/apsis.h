@@ -69,7 +69,8 @@ void apsis_free_method(apsis_method* method);
 const char* apsis_method_name(const apsis_method* method);
 /// Returns the title of a method, one line; "" for NULL. Valid as long as the method.
 const char* apsis_method_title(const apsis_method* method);
-/// Returns the kind of a method, "runge-kutta", "exponential", "two-step" or "imex-bdf"; "" for NULL.
+/// Returns the kind of a method, "runge-kutta", "exponential", "two-step", "imex-bdf" or "imex-dimsim";
+/// "" for NULL.
 const char* apsis_method_kind(const apsis_method* method);
 /// Returns the order p of a method; 0 for NULL.
 int apsis_method_order(const apsis_method* method);
@@ -103,8 +104,8 @@ enum apsis_coefficients {
   APSIS_BUTCHER_A_DOT = 7    ///< ȧ_ij of Q̇, s × s
 };
 /// Writes the coefficients `which`, one of apsis_coefficients, to `values`, correctly rounded. Those of the
-/// Butcher form are computed with 60 digits. Error: APSIS_INPUT_ERROR for a formula (kind "imex-bdf"), and
-/// for the Butcher form of a method of two steps.
+/// Butcher form are computed with 60 digits. Error: APSIS_INPUT_ERROR for a formula (kinds "imex-bdf" and
+/// "imex-dimsim"), and for the Butcher form of a method of two steps.
 int apsis_method_coefficients(const apsis_method* method, int which, double* values);
 /// Sets *text to the method file with exact coefficients. Valid as long as the method. Error:
 /// APSIS_INPUT_ERROR for a formula and for a method of two steps.

@@ -50,8 +50,8 @@ TEST(c_methods, are_those_of_the_catalogue) {
 }
 
 TEST(c_methods, have_the_properties_of_their_integrators) {
-  for (const std::string name :
-       {"md-imex-6-3", "dop853", "exponential-2", "imex-bdf-4", "two-step-8-3-narrow", "md-imex-chain-5-2"}) {
+  for (const std::string name : {"md-imex-6-3", "dop853", "exponential-2", "imex-bdf-4", "imex-dimsim-3",
+                                 "two-step-8-3-narrow", "md-imex-chain-5-2"}) {
     const auto& expected = apsis::find_integrator(name);
     const auto m = find(name.c_str());
     EXPECT_EQ(apsis_method_name(m.get()), name);
@@ -106,7 +106,7 @@ TEST(c_methods, have_the_facts_of_their_certificates) {
   ASSERT_EQ(apsis_method_certificate(m.get(), &text), APSIS_OK);
   EXPECT_THAT(text, testing::AllOf(testing::HasSubstr("\norder = 3\n"), testing::HasSubstr("\ntype = A\n"),
                                    testing::HasSubstr("\nclaims_hold = true\n")));
-  for (const char* name : {"exponential-2", "imex-bdf-3", "two-step-8-3-narrow"})
+  for (const char* name : {"exponential-2", "imex-bdf-3", "imex-dimsim-2", "two-step-8-3-narrow"})
     EXPECT_EQ(fact(find(name), "order"), apsis::find_integrator(name).order) << name;
 }
 

@@ -90,8 +90,8 @@ const auto transport_of_general = [](double, const state& u, state& out) { out =
 }  // namespace
 
 TEST(c_same_bits, of_steps_of_every_kind) {
-  for (const std::string name :
-       {"md-imex-6-3", "ars-443", "dop853", "exponential-2", "imex-bdf-4", "two-step-8-3-narrow"}) {
+  for (const std::string name : {"md-imex-6-3", "ars-443", "dop853", "exponential-2", "imex-bdf-4",
+                                 "imex-dimsim-2", "two-step-8-3-narrow"}) {
     ode data{name == "dop853" ? 0.3 : 0.01};  // explicit steps are stable for Δt C/ε < 5 or so
     auto problem = relaxation(data.epsilon);
     state expected{2, 0};

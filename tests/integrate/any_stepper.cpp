@@ -25,7 +25,8 @@ constexpr real dt = real(1) / steps;
 /// One name for each kind, and for each equation of one-step methods.
 const std::vector<std::string> of_each_kind = {
     "md-imex-8-3-mixed", "ark-436",    "dop853",     "exponential-2",
-    "imex-bdf-1",        "imex-bdf-4", "imex-bdf-5", "two-step-8-3-narrow"};
+    "imex-bdf-1",        "imex-bdf-4", "imex-bdf-5", "two-step-8-3-narrow",
+    "imex-dimsim-3"};
 
 apsis::time_marcher<real> times() {
   return {real(0), real(1), dt};

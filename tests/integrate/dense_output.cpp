@@ -117,7 +117,8 @@ TEST(dense_output, is_known_later_from_kept_begins_of_steps) {
 
 TEST(dense_output, does_not_disturb_the_steps) {
   auto problem = ode_model::as_relaxation<state>(0.01);
-  for (const auto& name : {"md-imex-6-3", "imex-bdf-4", "two-step-8-3-narrow", "exponential-2"}) {
+  for (const auto& name :
+       {"md-imex-6-3", "imex-bdf-4", "imex-dimsim-2", "two-step-8-3-narrow", "exponential-2"}) {
     evolution quiet(apsis::find_integrator(name), problem, rule::fixed(dt)),
         watched(apsis::find_integrator(name), problem, rule::fixed(dt));
     for (evolution* one : {&quiet, &watched}) one->start(0.0, {2, 0});

@@ -299,8 +299,9 @@ TEST(mass_matrix, every_kind_of_method_solves_the_system_divided_by_hand) {
   for (const std::string name : {"imdrk-1-2", "imdrk-9-5", "dirk-4-3"})
     expect_end_by_hand(name, no_transport{}, no_transport{});
   using function = void (*)(double, const row&, row&);
-  for (const std::string name : {"md-imex-8-3-mixed", "md-imex-16-4-efficient", "ark-548-2",
-                                 "extrapolated-euler-5", "kutta-4", "imex-bdf-3", "two-step-10-3-mixed"})
+  for (const std::string name :
+       {"md-imex-8-3-mixed", "md-imex-16-4-efficient", "ark-548-2", "extrapolated-euler-5", "kutta-4",
+        "imex-bdf-3", "imex-dimsim-3", "two-step-10-3-mixed"})
     expect_end_by_hand<function>(name, rotating, rotating_by_hand);
 }
 

@@ -91,8 +91,9 @@ TEST(sensitivities, of_equal_steps_are_derivatives_of_the_numerical_solution) {
     out[1] = p[1] * (u[0] - u[1]);
   };
   const row p{1.5, 3}, u0{1, 0.5};
-  for (const std::string name : {"md-imex-8-3-mixed", "md-imex-16-4-efficient", "ark-436",
-                                 "extrapolated-euler-4", "imex-bdf-3", "two-step-10-3-mixed"}) {
+  for (const std::string name :
+       {"md-imex-8-3-mixed", "md-imex-16-4-efficient", "ark-436", "extrapolated-euler-4", "imex-bdf-3",
+        "imex-dimsim-3", "two-step-10-3-mixed"}) {
     sensitivities sg(g, p);
     sensitivities sf(f, p);
     newton_problem problem(sf, sg);

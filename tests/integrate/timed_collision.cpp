@@ -110,7 +110,8 @@ INSTANTIATE_TEST_SUITE_P(timed_collision, methods_without_transport,
                                            std::pair{"md-imex-6-3", 3},
                                            std::pair{"md-imex-16-4-efficient", 4}, std::pair{"ark-436", 4},
                                            std::pair{"extrapolated-euler-4", 4}, std::pair{"kutta-4", 4},
-                                           std::pair{"imex-bdf-3", 3}, std::pair{"two-step-10-3-mixed", 3}),
+                                           std::pair{"imex-bdf-3", 3}, std::pair{"imex-dimsim-3", 3},
+                                           std::pair{"imdrk-2-4", 4}, std::pair{"two-step-10-3-mixed", 3}),
                          [](const auto& test) {
                            std::string name = test.param.first;
                            std::replace(name.begin(), name.end(), '-', '_');

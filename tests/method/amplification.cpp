@@ -2,9 +2,11 @@
 #include <apsis/method/amplification.hpp>
 
 #include <apsis/method/family_registry.hpp>
+#include <apsis/method/kinds/imex_dimsim.hpp>
 #include <apsis/method/stability.hpp>
 #include <apsis/method/time_integrator.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <complex>
 #include <string>
@@ -33,6 +35,42 @@ double largest_factor(const amplification& R, complex z, double w) {
 complex random_in_disc() {
   const double modulus = *rc::gen::inRange(1, 1000) * 1e-3, angle = *rc::gen::inRange(0, 628) * 1e-2;
   return std::polar(modulus, angle);
+}
+
+/// Returns the matrix of a step of a general linear method for u' = (λ_T + λ_Q) u, column by column from its
+/// formula.
+matrix<complex> step_matrix(const multistage_formula<double>& m, complex z, double w) {
+  const std::size_t s = m.stages();
+  matrix<complex> M(s, s);
+  for (std::size_t column = 0; column < s; ++column) {
+    std::vector<complex> U(s);
+    for (std::size_t i = 0; i < s; ++i) {
+      complex sum = i == column ? 1.0 : 0.0;
+      for (std::size_t j = 0; j < i; ++j) sum += (z * m.A_hat(i, j) + w * m.A(i, j)) * U[j];
+      U[i] = sum / (1.0 - w * m.A(i, i));
+    }
+    for (std::size_t i = 0; i < s; ++i) {
+      M(i, column) = m.v[column];
+      for (std::size_t j = 0; j < s; ++j) M(i, column) += (z * m.B_hat(i, j) + w * m.B(i, j)) * U[j];
+    }
+  }
+  return M;
+}
+
+/// Returns lim |M^k|^{1/k} by 40 squarings.
+double spectral_radius(matrix<complex> M) {
+  double logarithm = 0.0, exponent = 1.0;
+  for (int k = 0; k < 40; ++k) {
+    double largest = 0.0;
+    for (std::size_t i = 0; i < M.rows(); ++i)
+      for (std::size_t j = 0; j < M.rows(); ++j) largest = std::max(largest, std::abs(M(i, j)));
+    for (std::size_t i = 0; i < M.rows(); ++i)
+      for (std::size_t j = 0; j < M.rows(); ++j) M(i, j) /= largest;
+    logarithm += std::log(largest) * exponent;
+    exponent /= 2.0;
+    M = M * M;
+  }
+  return std::exp(logarithm);
 }
 
 }  // namespace
@@ -81,6 +119,28 @@ TEST(amplification, of_bdf_2_is_the_root_of_its_characteristic_polynomial) {
       EXPECT_NEAR(largest_factor(R, z, w),
                   std::max(std::abs((-b + root) / (2.0 * a)), std::abs((-b - root) / (2.0 * a))), rounding);
     }
+}
+
+TEST(amplification, of_imex_dimsim_is_that_of_its_steps) {
+  for (const int p : {2, 3}) {
+    const auto m = imex_dimsim_coefficients(p).in<double>();
+    const amplification R(m);
+    for (const complex z : {complex(-0.2, 0.3), complex(0.0, 0.5)})
+      for (const double w : {0.0, -2.0, -1e3})
+        EXPECT_NEAR(largest_factor(R, z, w), spectral_radius(step_matrix(m, z, w)), 1e-9)
+            << p << " " << z << " " << w;
+  }
+}
+
+TEST(amplification, of_imex_dimsim_is_l_stable) {
+  for (const auto& name : integrator_names("imex-dimsim")) {
+    const amplification R = find_integrator(name).growth();
+    for (double w = -1e-3; w > -1e9; w *= 3.0) EXPECT_TRUE(R.is_within(1.0, 0.0, w)) << name << " " << w;
+    // A triple eigenvalue 0 is perturbed by the cube root of rounding, and by λ_Q⁻¹.
+    EXPECT_TRUE(R.is_within(1e-3, 0.0, -1e9)) << name;
+    EXPECT_TRUE(R.is_within(1.0 + 1e-9, 0.0, 0.0)) << name;
+    EXPECT_FALSE(R.is_within(1.0 - 1e-9, 0.0, 0.0)) << name;
+  }
 }
 
 TEST(amplification, of_two_step_methods_has_the_roots_1_and_minus_b_without_both) {

@@ -68,8 +68,8 @@ TEST(errors_of_other_integrators, are_those_of_their_equations) {
   const double coarse = apsis::rate_errors_at(exponential, 0.02).flux,
                fine = apsis::rate_errors_at(exponential, 0.01).flux;
   EXPECT_GT(std::log2(std::abs(coarse / fine)), 1.9);
-  // The backward differentiation formula is exact for a constant deviation.
-  for (const char* name : {"imex-bdf-2", "imex-bdf-5"})
+  // Formulas of backward differentiation and general linear methods are exact for a constant deviation.
+  for (const char* name : {"imex-bdf-2", "imex-bdf-5", "imex-dimsim-3"})
     for (const double z : {0.1, 10.0, 1e6}) {
       const auto at = apsis::find_integrator(name).errors_at(z);
       EXPECT_EQ(at.flux, 0.0) << name;

@@ -6,6 +6,7 @@
 #include <apsis/method/certificate.hpp>
 #include <apsis/method/integrator_kind_registry.hpp>
 #include <apsis/method/kinds/imex_bdf.hpp>
+#include <apsis/method/kinds/imex_dimsim.hpp>
 #include <apsis/method/kinds/two_step.hpp>
 #include <apsis/method/linear_formula.hpp>
 
@@ -30,6 +31,32 @@ TEST(time_integrator, imex_bdf_has_the_orders_and_error_constants_of_the_literat
     EXPECT_EQ(found.order, k);
     EXPECT_NEAR(static_cast<double>(found.implicit_constant), -1.0 / (k + 1), 1e-15) << k;
     EXPECT_NEAR(static_cast<double>(found.explicit_constant), 1.0 - 1.0 / (k + 1), 1e-15) << k;
+  }
+}
+
+TEST(time_integrator, imex_dimsim_has_the_published_coefficients_of_its_implicit_part) {
+  // B of the L-stable method of type 2 and order 2 (Butcher, Appl. Numer. Math. 11 (1993) 347–363).
+  const auto m = apsis::imex_dimsim_coefficients(2);
+  const apsis::mp_real root = sqrt(apsis::mp_real(2)), rounding("1e-55");
+  EXPECT_LT(abs(m.B(0, 0) - (73 - 34 * root) / 28), rounding);
+  EXPECT_LT(abs(m.B(0, 1) - (4 * root - 5) / 4), rounding);
+  EXPECT_LT(abs(m.B(1, 0) - (87 - 48 * root) / 28), rounding);
+  EXPECT_LT(abs(m.B(1, 1) - (34 * root - 45) / 28), rounding);
+}
+
+TEST(time_integrator, a_wrong_coefficient_of_imex_dimsim_lowers_the_order) {
+  using formula = apsis::multistage_formula<apsis::mp_real>;
+  for (const int p : {2, 3}) {
+    EXPECT_EQ(apsis::compute_multistage_orders(apsis::imex_dimsim_coefficients(p)).order, p);
+    for (apsis::matrix<apsis::mp_real> formula::* part :
+         {&formula::A, &formula::A_hat, &formula::B, &formula::B_hat}) {
+      auto m = apsis::imex_dimsim_coefficients(p);
+      (m.*part)(1, 0) += apsis::mp_real("1e-30");
+      EXPECT_LT(apsis::compute_multistage_orders(m).order, p) << p;
+    }
+    auto m = apsis::imex_dimsim_coefficients(p);
+    m.v[0] += apsis::mp_real("1e-30");
+    EXPECT_EQ(apsis::compute_multistage_orders(m).order, 0) << "Σ v is not 1";
   }
 }
 
@@ -71,7 +98,7 @@ TEST(time_integrator, every_listed_name_is_found_and_has_consistent_data) {
 
 TEST(time_integrator, has_the_ssp_coefficient_and_the_cost_of_its_certificate) {
   for (const auto& name : {"md-imex-8-3-mixed", "ssprk-3-3", "exponential-2", "two-step-8-3-narrow",
-                           "imex-bdf-1", "imex-bdf-3"}) {
+                           "imex-bdf-1", "imex-bdf-3", "imex-dimsim-2", "imex-dimsim-3"}) {
     const auto& m = apsis::find_integrator(name);
     const auto c = m.certify();
     EXPECT_TRUE(c.claims_hold()) << name;
@@ -101,7 +128,7 @@ TEST(time_integrator, is_of_the_kind_that_its_file_states) {
     EXPECT_EQ(m.needs.exact_collision, expected == "exponential") << file.name;
     found.insert(m.kind);
   }
-  found.insert("imex-bdf");  // formulas without files
+  found.insert({"imex-bdf", "imex-dimsim"});  // formulas without files
   std::set<std::string> kinds;
   for (const auto* kind : apsis::integrator_kind_entries()) kinds.insert(kind->name);
   EXPECT_EQ(found, kinds);

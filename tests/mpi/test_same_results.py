@@ -313,7 +313,7 @@ class SameResults(Folder):
 
     def test_multistep_and_exponential_methods_and_their_restarts(self):
         self.write("step.toml", STEP.replace("safety = 1", "dt = 0.0005").replace("every = 0.01", "every = 0.005"))
-        for method in ("imex-bdf-3", "two-step-8-3-narrow", "exponential-2"):
+        for method in ("imex-bdf-3", "imex-dimsim-3", "two-step-8-3-narrow", "exponential-2"):
             out = f"{method}-"
             chosen = ("step.toml", f"time.method={method}", "space.cells=[15,13]")
             self.completed(1, "run", *chosen, "--out", out + "one")

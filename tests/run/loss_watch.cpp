@@ -64,8 +64,8 @@ TEST(unfit_method, that_gets_diffusion_wrong_is_warned_about_with_the_method_tha
     // The warning appears once.
     EXPECT_EQ(run.log.find("is unfit"), run.log.rfind("is unfit")) << name;
   }
-  for (const char* name :
-       {"auto", "md-imex-8-3-mixed", "md-imex-5-2", "imex-bdf-3", "two-step-10-3-mixed", "ars-443"}) {
+  for (const char* name : {"auto", "md-imex-8-3-mixed", "md-imex-5-2", "imex-bdf-3", "imex-dimsim-3",
+                           "two-step-10-3-mixed", "ars-443"}) {
     const auto run = diffuse({"time.method=" + std::string(name), "time.cfl=0.2"});
     EXPECT_NEAR(run.growth, 1.0, 0.02) << name;
     EXPECT_THAT(run.log, Not(HasSubstr("unfit"))) << name;

@@ -5,6 +5,7 @@
 #include <apsis/integrate/equal_steps.hpp>
 #include <apsis/integrate/kinds/exponential.hpp>
 #include <apsis/integrate/kinds/imex_bdf.hpp>
+#include <apsis/integrate/kinds/imex_dimsim.hpp>
 #include <apsis/integrate/kinds/runge_kutta.hpp>
 #include <apsis/integrate/kinds/two_step.hpp>
 #include <apsis/method/time_integrator.hpp>
@@ -24,7 +25,8 @@ namespace apsis {
 /// The kinds of integrators that take steps: one entry for each file of integrate/kinds/. An entry has the
 /// name of its kind and a function with(m, p, which, use). The function returns use(march), where `march` is
 /// a stepper or an equal_step_formula.
-using stepper_kinds = std::tuple<runge_kutta_steps, exponential_steps, two_step_steps, imex_bdf_steps>;
+using stepper_kinds =
+    std::tuple<runge_kutta_steps, exponential_steps, two_step_steps, imex_bdf_steps, imex_dimsim_steps>;
 
 /// @cond
 namespace any_stepper_parts {

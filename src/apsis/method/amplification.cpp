@@ -14,6 +14,9 @@ amplification::amplification(const method& m) : kind_(m.kind), steps_(m.steps) {
 amplification::amplification(linear_formula<double> m)
     : kind_(method_kind::imex), steps_(m.steps()), formula_(std::move(m)) {}
 
+amplification::amplification(multistage_formula<double> m)
+    : kind_(method_kind::imex), steps_(static_cast<int>(m.stages()) + 1), staged_(std::move(m)) {}
+
 void amplification::set_rows(const method& m) {
   const auto form = m.coefficients<double>();
   const auto initial = initial_weights(form);
@@ -38,6 +41,10 @@ std::vector<double> amplification::fingerprint() const {
   all.push_back(formula_.b);
   all.insert(all.end(), formula_.a.begin(), formula_.a.end());
   all.insert(all.end(), formula_.c.begin(), formula_.c.end());
+  all.insert(all.end(), staged_.v.begin(), staged_.v.end());
+  for (const auto* part : {&staged_.A, &staged_.A_hat, &staged_.B, &staged_.B_hat})
+    for (std::size_t i = 0; i < part->rows(); ++i)
+      for (std::size_t j = 0; j < part->cols(); ++j) all.push_back((*part)(i, j));
   return all;
 }
 
@@ -72,11 +79,44 @@ void amplification::find_two_steps(complex z, double w) const {
   }
 }
 
+/// Sets the characteristic polynomial of M = V + (zB̂ + wB)(I − zÂ − wA)⁻¹ (Faddeev and Le Verrier).
+void amplification::set_polynomial_of_stages(complex z, double w) const {
+  const std::size_t s = staged_.stages();
+  matrix<complex> solved(s, s), M(s, s);
+  for (std::size_t i = 0; i < s; ++i)
+    for (std::size_t column = 0; column < s; ++column) {
+      complex sum = i == column ? 1.0 : 0.0;
+      for (std::size_t j = 0; j < i; ++j)
+        sum += times(z * staged_.A_hat(i, j) + w * staged_.A(i, j), solved(j, column));
+      solved(i, column) = sum / (1.0 - w * staged_.lambda());
+    }
+  for (std::size_t i = 0; i < s; ++i)
+    for (std::size_t column = 0; column < s; ++column) {
+      M(i, column) = staged_.v[column];
+      for (std::size_t j = 0; j < s; ++j)
+        M(i, column) += times(z * staged_.B_hat(i, j) + w * staged_.B(i, j), solved(j, column));
+    }
+  polynomial_.assign(s + 1, 0.0);
+  polynomial_[s] = 1.0;
+  auto power = matrix<complex>(s, s);
+  for (std::size_t k = 1; k <= s; ++k) {
+    for (std::size_t i = 0; i < s; ++i) power(i, i) += polynomial_[s + 1 - k];
+    power = M * power;
+    complex trace = 0.0;
+    for (std::size_t i = 0; i < s; ++i) trace += power(i, i);
+    polynomial_[s - k] = -trace / static_cast<double>(k);
+  }
+}
+
 bool amplification::is_within(double bound, complex z, double w) const {
   if (!rows_.empty()) {
     find_two_steps(z, w);
     if (steps_ == 1) return std::norm(stages_.back()) < bound * bound;
     return has_roots_within({-before_.back(), -stages_.back(), 1.0}, bound);
+  }
+  if (staged_.stages() > 0) {
+    set_polynomial_of_stages(z, w);
+    return has_roots_within(polynomial_, bound);
   }
   polynomial_.assign(formula_.a.size() + 1, 0.0);
   polynomial_.back() = 1.0 - formula_.b * w;

@@ -2,6 +2,7 @@
 
 #include <apsis/method/linear_formula.hpp>
 #include <apsis/method/method.hpp>
+#include <apsis/method/multistage_formula.hpp>
 
 #include <complex>
 #include <cstddef>
@@ -18,6 +19,8 @@ class amplification {
   explicit amplification(const method& m);
   /// A formula of several steps.
   explicit amplification(linear_formula<double> m);
+  /// A general linear method: the factors are the eigenvalues of its stability matrix.
+  explicit amplification(multistage_formula<double> m);
 
   /// Whether all |ζ| are below `bound` > 0. Explicit methods treat Q like T: they use z + w.
   bool is_within(double bound, std::complex<double> z, double w) const;
@@ -43,11 +46,13 @@ class amplification {
   void set_rows(const method& m);
   void find_two_steps(complex z, double w) const;
   complex relaxed(const row& r, complex stage, double w) const;
+  void set_polynomial_of_stages(complex z, double w) const;
 
   method_kind kind_;
   int steps_;
   std::vector<row> rows_;                ///< of methods of one and two steps
-  linear_formula<double> formula_;       ///< if rows_ is empty
+  linear_formula<double> formula_;       ///< if rows_ is empty and there are no stages
+  multistage_formula<double> staged_;    ///< if rows_ is empty and there are stages
   mutable std::vector<complex> stages_;  ///< multiples of u^n
   mutable std::vector<complex> before_;  ///< multiples of u^{n−1}
   mutable std::vector<complex> polynomial_;

@@ -3,6 +3,7 @@
 #include <apsis/boundary/boundary_registry.hpp>
 #include <apsis/config/at_place.hpp>
 #include <apsis/config/case_value.hpp>
+#include <apsis/config/common_boundary.hpp>
 #include <apsis/config/space_time_formula.hpp>
 #include <apsis/config/suggest_variable.hpp>
 #include <apsis/core/suggest.hpp>
@@ -53,6 +54,9 @@ std::vector<std::string> boundary_variables(const std::string& kind, const model
 }
 
 source_place place_of_emitter(const case_config& config, const std::string& path) {
+  if (path.starts_with("boundary.") && !config.places.contains(path))
+    for (const char* all : {"boundary.all", "boundary.all.kind"})
+      if (config.places.contains(all)) return place_of(config, all);
   source_place table = place_of(config, path);
   if (!table.file.empty()) return table;
   if (config.places.contains(path + ".kind")) return place_of(config, path + ".kind");
@@ -90,6 +94,24 @@ std::shared_ptr<const boundary> make_wall(const case_config& config, const model
                   [&] { return make_boundary(kind, equation, compiled, surface); });
 }
 
+namespace {
+
+/// Refuses a key of a table that is no face, or a face that is no table.
+[[noreturn]] void refuse_face(const raw_value& raw, const std::string& path, const std::string& name) {
+  std::vector<std::string> names(face_names.begin(), face_names.end());
+  names.emplace_back(every_face);
+  const bool known = std::find(names.begin(), names.end(), name) != names.end();
+  const bool of_all = path == "boundary." + name && nearest_word(name, names).empty();
+  throw input_error(
+      raw.place, fmt::format("unknown key '{}' (a face is a table [boundary.left], [boundary.right], …); {}",
+                             shown(path),
+                             known    ? fmt::format("write [boundary.{}]", name)
+                             : of_all ? "write [boundary.all] for keys of all faces"
+                                      : suggest(name, names)));
+}
+
+}  // namespace
+
 void read_boundary_values(const case_text& text, const model& equation, case_config& config) {
   const std::string head = "boundary.";
   for (const auto& [path, raw] : text.values) {
@@ -99,13 +121,8 @@ void read_boundary_values(const case_text& text, const model& equation, case_con
     const std::string name = dot == std::string::npos ? "" : path.substr(dot + 1);
     const auto found = std::find(face_names.begin(), face_names.end(), side);
     const bool known = found != face_names.end();
-    if (name.empty() || !known)
-      throw input_error(
-          raw.place,
-          fmt::format("unknown key '{}' (a face is a table [boundary.left], [boundary.right], …); {}",
-                      shown(path),
-                      known ? fmt::format("write [boundary.{}]", side)
-                            : suggest(side, {face_names.begin(), face_names.end()})));
+    if (side == every_face && name == "kind") continue;
+    if (name.empty() || !known) refuse_face(raw, path, side);
     const auto index = static_cast<std::size_t>(found - face_names.begin());
     if (face_of(index).direction >= equation.space_dimensions())
       throw input_error(
@@ -118,10 +135,11 @@ void read_boundary_values(const case_text& text, const model& equation, case_con
     auto names = boundary_variables(kind, equation, raw.place);
     if (std::find(names.begin(), names.end(), name) == names.end()) {
       names.emplace_back("kind");
+      const std::string given = given_boundary_path(config, path);
       throw input_error(raw.place, fmt::format("unknown key '{}' (boundary '{}' has no such variable); {}",
-                                               shown(path), kind, suggest_variable(name, names)));
+                                               shown(given), kind, suggest_variable(name, names)));
     }
-    table.values[name] = formula_texts(raw, path);
+    table.values[name] = formula_texts(raw, given_boundary_path(config, path));
   }
 }
 

@@ -20,7 +20,8 @@ std::vector<std::string> boundary_variables(const std::string& kind, const model
                                             const source_place& place);
 
 /// Returns the place that describes a face, a solid box or the source, by the path of its table. It is the
-/// first known place among the table, its kind, another of its keys, and space.boundary.
+/// first known place among the table, [boundary.all] for a face without a table, its kind, another of its
+/// keys, and space.boundary.
 source_place place_of_emitter(const case_config& config, const std::string& path);
 
 /// Returns the boundary of a kind with formulas for its variables, which are the keys "path.NAME". Throws

@@ -69,6 +69,7 @@ std::string trimmed(const std::string& text) {
 const std::vector<std::vector<std::vector<std::string>>>& exclusive_keys() {
   static const std::vector<std::vector<std::vector<std::string>>> all = {
       {{"time.dt"}, {"time.cfl"}, {"time.safety"}},
+      {{"space.boundary"}, {"boundary.all.kind"}},
       {{"gas.pressure"}, {"gas.density"}, {"gas.number_density"}},
       {{"model.epsilon"},
        {"model.knudsen"},

@@ -6,6 +6,7 @@
 #include <apsis/config/case_schema.hpp>
 #include <apsis/config/case_value.hpp>
 #include <apsis/config/checked_model.hpp>
+#include <apsis/config/common_boundary.hpp>
 #include <apsis/config/data_samples.hpp>
 #include <apsis/config/discretization_of_case.hpp>
 #include <apsis/config/gas_reader.hpp>
@@ -42,6 +43,7 @@ class resolver {
     check_tables();
     find_the_model();
     check_known();
+    expand_common_boundary(text_);
     take_gas();
     take_constants();
     const auto derived = derive_epsilon(text_, *model_, config_);
@@ -269,7 +271,9 @@ class resolver {
     if (find(discretization_key) == nullptr) config_.space.discretization = "finite-difference";
     if (radial > 1 || config_.space.domain.size() <= radial) return;  // refused later
     std::optional<std::string>& kind = config_.faces[2 * radial].kind;
-    if (!kind && config_.space.domain[radial][0] == 0.0) kind = "axis";
+    if (kind || config_.space.domain[radial][0] != 0.0) return;
+    kind = "axis";
+    erase_common_boundary(text_, config_, face_names[2 * radial]);
   }
 
   /// Reads the table [parameters].

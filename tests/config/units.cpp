@@ -23,7 +23,11 @@
 namespace units_test {
 
 using namespace apsis;
+using testing::AllOf;
+using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::SizeIs;
 
 namespace {
 
@@ -228,6 +232,44 @@ TEST(gas, of_ones_own_is_described_by_its_values) {
   EXPECT_EQ(named.scales->gas().mass, 66.3e-27);
   EXPECT_EQ(named.model.parameters.at("viscosity_exponent"), 0.5);
   EXPECT_EQ(parse(in_argon, {"gas.viscosity_exponent=0"}).model.parameters.at("viscosity_exponent"), 0.0);
+}
+
+TEST(gas, a_number_that_lacks_its_unit_causes_a_warning) {
+  EXPECT_THAT(parse(in_argon).unit_warnings, IsEmpty());
+  EXPECT_THAT(
+      parse(changed(in_argon, "T = \"350 K\"", "T = 350")).unit_warnings,
+      ElementsAre(
+          "c.toml:20:1: 'boundary.left.T' = 350 is 105000 K (a number without a unit is a multiple of "
+          "the reference of [gas]); write \"350 K\" if these units are meant"));
+  EXPECT_THAT(parse(in_argon, {"boundary.left.velocity=[0, 50]"}).unit_warnings,
+              ElementsAre(AllOf(HasSubstr("override 'boundary.left.velocity=[0, 50]': "),
+                                HasSubstr("= 50 is 12497"), HasSubstr("write \"50 m/s\" if"))));
+  EXPECT_THAT(parse(in_argon, {"boundary.left.T=350"}).unit_warnings, SizeIs(1));
+  // The reference densities are 1.6e-4 kg/m^3 and 2.4e21 1/m^3.
+  EXPECT_THAT(parse(in_argon, {"initial.rho=4.82e20"}).unit_warnings,
+              ElementsAre(HasSubstr("write \"4.82e+20 1/m^3\" if")));
+  EXPECT_THAT(parse(in_argon, {"initial.rho=1.6e-4"}).unit_warnings,
+              ElementsAre(HasSubstr("write \"0.00016 kg/m^3\" if")));
+  // The number of a constant lies elsewhere.
+  EXPECT_THAT(parse(changed(in_argon, "U = \"50 m/s\"", "U = 50")).unit_warnings,
+              ElementsAre(HasSubstr("c.toml:7:1: 'parameters.U' = 50 is 12497")));
+}
+
+TEST(gas, a_number_for_all_faces_causes_one_warning) {
+  const std::string two_walls = changed(changed(in_argon, "[boundary.left]", "[boundary.all]"),
+                                        "[boundary.right]\nkind = \"diffuse\"\n", "[boundary.right]\n");
+  EXPECT_THAT(parse(two_walls, {"boundary.all.velocity=[0, -50]"}).unit_warnings,
+              ElementsAre(HasSubstr("'boundary.all.velocity' = -50 is -12497")));
+}
+
+TEST(gas, plausible_numbers_without_units_cause_no_warning) {
+  EXPECT_THAT(parse(in_argon, {"boundary.left.T=15", "boundary.left.velocity=[0, 6]", "initial.rho=0.01",
+                               "initial.u=[0, 0]"})
+                  .unit_warnings,
+              IsEmpty());
+  // This temperature is 40 times the reference, and has its unit.
+  EXPECT_THAT(parse(in_argon, {"boundary.left.T=12000 K"}).unit_warnings, IsEmpty());
+  EXPECT_THAT(load_case("gas/micro-channel").unit_warnings, IsEmpty());
 }
 
 TEST(knudsen, numbers_of_every_definition_give_epsilon) {

@@ -258,6 +258,14 @@ end = "20 ns"
   // √(RT) = 499.7 m/s at 1200 K, and the range is six times as large.
   EXPECT_THAT(found.warnings,
               AllOf(HasSubstr("[1250 m/s] is too small"), HasSubstr("[1200 K]"), HasSubstr("[2999 m/s]")));
+  // Without the unit the gas is far too hot. The warning precedes the error.
+  std::string forgotten = argon;
+  const std::string unit = "\"1200 K\"";
+  forgotten.replace(forgotten.find(unit), unit.size(), "1200");
+  const outcome refused = run_of(forgotten);
+  EXPECT_EQ(refused.code, 2) << refused.error;
+  EXPECT_THAT(refused.warnings,
+              AllOf(HasSubstr("'initial.T' = 1200 is 360000 K"), HasSubstr("write \"1200 K\" if")));
 }
 
 TEST(velocity_range, a_force_that_presses_the_gas_against_the_end_is_seen) {

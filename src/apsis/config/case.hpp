@@ -44,7 +44,8 @@ struct case_config {
     std::optional<int> degrees_of_freedom;
     std::optional<std::string> pressure, density, number_density, temperature, length;
   } gas;
-  std::optional<gas_scales> scales;  ///< units of dimensionless quantities; with a table [gas]
+  std::optional<gas_scales> scales;        ///< units of dimensionless quantities; with a table [gas]
+  std::vector<std::string> unit_warnings;  ///< about numbers that probably lack a unit; with a table [gas]
   /// Table [model].
   struct {
     std::string name;

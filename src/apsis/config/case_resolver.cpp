@@ -248,6 +248,7 @@ class resolver {
     for (const case_key& key : case_schema())
       if (is_in(key.path, "gas")) take(key);
     config_.scales = read_gas_scales(text_, *model_, config_);
+    config_.unit_warnings = warnings_of_missing_units(text_, *model_, config_);
     remove_units(text_, *model_, config_.scales);
     if (config_.scales) set_gas_of_model(text_, *model_, config_);
   }

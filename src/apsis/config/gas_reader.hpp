@@ -5,6 +5,8 @@
 #include <apsis/model/model_registry.hpp>
 
 #include <optional>
+#include <string>
+#include <vector>
 
 namespace apsis {
 
@@ -13,6 +15,12 @@ namespace apsis {
 /// density and number density is given.
 std::optional<gas_scales> read_gas_scales(const case_text& text, const model_entry& model,
                                           const case_config& config);
+
+/// Returns a warning for each number without a unit that is far from the reference state in `config`:
+/// temperatures, velocities, densities and pressures of the initial data, faces, solid boxes, bodies and
+/// [output.reference]. Returns nothing without scales. The text must still have its units.
+std::vector<std::string> warnings_of_missing_units(const case_text& text, const model_entry& model,
+                                                   const case_config& config);
 
 /// Replaces quantities with units in the values of a case by dimensionless numbers; those of [parameters] may
 /// have any dimension. Tables in time and profiles become formulas (table_reader.hpp, profile_reader.hpp).

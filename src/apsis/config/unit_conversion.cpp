@@ -3,12 +3,20 @@
 #include <apsis/boundary/boundary_registry.hpp>
 #include <apsis/config/case_schema.hpp>
 #include <apsis/config/case_value.hpp>
+#include <apsis/config/common_boundary.hpp>
 #include <apsis/config/gas_reader.hpp>
 #include <apsis/config/profile_reader.hpp>
 #include <apsis/config/quantity.hpp>
 #include <apsis/config/table_reader.hpp>
 
+#include <charconv>
+#include <cmath>
 #include <map>
+#include <set>
+#include <string>
+#include <system_error>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -164,6 +172,90 @@ class unit_remover {
 };
 
 }  // namespace
+
+namespace {
+
+/// Returns the units in which a dimensionless number was probably meant; "" if the number is plausible.
+///
+/// A large number is suspicious if its value in SI units is closer to the reference, as a ratio, than
+/// itself: |x| > √T₀, for example. Temperatures of 20 T₀ and velocities of Mach 15 are plausible in any
+/// case, and so are ratios of pressures below 100. Small densities are plausible, because gases expand into
+/// vacuum. They are suspicious only within a factor 2 of a small reference density in kg/m³.
+std::string probable_unit(const std::string& name, const dimension& dims, double number,
+                          const gas_scales& scales) {
+  constexpr double largest_ratio = 20.0, largest_pressure = 100.0, small_density = 0.1;
+  const double x = std::abs(number);
+  const auto beyond = [x](double least, double reference) { return x >= least && x > std::sqrt(reference); };
+  if (dims == dimensions::temperature && beyond(largest_ratio, scales.temperature())) return unit_of(dims);
+  if (dims == dimensions::velocity && beyond(largest_ratio, scales.speed())) return unit_of(dims);
+  if (name == "p" && dims == dimensions::pressure && beyond(largest_pressure, scales.pressure()))
+    return unit_of(dims);
+  if (dims != dimensions::density) return "";
+  if (beyond(largest_ratio, scales.number_density())) return unit_of(dimensions::number_density);
+  const double ratio = x / scales.density();
+  return x <= small_density && ratio >= 0.5 && ratio <= 2.0 ? unit_of(dims) : "";
+}
+
+/// A number that a value of a case contains: itself, an item of a list, or a constant of [parameters].
+struct plain_number {
+  double value = 0.0;
+  std::string path;  ///< of the key that has the number
+};
+
+/// Returns the numbers without units and without operations.
+std::vector<plain_number> plain_numbers(const case_text& text, const std::string& path,
+                                        const raw_value& raw) {
+  if (const auto* number = std::get_if<double>(&raw.value)) return {{*number, path}};
+  if (const auto* number = std::get_if<long>(&raw.value)) return {{static_cast<double>(*number), path}};
+  std::vector<plain_number> all;
+  if (const auto* list = std::get_if<raw_value::list>(&raw.value))
+    for (const raw_value& item : *list)
+      for (plain_number& one : plain_numbers(text, path, item)) all.push_back(std::move(one));
+  const auto* word = std::get_if<std::string>(&raw.value);
+  if (word == nullptr) return all;
+  double number = 0.0;
+  const char* const end = word->data() + word->size();
+  const auto [stop, problem] = std::from_chars(word->data(), end, number);
+  if (problem == std::errc() && stop == end) return {{number, path}};
+  const std::string constant = "parameters." + *word;
+  const raw_value* found = text.find(constant);
+  const bool is_number = found != nullptr && (std::holds_alternative<double>(found->value) ||
+                                              std::holds_alternative<long>(found->value));
+  return is_number ? plain_numbers(text, constant, *found) : all;
+}
+
+bool describes_a_state(const std::string& path) {
+  return begins_with(path, "initial.") || begins_with(path, "boundary.") ||
+         begins_with(path, "space.solid.") || begins_with(path, "space.body.") ||
+         begins_with(path, "output.reference.");
+}
+
+}  // namespace
+
+std::vector<std::string> warnings_of_missing_units(const case_text& text, const model_entry& model,
+                                                   const case_config& config) {
+  if (!config.scales) return {};
+  const unit_remover remover(model, config.scales, text);
+  std::vector<std::string> warnings;
+  std::set<std::string> seen;  // a key of all faces occurs once
+  for (const auto& [path, raw] : text.values) {
+    const auto dims = describes_a_state(path) ? remover.dimension_of(path) : std::nullopt;
+    if (!dims) continue;
+    for (const plain_number& one : plain_numbers(text, given_boundary_path(config, path), raw)) {
+      const std::string unit =
+          probable_unit(path.substr(path.rfind('.') + 1), *dims, one.value, *config.scales);
+      if (unit.empty() || !seen.insert(one.path).second) continue;
+      const raw_value* given = text.find(one.path);
+      warnings.push_back(fmt::format(
+          "{}'{}' = {:g} is {:g} {} (a number without a unit is a multiple of the reference of [gas]); "
+          "write \"{:g} {}\" if these units are meant",
+          to_string((given == nullptr ? raw : *given).place), one.path, one.value,
+          one.value * config.scales->unit(*dims), unit_of(*dims), one.value, unit));
+      break;
+    }
+  }
+  return warnings;
+}
 
 void remove_units(case_text& text, const model_entry& model, const std::optional<gas_scales>& scales) {
   read_profiles(text, scales);

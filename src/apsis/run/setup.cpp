@@ -339,6 +339,8 @@ const field& run_setup::densities(const field& u, field& room) const {
 }
 
 field run_setup::checked(field u, bool computed) const {
+  // They come first, because a number without its unit may be the cause of an error below.
+  for (const std::string& warning : config_.unit_warnings) log::warning(warning);
   std::vector<std::string> warnings;
   run_collectively(processes(), [&] { warnings = check_emitted_gas(config_, *equation); });
   if (const cut_cells* cut = has_space() ? whole_mesh().cut() : nullptr; cut && cut->thin_cells() > 0)

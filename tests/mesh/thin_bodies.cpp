@@ -98,6 +98,23 @@ TEST(thin_bodies, refuse_thin_plates_and_gaps_with_the_cells_that_they_need) {
   });
 }
 
+TEST(thin_bodies, without_a_wall_are_refused_with_the_reason) {
+  const auto cut = [](int n, const std::vector<outside_function>& bodies) {
+    return cut_cells(plane(n), bodies, closed);
+  };
+  // 2 · 4/0.05 cells along the side 4 show 4 cells across the disc.
+  bad_input::expect_refused({
+      {[&] { cut(4, {disc(0.7, 0.5, 0.05)}); },
+       {"body 1 has no wall in the domain (it is about 0.1 thick, and lies between the corners of cells); "
+        "enlarge it, or give about space.cells = [160, 160]"}},
+      {[&] { cut(4, {disc(0.5, 0.5, 1.2), disc(2.7, 0.5, 0.5)}); },
+       {"body 2 has no wall in the domain (it lies outside the domain); move it, or change space.domain"}},
+      {[&] { cut(20, {disc(0.1, 0.1, 1.2), disc(0.2, 0.1, 0.5)}); },
+       {"body 2 has no wall in the domain (it lies in another body or a solid box); remove it, or move it"}},
+  });
+  EXPECT_NO_THROW(cut(160, {disc(0.7, 0.5, 0.05)}));
+}
+
 TEST(thin_bodies, of_plates_at_any_angle_keep_most_of_the_plate_or_are_refused) {
   std::mt19937 generator(13);
   std::uniform_real_distribution<double> any(0.0, 1.0);

@@ -211,6 +211,43 @@ TEST(runs_past_bodies, are_warned_once_about_edges_that_are_cut_off) {
   EXPECT_EQ(of_wedge.find(expected), of_wedge.rfind(expected));
 }
 
+TEST(runs_past_bodies, are_warned_of_too_few_cells) {
+  const auto warnings_with = [](const std::vector<std::string>& overrides) {
+    testing::internal::CaptureStderr();
+    const apsis::simulation run(apsis::parse_case(cylinder(""), "case.toml", overrides));
+    return testing::internal::GetCapturedStderr();
+  };
+  // Chords cut half of the disc to the area of 3.4 cells. Cells of 1/2.2 of the length make it 4 cells
+  // across.
+  const std::string few = warnings_with({"space.cells=[10, 5]", "space.body.1.radius=0.4"});
+  EXPECT_THAT(few, testing::HasSubstr("body 'cylinder' is only 1.9 cells across (its heat and shear are "
+                                      "inaccurate below 3); give about space.cells = ["));
+  const auto advice = few.find("give about space.cells = ");
+  ASSERT_NE(advice, std::string::npos);
+  const std::string cells = few.substr(advice + 11, few.find(']', advice) + 1 - (advice + 11));
+  EXPECT_THAT(warnings_with({cells, "space.body.1.radius=0.4"}), testing::Not(testing::HasSubstr("across")));
+}
+
+TEST(runs_past_bodies, are_warned_of_an_open_end_that_cuts_the_body) {
+  const auto warnings_at = [](const std::string& centre, const std::vector<std::string>& more = {}) {
+    std::vector<std::string> overrides = {"space.body.1.centre=" + centre, "space.body.1.radius=0.4"};
+    overrides.insert(overrides.end(), more.begin(), more.end());
+    testing::internal::CaptureStderr();
+    const apsis::simulation run(apsis::parse_case(cylinder(""), "case.toml", overrides));
+    return testing::internal::GetCapturedStderr();
+  };
+  EXPECT_THAT(
+      warnings_at("[1.25, 0.65]"),
+      testing::HasSubstr("body 'cylinder' is cut by the open end [boundary.right] (its wall ends there, "
+                         "and its loads are those of the part inside); extend space.domain, or write "
+                         "kind = \"symmetry\" there for half of a body"));
+  // Symmetry and walls may cut a body. A body at two faces may be the wall of a channel.
+  for (const std::string none : {"[0, 0]", "[0.2, 0.65]", "[1.25, 0.02]", "[1.25, 1.25]"})
+    EXPECT_THAT(warnings_at(none), testing::Not(testing::HasSubstr("is cut by"))) << none;
+  EXPECT_THAT(warnings_at("[1.25, 0.65]", {"boundary.right.kind=diffuse", "boundary.right.T=1"}),
+              testing::Not(testing::HasSubstr("is cut by")));
+}
+
 TEST(runs_past_bodies, in_space_have_the_temperature_of_a_formula_in_x_z_and_t_at_every_piece) {
   // The case is the half of a sphere above y = 0 in a gas at rest without collisions.
   const apsis::simulation run = finished(R"(

@@ -280,8 +280,9 @@ std::shared_ptr<const cut_cells> cut_cells_of(const case_config& config, const g
       return std::make_shared<const cut_cells>(mesh, bodies, periodic);
     } catch (const hidden_body& failure) {
       const std::size_t k = failure.body();
-      throw input_error(place_of_emitter(config, path_of_body(k)),
-                        hidden_body::message(fmt::format("body '{}'", config.bodies[k].name)));
+      throw input_error(
+          place_of_emitter(config, path_of_body(k)),
+          hidden_body::message(fmt::format("body '{}'", config.bodies[k].name), failure.reason()));
     } catch (const input_error& failure) {
       throw input_error(place_of_emitter(config, path_of_body(0)), failure.what());
     }

@@ -17,6 +17,7 @@
 #include <apsis/mesh/on_host.hpp>
 #include <apsis/method/step_law.hpp>
 #include <apsis/model/expression.hpp>
+#include <apsis/run/body_warnings.hpp>
 #include <apsis/run/cfl_limit.hpp>
 #include <apsis/run/initial_file.hpp>
 #include <apsis/run/velocity_watch.hpp>
@@ -66,14 +67,6 @@ std::optional<std::array<int, 3>> given_blocks(const std::optional<std::vector<i
   std::array<int, 3> all = {1, 1, 1};
   std::copy(blocks->begin(), blocks->end(), all.begin());
   return all;
-}
-
-/// Returns the warning that thin parts of bodies are cut off in so many cells.
-std::string thin_cells_warning(int cells) {
-  return fmt::format(
-      "edges or thin parts of bodies are cut off in {} (they end between the corners of a cell); "
-      "increase space.cells to lose less",
-      cells == 1 ? "1 cell" : fmt::format("{} cells", cells));
 }
 
 /// Calls body() and adds the place of a key to its input errors.
@@ -343,9 +336,9 @@ field run_setup::checked(field u, bool computed) const {
   for (const std::string& warning : config_.unit_warnings) log::warning(warning);
   std::vector<std::string> warnings;
   run_collectively(processes(), [&] { warnings = check_emitted_gas(config_, *equation); });
-  if (const cut_cells* cut = has_space() ? whole_mesh().cut() : nullptr; cut && cut->thin_cells() > 0)
-    warnings.push_back(thin_cells_warning(cut->thin_cells()));
   for (const std::string& warning : warnings) log::warning(warning);
+  if (has_space())
+    for (const std::string& warning : warnings_of_bodies(config_, whole_mesh())) log::warning(warning);
   check_cells(u, computed);
   std::vector<double> lowest, highest;
   run_collectively(processes(), [&] {

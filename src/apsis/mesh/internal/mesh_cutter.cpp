@@ -164,7 +164,7 @@ void mesh_cutter::check_bodies() const {
     for (const piece& wall : gas.walls)
       if (at(wall.solid) >= boxes) seen[at(wall.solid) - boxes] = true;
   for (std::size_t k = 0; k < seen.size(); ++k)
-    if (!seen[k]) throw hidden_body(k);
+    if (!seen[k]) throw hidden_body(k, why_hidden(mesh_, bodies_[k]));
 }
 
 void mesh_cutter::check_thin_cells(const std::vector<int>& thin, std::size_t of_bodies) const {

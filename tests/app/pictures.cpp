@@ -72,4 +72,24 @@ TEST(report, is_one_page_and_goes_with_the_results_that_it_reports) {
   EXPECT_FALSE(fs::exists(folder.path() / "fine" / "report.html")) << "a report of results that are gone";
 }
 
+TEST(plot, leaves_no_picture_to_a_later_run) {
+  const work_folder folder;
+  make_runs(folder);
+  ASSERT_EQ(run_apsis(folder, {"plot", "fine"}).code, 0);
+  ASSERT_EQ(run_apsis(folder, {"report", "fine"}).code, 0);
+  const fs::path pictures = folder.path() / "fine" / "pictures";
+  ASSERT_TRUE(is_png(pictures / "fields.png"));
+  std::ofstream(pictures / "sketch.png") << "mine";
+  const auto again = run_apsis(folder, {"run", "paper/broadwell", "space.cells=20", "--out", "fine"});
+  EXPECT_EQ(again.code, 0) << again.err;
+  EXPECT_FALSE(fs::exists(pictures / "fields.png"));
+  EXPECT_FALSE(fs::exists(pictures / "history.png"));
+  EXPECT_EQ(read(pictures / "sketch.png"), "mine");
+  EXPECT_THAT(again.err,
+              HasSubstr("of the earlier run from 'fine/pictures' (they show its results); apsis plot "
+                        "fine draws new ones"));
+  EXPECT_THAT(again.err,
+              HasSubstr("'fine/pictures' has 1 file that apsis did not draw, or that changed since"));
+}
+
 }  // namespace pictures_test

@@ -54,6 +54,45 @@ TEST(results, replace_earlier_ones_together) {
   EXPECT_THAT(visible(path), UnorderedElementsAre("fields.csv", "manifest.json"));
 }
 
+TEST(results, remove_drawn_pictures_of_earlier_ones_and_no_other_file) {
+  const test_folder place;
+  const fs::path path = place / "o", pictures = path / "pictures";
+  fs::create_directories(pictures);
+  const auto write = [](const fs::path& file, const std::string& text) { std::ofstream(file) << text; };
+  const auto commit = [&path] {
+    testing::internal::CaptureStderr();
+    result_folder folder(path);
+    folder.prepare_text(result_folder::manifest, "{}\n");
+    folder.commit();
+    return testing::internal::GetCapturedStderr();
+  };
+  EXPECT_EQ(commit(), "");
+  EXPECT_FALSE(fs::exists(pictures)) << "an empty folder";
+  // CBF43926 is the CRC-32 of these digits in its definition.
+  fs::create_directories(pictures);
+  for (const char* name : {"fields.png", "wall disc.png", "changed.png", "mine.png"})
+    write(pictures / name, "123456789");
+  write(pictures / "changed.png", "123456780");
+  write(path / "beside.png", "123456789");
+  fs::create_symlink(path / "beside.png", pictures / "link.png");
+  write(pictures / ".written",
+        "cbf43926 9 fields.png\ncbf43926 9 wall disc.png\ncbf43926 9 changed.png\ncbf43926 9 link.png\n"
+        "cbf43926 9 ../beside.png\ncbf43926 9 gone.png\n");
+  const std::string log = commit();
+  EXPECT_THAT(visible(pictures), UnorderedElementsAre("changed.png", "mine.png", "link.png"));
+  EXPECT_TRUE(fs::exists(path / "beside.png"));
+  EXPECT_THAT(
+      log, testing::HasSubstr("removed 2 pictures of the earlier run from '" + pictures.string() +
+                              "' (they show its results); apsis plot " + path.string() + " draws new ones"));
+  EXPECT_THAT(log, testing::HasSubstr("has 3 files that apsis did not draw, or that changed since"));
+  // A folder that is a link stays as it is.
+  fs::rename(pictures, place / "elsewhere");
+  fs::create_directory_symlink(place / "elsewhere", pictures);
+  write(fs::path(place / "elsewhere") / ".written", "cbf43926 9 mine.png\n");
+  EXPECT_EQ(commit(), "");
+  EXPECT_TRUE(fs::exists(pictures / "mine.png"));
+}
+
 TEST(results, of_a_writer_that_fails_leave_nothing) {
   const test_folder place;
   const fs::path path = place / "o";

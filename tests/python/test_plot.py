@@ -57,6 +57,22 @@ def test_axes_of_results_in_si_units_have_these_units(tmp_path):
     assert math.isclose(computed.history["t"][-1], 2e-10)
 
 
+def test_the_next_run_removes_the_pictures_that_nobody_changed(tmp_path):
+    case = ("paper/broadwell", "space.cells=10", "time.end=0.01")
+    run(tmp_path, *case)
+    for _ in range(2):  # a second drawing replaces the lines of the first
+        assert command.main([str(tmp_path)]) == 0
+    pictures = tmp_path / "pictures"
+    names = [line.split(" ", 2)[2] for line in (pictures / ".written").read_text().splitlines()]
+    assert sorted(names) == ["fields.png", "history.png"]
+    (pictures / "fields.png").write_bytes(b"mine")
+    run(tmp_path, *case)
+    assert [path.name for path in pictures.iterdir()] == ["fields.png"]
+    # A folder of one's own has no list.
+    assert command.main([str(tmp_path), "--out", str(tmp_path / "elsewhere")]) == 0
+    assert not (tmp_path / "elsewhere" / ".written").exists()
+
+
 def test_f_is_drawn_over_velocity_and_position(tmp_path):
     computed = run(tmp_path, "paper/bgk-mixed", *SMALL_BGK)
     figure = distribution_figure(read_result(tmp_path))

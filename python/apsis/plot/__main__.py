@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from . import comparison, methods, pictures, results, run_result
-from .style import FORMATS, PictureError, exit_code_of, picture_path, pictures_in, printable, save
+from .style import FORMATS, PictureError, exit_code_of, picture_path, pictures_in, printable, save, save_beside_results
 
 DESCRIPTION = """Draws what apsis computed, as WHAT/pictures/*.png:
 
@@ -106,7 +106,9 @@ def draw_all(options: argparse.Namespace) -> None:
     for what in options.what:
         folder, figures = drawn(what, options)
         for name, figure in figures:
-            print(printable(str(save(figure, picture_path(options.out or folder, str(name), options.format)))))
+            beside = options.out is None and folder != Path()
+            write = save_beside_results if beside else save
+            print(printable(str(write(figure, picture_path(options.out or folder, str(name), options.format)))))
 
 
 def main(arguments: list[str] | None = None) -> int:

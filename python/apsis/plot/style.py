@@ -4,6 +4,7 @@ from __future__ import annotations
 import os
 import sys
 import unicodedata
+import zlib
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
@@ -19,7 +20,7 @@ from matplotlib.text import Text  # noqa: E402
 
 __all__ = ["BLACK", "BLUE", "COLOURS", "FORMATS", "GREEN", "GREY", "LINES", "MARKERS", "ORANGE", "PURPLE", "PictureError", "SKY",
            "UNDATED", "VERMILLION", "earlier_times", "exit_code_of", "palette", "panels",
-           "picture_path", "pictures_in", "plt", "printable", "save", "show_literally",
+           "picture_path", "pictures_in", "plt", "printable", "save", "save_beside_results", "show_literally",
            "whole_file"]
 
 # Okabe and Ito: distinct for colour-blind readers, and in lightness for print.
@@ -127,4 +128,19 @@ def save(figure: Any, path: Path) -> Path:
     with whole_file(path) as file:
         show_literally(figure).savefig(file, format=path.suffix[1:], metadata=UNDATED.get(path.suffix))
     plt.close(figure)
+    return path
+
+
+def save_beside_results(figure: Any, path: Path) -> Path:
+    """Writes a figure into the folder of pictures of a result, and adds it to the list `.written` of this folder. The next run into the
+    folder of the result removes the pictures of the list that nobody changed (src/apsis/output/drawn_pictures.hpp). A line of the list has
+    the CRC-32, the size and the name."""
+    save(figure, path)
+    content = path.read_bytes()
+    record = path.with_name(".written")
+    known = record.read_text(encoding="utf-8", errors="replace").splitlines() if record.is_file() and not record.is_symlink() else []
+    lines = [line for line in known if line.split(" ", 2)[2:] != [path.name]]
+    lines.append(f"{zlib.crc32(content):08x} {len(content)} {path.name}")
+    with whole_file(record) as file:
+        file.write("".join(f"{line}\n" for line in lines).encode("utf-8"))
     return path

@@ -8,7 +8,7 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
-from ..plot.style import UNDATED, picture_path, printable, save, show_literally
+from ..plot.style import UNDATED, picture_path, printable, save_beside_results, show_literally
 
 STYLE = """
 :root { color-scheme: light; }
@@ -79,7 +79,7 @@ def embedded(figure: Any, name: str, title: str, caption: str, folder: Path) -> 
     width = figure.get_figwidth()
     show_literally(figure).savefig(stream, format="svg", metadata=UNDATED[".svg"])
     data = base64.b64encode(stream.getvalue()).decode("ascii")
-    save(figure, path)
+    save_beside_results(figure, path)
     # 10-point letters remain 7.7 pixels high on a narrow screen, where wide pictures scroll.
     return (f'<figure><img style="min-width: {0.58 * 96 * width:.0f}px" alt="{text(title)}" src="data:image/svg+xml;base64,{data}">'
             f'<figcaption><b>{text(title)}.</b> {text(caption)}</figcaption></figure>\n')

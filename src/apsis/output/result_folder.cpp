@@ -1,8 +1,10 @@
 #include <apsis/output/result_folder.hpp>
 
 #include <apsis/core/errors.hpp>
+#include <apsis/core/log.hpp>
 #include <apsis/core/new_file.hpp>
 #include <apsis/core/text_file.hpp>
+#include <apsis/output/drawn_pictures.hpp>
 
 #include <algorithm>
 #include <array>
@@ -17,10 +19,20 @@ namespace apsis {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr std::array<const char*, 11> result_names = {
-    result_folder::manifest, "history.csv",   "fields.csv",   "solution.h5",
-    "solution.xdmf",         "checkpoint.h5", "converge.csv", "converge.json",
-    "picture.json",          "converge.png",  "report.html"};
+constexpr std::array<const char*, 14> result_names = {result_folder::manifest,
+                                                      "history.csv",
+                                                      "fields.csv",
+                                                      "solution.h5",
+                                                      "solution.xdmf",
+                                                      "checkpoint.h5",
+                                                      "converge.csv",
+                                                      "converge.json",
+                                                      "picture.json",
+                                                      "converge.png",
+                                                      "sweep.csv",
+                                                      "sweep.json",
+                                                      "sweep.png",
+                                                      "report.html"};
 
 constexpr std::array<const char*, 4> series_names = {"snapshots", "probes", "slices", "surfaces"};
 
@@ -43,6 +55,26 @@ const char* advice_for(const std::error_code& why) {
 bool is_own_folder(const fs::path& path) {
   std::error_code ignored;
   return fs::symlink_status(path, ignored).type() == fs::file_type::directory;
+}
+
+std::string number_of_pictures(int count) {
+  return count == 1 ? "1 picture" : fmt::format("{} pictures", count);
+}
+
+/// Removes the pictures of an earlier run, and logs what became of them.
+void replace_pictures(const fs::path& folder) {
+  const picture_counts counts = remove_drawn_pictures(folder);
+  const std::string pictures = (folder / "pictures").string();
+  if (counts.removed > 0)
+    log::info(
+        fmt::format("removed {} of the earlier run from '{}' (they show its results); apsis plot {} draws "
+                    "new ones",
+                    number_of_pictures(counts.removed), pictures, folder.string()));
+  if (counts.left > 0)
+    log::info(
+        fmt::format("'{}' has {} that apsis did not draw, or that changed since (they stay, and may show "
+                    "other results); remove what you do not need",
+                    pictures, counts.left == 1 ? "1 file" : fmt::format("{} files", counts.left)));
 }
 
 /// Flushes the directory so that renames are durable.
@@ -209,6 +241,7 @@ void result_folder::commit() {
     if (std::find(prepared_.begin(), prepared_.end(), name) == prepared_.end())
       fs::remove(path_ / name, problem);
   commit_series();
+  replace_pictures(path_);
   for (const auto& name : prepared_) {
     problem.clear();
     fs::rename(temporary(name), path_ / name, problem);

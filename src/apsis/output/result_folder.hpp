@@ -46,7 +46,7 @@ class result_folder {
   std::vector<std::filesystem::path> files_of_series(const std::string& series) const;
 
   /// Renames every prepared file and series, the manifest last, and removes result files of an earlier run
-  /// that this run did not write.
+  /// that this run did not write. Also removes its pictures (remove_drawn_pictures()), and logs this.
   void commit();
 
   /// Describes the other files; absent while they are being replaced.

@@ -7,6 +7,8 @@
 #include <apsis/config/checked_model.hpp>
 #include <apsis/config/discretization_of_case.hpp>
 #include <apsis/config/force_reader.hpp>
+#include <apsis/config/limiter_of_case.hpp>
+#include <apsis/config/method_of_case.hpp>
 #include <apsis/config/solid_reader.hpp>
 #include <apsis/config/steady_of_case.hpp>
 #include <apsis/core/suggest.hpp>
@@ -16,6 +18,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -46,10 +49,10 @@ void case_checks::check_step_rule() const {
     if (has_space(model_) || key == "time.dt") valid.push_back(key);
   }
   if (given.empty())
-    throw input_error(text_.place_of_missing("time.dt", file_),
-                      fmt::format("no step size is given (one of {} is needed); add for example {}",
-                                  fmt::format("{}", fmt::join(valid, ", ")),
-                                  valid.size() > 1 ? "safety = 0.5" : "dt = 0.01"));
+    throw input_error(
+        text_.place_of_missing("time.dt", file_),
+        fmt::format("no step size is given ({}{} is needed); add for example {}",
+                    valid.size() > 1 ? "one of " : "", fmt::join(valid, ", "), example_of_step()));
   if (given.size() > 1)
     throw input_error(
         text_.find(given[1])->place,
@@ -59,6 +62,24 @@ void case_checks::check_step_rule() const {
     refuse(*text_.find("time.dt"), "time.dt",
            fmt::format("it is longer than time.end = {}", config_.time.end),
            "give a step of at most the whole time");
+}
+
+/// Returns a step that suits the case: with a limiter the longest one that keeps its promise, else one that
+/// most methods take stably.
+std::string case_checks::example_of_step() const {
+  if (!has_space(model_))
+    return fmt::format("dt = {:g}", config_.time.end > 0.0 ? config_.time.end / 100.0 : 0.01);
+  try {
+    case_config longest = config_;
+    longest.time.safety = 1.0;
+    const limiter_choice limiter = text_.find("space.limiter") != nullptr
+                                       ? config_.space.limiter
+                                       : default_limiter(with_chosen_method(std::move(longest)));
+    if (limiter == limiter_choice::positivity) return "safety = 1";
+  } catch (const error&) {
+    // Another key is wrong. Its message follows when the step is given.
+  }
+  return "cfl = 0.5";
 }
 
 void case_checks::check_mesh() const {

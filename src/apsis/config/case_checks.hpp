@@ -26,6 +26,7 @@ class case_checks {
 
  private:
   void check_step_rule() const;
+  std::string example_of_step() const;
   void check_mesh() const;
   void check_interval(const interval& ends, int cells) const;
   void check_discretization() const;

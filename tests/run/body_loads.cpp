@@ -137,6 +137,52 @@ TEST(loads_of_bodies, in_a_stream_have_the_coefficients_of_their_definition) {
   EXPECT_EQ(deep_ones.at("C_H"), 8 / 4.0);
 }
 
+TEST(loads_of_bodies, of_part_of_a_symmetric_body_are_those_that_do_not_vanish_for_the_whole) {
+  using testing::ElementsAre;
+  const auto names_of = [](const body_load& body, const reference_values& stream) {
+    std::vector<std::string> names;
+    for (const auto& [name, value] : values_of(body, stream)) names.push_back(name);
+    return names;
+  };
+  const reference_values plane{
+      .density = 2, .temperature = 1, .length = 0.5, .velocity = {1.5, 0}, .centre = {0, 0}, .up = {}};
+  EXPECT_THAT(names_of({"a", {5, 10}, {7}, 25, {1}}, plane), ElementsAre("C_D", "C_H", "drag", "heat"));
+  // Lift is the force along x. A mirror normal to z leaves the torque about z.
+  const reference_values space{.density = 2,
+                               .temperature = 1,
+                               .length = 3,
+                               .area = 0.5,
+                               .velocity = {0, 2, 0},
+                               .centre = {0, 0, 2},
+                               .up = {1, 5, 0}};
+  EXPECT_THAT(names_of({"a", {5, 10, -1}, {1, 2, 3}, 8, {0}}, space),
+              ElementsAre("C_D", "C_H", "C_M_x", "drag", "heat", "moment_x"));
+  EXPECT_THAT(names_of({"a", {5, 10, -1}, {1, 2, 3}, 8, {2}}, space),
+              ElementsAre("C_D", "C_H", "C_L", "C_M_z", "drag", "heat", "lift", "moment_z"));
+  EXPECT_THAT(names_of({"a", {5, 10, -1}, {1, 2, 3}, 8, {0, 2}}, space),
+              ElementsAre("C_D", "C_H", "drag", "heat"));
+}
+
+TEST(loads_of_bodies, have_no_lift_at_a_plane_of_symmetry) {
+  // Half of the disc lies above the plane of symmetry y = -2.
+  const simulation run =
+      finished(flat, {"space.body.1.centre=[-0.4, -2]", "space.body.1.velocity=[0, 0]", "time.end=0.02"});
+  const auto loads = body_loads(run.setup(), run.last());
+  ASSERT_EQ(loads.size(), 2U);
+  for (const body_load& one : loads)
+    EXPECT_EQ(one.mirrors, one.name == "disc" ? std::vector<int>{1} : std::vector<int>{}) << one.name;
+  run_records records(run);
+  records.add_step(run.last());
+  const auto json = to_json(run, records)["bodies"];
+  EXPECT_TRUE(json["disc"].contains("C_D"));
+  EXPECT_FALSE(json["disc"].contains("C_L"));
+  EXPECT_FALSE(json["disc"].contains("C_M"));
+  EXPECT_TRUE(json["box"].contains("C_L"));
+  const auto columns = result_history(records.history(), run).columns;
+  EXPECT_THAT(columns, testing::IsSupersetOf({"C_D_disc", "C_H_disc", "torque_disc", "C_L_box", "C_M_box"}));
+  EXPECT_THAT(columns, testing::Not(testing::Contains(testing::AnyOf("C_L_disc", "C_M_disc", "lift_disc"))));
+}
+
 TEST(loads_of_bodies, are_in_the_history_and_the_summary_in_units_of_the_results) {
   const simulation& run = run_of(flat);
   run_records records(run);

@@ -18,8 +18,9 @@ struct history_unit;
 /// A solid box or body whose loads a run records. Such a run has two or three directions of space, an energy,
 /// and a momentum for each direction.
 struct loaded_body {
-  std::string name;  ///< as in run_setup::open_faces()
-  std::size_t face;  ///< index in run_setup::open_faces()
+  std::string name;      ///< as in run_setup::open_faces()
+  std::size_t face;      ///< index in run_setup::open_faces()
+  std::size_t obstacle;  ///< number of grid::solid()
 };
 
 /// Returns the solid boxes and bodies with loads, in the order of run_setup::open_faces().
@@ -32,6 +33,8 @@ struct body_load {
   std::vector<double> force;   ///< [direction]
   std::vector<double> torque;  ///< about the origin: [z] in the plane, [x, y, z] in space
   double heat = 0.0;           ///< energy, including the work on a moving wall
+  /// Directions normal to the planes of symmetry that the body touches: it is one part of a symmetric body.
+  std::vector<int> mirrors = {};
 };
 
 /// Returns the loads of all loaded_bodies() in a step.
@@ -52,7 +55,8 @@ struct load_value {
 ///     lift = F·l, lift_direction(),    C_L = lift/(ρU²S/2),
 ///     moment = torque − centre × F,    C_M = moment/(ρU²SL/2), with _x, _y, _z in space,
 ///     heat,                            C_H = heat/(ρ|U|³S/2).
-/// Lift is omitted if it has no direction.
+/// Lift is omitted if it has no direction. Part of a symmetric body has no lift along a mirrored direction,
+/// and no moment along others: those of the whole body vanish.
 std::vector<load_value> loads_in_stream(const body_load& body, const reference_values& stream);
 
 /// Returns the history columns of the torques: torque_NAME of every loaded body in the plane, torque_NAME_x

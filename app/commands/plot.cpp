@@ -55,10 +55,40 @@ void check_what(const std::string& what) {
                     what, what));
 }
 
+/// Returns the names of the folders of results beside a path, as the path would name them.
+std::vector<std::string> results_beside(const fs::path& path) {
+  constexpr std::size_t most = 1000;
+  const fs::path parent = path.parent_path();
+  std::vector<std::string> names;
+  std::error_code problem;
+  for (fs::directory_iterator entry(parent.empty() ? fs::path(".") : parent, problem), end;
+       !problem && entry != end && names.size() < most; entry.increment(problem))
+    if (entry->is_directory(problem) && has_results(entry->path()))
+      names.push_back((parent / entry->path().filename()).string());
+  return names;
+}
+
+/// Refuses LABEL=DIR or DIR without a run in the folder, before Python starts.
+void check_compared(const std::string& what) {
+  const auto label = what.rfind('=');
+  const std::string name = label == std::string::npos ? what : what.substr(label + 1);
+  std::error_code ignored;
+  const bool exists = fs::exists(name, ignored);
+  if (fs::is_directory(name, ignored) && has_results(name)) return;
+  const std::string near = exists ? "" : nearest_word(name, results_beside(name));
+  throw input_error(fmt::format(
+      "cannot compare '{:.200}' ({}); {}", name,
+      exists ? "not a folder of results" : "no folder of this name",
+      near.empty() ? "give the folders of apsis run --out" : fmt::format("did you mean '{}'?", near)));
+}
+
 int plot(const options& given) {
   watch_for_interrupts("the end of the drawing");
-  if (given.compare.empty())
-    for (const auto& what : given.what) check_what(what);
+  for (const auto& what : given.what)
+    if (given.compare.empty())
+      check_what(what);
+    else
+      check_compared(what);
   const drawing pictures;
   std::vector<std::string> arguments;
   for (std::size_t k = 0; k < given.what.size(); ++k) {

@@ -30,6 +30,7 @@ const std::vector<reader> readers = {
     {{"check", "FILE"}, input, output, input},
     {{"show", "FILE"}, input, input, input},
     {{"plot", "FILE"}, input, input, input},
+    {{"plot", "--compare", "both", "FILE"}, input, input, input},
     {{"report", "FILE"}, output, output, output},
 #if APSIS_HAS_DESIGN
     {{"design", "--order", "2", "--stages", "3", "--out", "d.toml", "--from", "FILE"}, input, output, input},

@@ -61,6 +61,23 @@ TEST(plot, compares_runs_and_takes_a_format_and_a_folder) {
   EXPECT_THAT(read(folder.path() / "pictures" / "both.svg"), HasSubstr("</svg>"));
 }
 
+TEST(plot, refuses_to_compare_what_is_no_result) {
+  const work_folder folder;
+  make_runs(folder);
+  fs::create_directory(folder.path() / "empty");
+  const auto refused = [&folder](const std::string& what, const std::string& message) {
+    const auto compared = run_apsis(folder, {"plot", "--compare", "both", "coarse", what});
+    EXPECT_EQ(compared.code, 2) << what;
+    EXPECT_THAT(compared.err, HasSubstr(message));
+    EXPECT_FALSE(fs::exists(folder.path() / "both.png"));
+  };
+  refused("fien", "cannot compare 'fien' (no folder of this name); did you mean 'fine'?");
+  refused("few=./corse", "cannot compare './corse' (no folder of this name); did you mean './coarse'?");
+  refused("elsewhere/fine",
+          "cannot compare 'elsewhere/fine' (no folder of this name); give the folders of apsis run --out");
+  refused("empty", "cannot compare 'empty' (not a folder of results); give the folders of apsis run --out");
+}
+
 TEST(report, is_one_page_and_goes_with_the_results_that_it_reports) {
   const work_folder folder;
   make_runs(folder);

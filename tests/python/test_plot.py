@@ -73,6 +73,11 @@ def test_the_next_run_removes_the_pictures_that_nobody_changed(tmp_path):
     assert not (tmp_path / "elsewhere" / ".written").exists()
 
 
+def test_a_missing_folder_cannot_be_compared(tmp_path, capsys):
+    assert command.main([f"a={tmp_path}/nowhere", "--compare", "both"]) == 2
+    assert f"error: cannot compare '{tmp_path}/nowhere' (no folder of this name)" in capsys.readouterr().err
+
+
 def test_f_is_drawn_over_velocity_and_position(tmp_path):
     computed = run(tmp_path, "paper/bgk-mixed", *SMALL_BGK)
     figure = distribution_figure(read_result(tmp_path))

@@ -92,6 +92,8 @@ def compare(what: list[str], slice_at: str | None) -> Iterable[tuple[str, Any]]:
     runs = []
     for word in what:
         label, separator, folder = word.rpartition("=")
+        if not Path(folder).is_dir():
+            raise PictureError(f"cannot compare '{folder}' (no folder of this name); give the folders of apsis run --out", 2)
         runs.append((label if separator else Path(folder).resolve().name, run_result.read_result(folder)))
     for line in comparison.differences(runs):
         print(printable(line))

@@ -10,6 +10,14 @@ from numpy.typing import NDArray
 from .errors import InputError
 
 
+def type_of(value: Any) -> str:
+    """Returns the type of a value with its article for messages: "an int", "a str", "an ndarray"; "None" for None."""
+    if value is None:
+        return "None"
+    name = type(value).__name__
+    return f"{'an' if name[:1].lower() in 'aeio' or name.startswith('ndarray') else 'a'} {name}"
+
+
 def number(name: str, value: Any, positive: bool = False) -> float:
     """Returns `value` as a float. Raises InputError unless it is a real number and, if `positive`, finite and above 0."""
     if isinstance(value, (str, bytes, bool, np.bool_)) or value is None:
@@ -38,7 +46,7 @@ def finite(name: str, value: Any, lowest: float = -math.inf, highest: float = ma
 def text(name: str, value: Any) -> str:
     """Returns `value` as a str. Raises InputError unless it is one."""
     if not isinstance(value, str):
-        raise InputError(f"{name} is a {type(value).__name__} (a name is needed); give one")
+        raise InputError(f"{name} is {type_of(value)} (a name is needed); give one")
     return value
 
 

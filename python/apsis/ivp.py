@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _core
-from .arguments import number, real_array, text
+from .arguments import number, real_array, text, type_of
 from .derivatives import as_square_matrix
 from .errors import CostWarning, InputError, NumericalError
 from .methods import Method, method as find_method
@@ -170,14 +170,14 @@ def _extra(args: Sequence[Any] | None) -> tuple[Any, ...]:
     try:
         return tuple(args)
     except TypeError:
-        raise InputError(f"args is a {type(args).__name__} (it lists the extra arguments of the functions); write args=({args!r},)") from None
+        raise InputError(f"args is {type_of(args)} (it lists the extra arguments of the functions); write args=({args!r},)") from None
 
 
 def _integrator(method: str | Method, bounded: bool, tolerance: float | None) -> tuple[Method, str]:
     if isinstance(method, Method):
         return method, ""
     if not isinstance(method, str):
-        raise InputError(f"method is a {type(method).__name__} (it must be a name, a file or an apsis.Method); see apsis.methods()")
+        raise InputError(f"method is {type_of(method)} (it must be a name, a file or an apsis.Method); see apsis.methods()")
     if method in SCIPY_METHODS:
         raise InputError(f"method '{method}' is one of SciPy's (methods here have other names); leave method out, or see apsis.methods()")
     if method != "auto":
@@ -249,11 +249,11 @@ def _is_krylov(solver: str, problem: System, n: int, integrator: Method) -> bool
 
 def _event_functions(events: Function | Sequence[Function] | None) -> list[Function]:
     if events is not None and not callable(events) and not isinstance(events, Iterable):
-        raise InputError(f"events is a {type(events).__name__} (it must be a function or a list of functions); give functions of t and y")
+        raise InputError(f"events is {type_of(events)} (it must be a function or a list of functions); give functions of t and y")
     listed = [] if events is None else [events] if callable(events) else list(events)
     for k, event in enumerate(listed):
         if not callable(event):
-            raise InputError(f"event {k} is a {type(event).__name__} (it must be callable); give a function of t and y")
+            raise InputError(f"event {k} is {type_of(event)} (it must be callable); give a function of t and y")
         for attribute, meaning in (("direction", "1, -1 or 0"), ("terminal", "True, False or a number of zeros")):
             value = getattr(event, attribute, 0)
             whole = isinstance(value, (bool, int, float, np.integer, np.floating, np.bool_)) and float(value).is_integer()

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _core
-from .arguments import finite, number, real_array, whole_number
+from .arguments import finite, number, real_array, type_of, whole_number
 from .errors import InputError
 
 Array = NDArray[np.float64]
@@ -105,7 +105,7 @@ class KineticProblem:
         if isinstance(initial, str):
             return self._core.sample_named(initial)
         if not callable(initial):
-            raise InputError(f"initial is a {type(initial).__name__} (a name or a function of the coordinates is needed); give one")
+            raise InputError(f"initial is {type_of(initial)} (a name or a function of the coordinates is needed); give one")
         return self._core.sample_function(initial, [number("jumps", x) for x in jumps])
 
     def state(self, *, jumps: Sequence[float] = (), **variables: ArrayLike | Callable[..., ArrayLike] | Sequence[Any]) -> Array:

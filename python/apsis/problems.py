@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _core
-from .arguments import number, real_array, text, whole_number
+from .arguments import number, real_array, text, type_of, whole_number
 from .errors import CostWarning, InputError
 from .general import GeneralProblem, collision_functions
 from .kinetic import KineticProblem
@@ -97,7 +97,7 @@ def integrate(problem: RelaxationProblem | GeneralProblem | KineticProblem, u0: 
 
     Raises InputError, NumericalError with step and t, and exceptions of the functions."""
     if not isinstance(problem, (RelaxationProblem, GeneralProblem, KineticProblem)):
-        raise InputError(f"problem is a {type(problem).__name__} (an equation is needed); give an apsis.RelaxationProblem, an "
+        raise InputError(f"problem is {type_of(problem)} (an equation is needed); give an apsis.RelaxationProblem, an "
                          "apsis.GeneralProblem or an apsis.KineticProblem")
     if startup not in ("none", "graded"):
         raise InputError(f"unknown start-up {startup!r} (there is no such name); give \"none\" or \"graded\"")
@@ -142,7 +142,7 @@ def _require_functions(problem: object, needed: Sequence[str], optional: Sequenc
     for name in (*needed, *optional):
         function = getattr(problem, name)
         if not callable(function) and not (function is None and name in optional):
-            raise InputError(f"{name} of the problem is a {type(function).__name__} (it must be callable); give a function")
+            raise InputError(f"{name} of the problem is {type_of(function)} (it must be callable); give a function")
 
 
 def _warn_of_cost(unknowns: int, integrator: Method) -> None:
@@ -174,5 +174,5 @@ def _integrate_general(problem: GeneralProblem, u0: Array, times: list[float], i
 
 def _name(method: object) -> str:
     if not isinstance(method, str):
-        raise InputError(f"method is a {type(method).__name__} (it must be a name, a file or an apsis.Method); see apsis.methods()")
+        raise InputError(f"method is {type_of(method)} (it must be a name, a file or an apsis.Method); see apsis.methods()")
     return method

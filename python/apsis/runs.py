@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _core
-from .arguments import number, whole_number
+from .arguments import number, type_of, whole_number
 from .errors import InputError
 from .methods import html_table
 
@@ -177,12 +177,12 @@ def _arguments(case: Case, overrides: Sequence[str], out: str | Path | None, res
                jumps: Sequence[float]) -> tuple[Any, ...]:
     """Returns the arguments of the compiled part but the communicator. Raises InputError."""
     if not isinstance(case, (str, Path, Mapping)):
-        raise InputError(f"case is a {type(case).__name__} (it must be a name, a file or a mapping); see apsis.cases()")
+        raise InputError(f"case is {type_of(case)} (it must be a name, a file or a mapping); see apsis.cases()")
     for one in overrides:
         if not isinstance(one, str):
-            raise InputError(f"override {one!r} is a {type(one).__name__} (it must be text); write \"key=value\"")
+            raise InputError(f"override {one!r} is {type_of(one)} (it must be text); write \"key=value\"")
     if progress is not None and not callable(progress):
-        raise InputError(f"progress is a {type(progress).__name__} (it must be callable); give a function")
+        raise InputError(f"progress is {type_of(progress)} (it must be callable); give a function")
     text = to_toml(case) if isinstance(case, Mapping) else None
     everything = list(overrides) + ([] if initial is None else ["initial.from=python"])
     return (text, "case" if text is not None else str(case), everything, _path(out), _path(restart),
@@ -196,7 +196,7 @@ def _handle(comm: Any) -> int | None:
     if comm is None:
         return None
     if not hasattr(comm, "py2f"):
-        raise InputError(f"comm is a {type(comm).__name__} (it must be a communicator of mpi4py); give MPI.COMM_WORLD")
+        raise InputError(f"comm is {type_of(comm)} (it must be a communicator of mpi4py); give MPI.COMM_WORLD")
     return int(comm.py2f())
 
 

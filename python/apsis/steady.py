@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .arguments import number, real_array, whole_number
+from .arguments import number, real_array, type_of, whole_number
 from .errors import InputError
 from .kinetic import KineticProblem
 
@@ -46,7 +46,7 @@ def solve_steady(problem: KineticProblem, u0: ArrayLike, tolerance: float = 1e-8
     Raises InputError for models that do not relax to an equilibrium, without space, and where ε = 0; NumericalError if the
     iteration diverges, stalls, or is not complete after `iterations`. docs/steady.md describes the method."""
     if not isinstance(problem, KineticProblem):
-        raise InputError(f"problem is a {type(problem).__name__} (an equation on a mesh is needed); give an apsis.KineticProblem")
+        raise InputError(f"problem is {type_of(problem)} (an equation on a mesh is needed); give an apsis.KineticProblem")
     number("tolerance", tolerance, positive=True)
     if whole_number("iterations", iterations) < 1:
         raise InputError(f"iterations is {iterations} (at least one is needed); give more")

@@ -7,6 +7,7 @@ from typing import Any, Callable, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from .arguments import type_of
 from .derivatives import TimedDerivatives, as_square_matrix
 from .errors import InputError
 
@@ -28,7 +29,7 @@ class System:
         for name, function in (("transport", transport), ("collision", collision), ("forward_euler_step", forward_euler_step),
                                ("admissible", admissible)):
             if function is not None and not callable(function):
-                raise InputError(f"{name} is a {type(function).__name__} (it must be callable); give a function or None")
+                raise InputError(f"{name} is {type_of(function)} (it must be callable); give a function or None")
         self.nfev = self.njev = 0
         self.places: tuple[int, list[tuple[int, int]]] | None = None
         self.by = ""

@@ -20,7 +20,7 @@ std::vector<py::ssize_t> shape_of(const py::array& a) {
   return {a.shape(), a.shape() + a.ndim()};
 }
 
-/// "an array of shape (3,) and type complex128", "None", "a str".
+/// "an array of shape (3,) and type complex128", "None", "a value of type str".
 std::string type_and_size(const py::object& value) {
   if (value.is_none()) return "None";
   if (py::isinstance<py::array>(value)) {

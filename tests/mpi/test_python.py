@@ -50,7 +50,7 @@ DIFFERENT = {
                  "process 1 was given another case than process 0 ('end = 0.02' instead of 'end = 0.01'); give all processes the same"),
     "restart": ('"time.end=0.01"', '{} if first else {"restart": "none.h5"}', "process 1 was given another case than process 0"),
     "no folder": ('"time.end=0.01"', '{"out": "out"} if first else {}', "process 1 was given another case than process 0"),
-    "argument": ('"time.end=0.01" if first else 3', "{}", "process 1: override 3 is a int"),
+    "argument": ('"time.end=0.01" if first else 3', "{}", "process 1: override 3 is an int"),
     "case": ('"time.end=0.01" if first else "time.ent=1"', "{}", "unknown key 'time.ent'"),
 }
 
@@ -97,7 +97,7 @@ class Python(Folder):
         done = self.run_python(FAILING, 2)
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertEqual(done.stdout.count("refused"), 2, done.stdout + done.stderr)
-        self.assertEqual(done.stdout.count("wrong comm is a int (it must be a communicator of mpi4py)"), 2, done.stdout)
+        self.assertEqual(done.stdout.count("wrong comm is an int (it must be a communicator of mpi4py)"), 2, done.stdout)
 
     def test_different_cases_and_arguments_are_refused_on_all(self):
         for name, (override, options, message) in DIFFERENT.items():

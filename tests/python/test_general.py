@@ -122,7 +122,7 @@ def test_exceptions_of_functions_leave_as_they_are(name):
 
 @pytest.mark.parametrize("change, arguments, message", [
     (dict(collision=lambda u: u[:1]), {}, r"collision returned an array of shape \(1,\)"), (dict(collision=lambda u: None), {}, "collision returned None"),
-    (dict(collision=3.0), {}, "collision of the problem is a float"), (dict(collision=None), {}, "collision of the problem is a NoneType"),
+    (dict(collision=3.0), {}, "collision of the problem is a float"), (dict(collision=None), {}, "collision of the problem is None "),
     (dict(jacobian=lambda u: np.eye(3)), {}, r"jacobian returned an array of shape \(3, 3\)"),
     (dict(jacobian=lambda u: 1j * np.eye(2)), {}, "jacobian returned an array .* type complex128"),
     (dict(transport=lambda t, u: u), dict(method="imdrk-9-5"), "implicit only and the problem has transport"),

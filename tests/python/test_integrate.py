@@ -104,7 +104,7 @@ def test_exceptions_of_the_functions_propagate():
     (dict(rate=3.0), {}, "rate of the problem is a float"), (dict(epsilon="small"), {}, "epsilon is 'small'"),
     ({}, dict(u0=[1.0, None]), "u0 is not an array of real numbers"), ({}, dict(u0=[1.0, 1.0j]), "u0 is an array of type complex128"),
     ({}, dict(t=("a", "b")), "t is an array of type"), ({}, dict(t=(0.0, np.nan)), "not finite|t1|interval"),
-    ({}, dict(dt="0.1"), "dt is '0.1'"), ({}, dict(dt=np.nan), "dt is not a positive number"), ({}, dict(method=3), "method is a int"),
+    ({}, dict(dt="0.1"), "dt is '0.1'"), ({}, dict(dt=np.nan), "dt is not a positive number"), ({}, dict(method=3), "method is an int"),
     ({}, dict(dt=None, safety=-1), "safety = -1 is not a positive number"), ({}, dict(safety=np.nan), "safety = nan is not a positive number"),
     ({}, dict(tolerance=True), "tolerance is True"),
     (dict(epsilon=-1.0), {}, "epsilon is negative"), ({}, dict(dt=None), "the step size is unknown"),

@@ -342,6 +342,10 @@ def test_results_without_a_picture_are_refused(tmp_path, monkeypatch, capsys):
         assert command.main([str(tmp_path / "run")]) == 4, file
         assert file in capsys.readouterr().err
         (tmp_path / "run" / file).write_bytes(kept)
+    for text, found in (("[]", "a list"), ("3", "a number"), ("null", "null")):
+        (tmp_path / "run" / "manifest.json").write_text(text)
+        assert command.main([str(tmp_path / "run")]) == 4
+        assert f"manifest.json' is not a JSON object (it is {found}); give what apsis wrote" in capsys.readouterr().err
     assert command.main([str(tmp_path / "run"), "--out", str(tmp_path / "none.json")]) == 4
 
 

@@ -148,13 +148,13 @@ def test_results_are_values_with_short_representations():
 
 
 @pytest.mark.parametrize("arguments, message", [
-    (dict(case=3), "case is a int"), (dict(threads=1.5), "threads is 1.5"), (dict(threads=True), "threads is True"),
+    (dict(case=3), "case is an int"), (dict(threads=1.5), "threads is 1.5"), (dict(threads=True), "threads is True"),
     (dict(threads=10**12), "out of range"), (dict(wall=-1), "wall = -1 is not a positive number"),
-    (dict(wall=float("nan")), "wall = nan"), (dict(wall="1"), "wall is '1'"), (dict(progress=1), "progress is a int")])
+    (dict(wall=float("nan")), "wall = nan"), (dict(wall="1"), "wall is '1'"), (dict(progress=1), "progress is an int")])
 def test_bad_arguments_of_a_run_have_a_message(arguments, message):
     with pytest.raises(apsis.InputError, match=message):
         apsis.run(**({"case": "paper/ode"} | arguments))
-    with pytest.raises(apsis.InputError, match="override 3 is a int"):
+    with pytest.raises(apsis.InputError, match="override 3 is an int"):
         apsis.run("paper/ode", 3)
 
 

@@ -112,11 +112,14 @@ def read_any_json(path: Path) -> Any:
         raise PictureError(f"'{path}' is not JSON ({problem}); give what apsis wrote") from problem
 
 
+_JSON_KINDS: dict[type, str] = {list: "a list", str: "text", int: "a number", float: "a number", bool: "a truth value", type(None): "null"}
+
+
 def read_json(path: Path) -> dict[str, Any]:
     """Reads a JSON object. Raises PictureError."""
     document = read_any_json(path)
     if not isinstance(document, dict):
-        raise PictureError(f"'{path}' is not a JSON object (it is a {type(document).__name__}); give what apsis wrote")
+        raise PictureError(f"'{path}' is not a JSON object (it is {_JSON_KINDS[type(document)]}); give what apsis wrote")
     return document
 
 

@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _core
 from .arguments import number, real_array, text, type_of
+from .dense import StepOutput, Steps
 from .derivatives import as_square_matrix
 from .errors import CostWarning, InputError, NumericalError
 from .methods import Method, method as find_method
@@ -63,7 +64,8 @@ def solve_ivp(transport: Function | None, collision: Function | None, t_span: Se
     failed), message and success. Further entries are method, steps, rejected and derivatives.
 
     A shorter step of the method computes the solution inside a step, for t_eval, sol and events. This solution has the order of the
-    method, and is positive if steps are. Each of its values costs a step.
+    method, and is positive if steps are. Each of its values costs a step. The result can be pickled with sol if the functions can be,
+    such as those of a module; unpickled, sol has the same values.
 
     Raises InputError for arguments that cannot be used, and exceptions of the functions."""
     scipy = _scipy()
@@ -83,10 +85,12 @@ def solve_ivp(transport: Function | None, collision: Function | None, t_span: Se
     masses = None if mass is None else (start.size, entries_of(as_square_matrix("mass is", mass, start.size)))
     if np.any(integrator.ddot != 0):
         problem.require_exact(start, integrator.name)
-    evolution = _core.Evolution(problem, integrator._core, relative, absolute, *_step_lengths(dt, first_step, max_step, forward_euler_step is not None),
-                                text("controller", controller), _is_krylov(solver, problem, start.size, integrator), problem.places, masses,
-                                [int(np.sign(getattr(e, "direction", 0))) for e in listed], [_endings(e) > 0 for e in listed])
-    record = _Record(evolution, wanted, dense_output, span[0], start)
+    arguments = (relative, absolute, *_step_lengths(dt, first_step, max_step, forward_euler_step is not None),
+                 text("controller", controller), _is_krylov(solver, problem, start.size, integrator), problem.places, masses)
+    evolution = _core.Evolution(problem, integrator._core, *arguments, [int(np.sign(getattr(e, "direction", 0))) for e in listed],
+                                [_endings(e) > 0 for e in listed])
+    inside = Steps(problem, integrator, arguments, evolution) if dense_output else None
+    record = _Record(evolution, wanted, inside, span[0], start)
     status, message = _march(evolution, record, span, start, listed)
     found = [[(t, y) for k, t, y in evolution.found if k == number_of] for number_of in range(len(listed))]
     return scipy.optimize.OptimizeResult(
@@ -98,27 +102,11 @@ def solve_ivp(transport: Function | None, collision: Function | None, t_span: Se
         steps=evolution.steps, rejected=evolution.rejected, derivatives=problem.by)
 
 
-class StepOutput:
-    """The solution inside a step, an interpolant of scipy.integrate.OdeSolution: a function of a time or of an array of times."""
-
-    def __init__(self, evolution: Any, t_old: float, y_old: Array, t: float, y: Array) -> None:
-        self.t_old, self.t, self.t_min, self.t_max = t_old, t, t_old, t
-        self._evolution, self._before, self._after = evolution, y_old, y
-
-    def __call__(self, t: ArrayLike) -> Array:
-        """Returns y(t) of shape (n,), or (n, k) for k times."""
-        times = np.asarray(t, dtype=np.float64)
-        return self._at(float(times)) if times.ndim == 0 else np.array([self._at(float(x)) for x in times]).T
-
-    def _at(self, t: float) -> Array:
-        return self._after.copy() if t == self.t else np.array(self._evolution.step_from(self.t_old, self._before, t))
-
-
 class _Record:
     """The times and states of a result, and its dense output, collected step by step."""
 
-    def __init__(self, evolution: Any, wanted: list[float] | None, dense: bool, t0: float, y0: Array) -> None:
-        self._evolution, self._wanted, self._dense = evolution, wanted, dense
+    def __init__(self, evolution: Any, wanted: list[float] | None, inside: Steps | None, t0: float, y0: Array) -> None:
+        self._evolution, self._wanted, self._inside = evolution, wanted, inside
         self.t: list[float] = [t0] if wanted is None or wanted[:1] == [t0] else []
         self.y: list[Array] = [y0] if self.t else []
         self.ends, self.steps = [t0], list[StepOutput]()
@@ -127,9 +115,9 @@ class _Record:
     def add_step(self) -> None:
         """Adds the last step of the evolution."""
         begin, t, y = self._evolution.begin_of_step, self._evolution.t, self._evolution.u
-        if self._dense:
+        if self._inside is not None:
             self.ends.append(t)
-            self.steps.append(StepOutput(self._evolution, begin, self._before, t, y))
+            self.steps.append(StepOutput(self._inside, begin, self._before, t, y))
             self._before = y
         if self._wanted is None:
             self.t.append(t)

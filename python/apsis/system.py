@@ -26,6 +26,8 @@ class System:
 
     def __init__(self, transport: Function | None, collision: Function | None, forward_euler_step: Function | None,
                  admissible: Function | None, events: Sequence[Function], args: tuple[Any, ...], vectorized: bool) -> None:
+        self._functions = (transport, collision, forward_euler_step, admissible)
+        self._prepared: tuple[Any, ...] = ()
         for name, function in (("transport", transport), ("collision", collision), ("forward_euler_step", forward_euler_step),
                                ("admissible", admissible)):
             if function is not None and not callable(function):
@@ -42,6 +44,7 @@ class System:
 
     def prepare(self, interval: tuple[float, float], y0: Array, jac: Any, sparsity: Any) -> None:
         """Sets up the derivatives of Q. Raises InputError if jac or sparsity cannot be used."""
+        self._prepared = (interval, y0, jac, sparsity)
         if self.collision is None:
             if jac is not None or sparsity is not None:
                 raise InputError("jac or jac_sparsity is given without collision (they are those of Q); remove it, or give collision")
@@ -52,6 +55,10 @@ class System:
         columns = self._all_columns if self._vectorized and self._pattern is None else None
         self._derivatives = TimedDerivatives(self.collision, jacobian, y0, interval, columns)
         self.by = self._derivatives.by
+
+    def __reduce__(self) -> tuple[Callable[..., System], tuple[Any, ...]]:
+        """Copies the functions without events, and the derivatives, to be prepared again."""
+        return _copy, (self._functions, self._args, self._vectorized, self._prepared)
 
     def require_exact(self, y0: Array, method: str) -> None:
         """Raises InputError unless jac agrees with differences of collision, for methods whose solutions depend on Q'."""
@@ -127,6 +134,12 @@ class System:
             k = int(np.argmax(outside))
             raise InputError(f"jac has an entry in row {rows[k]} and column {columns[k]} (jac_sparsity, or a sparse jac at the start, has "
                              "none there); give jac_sparsity with all places")
+
+
+def _copy(functions: tuple[Any, Any, Any, Any], args: tuple[Any, ...], vectorized: bool, prepared: tuple[Any, Any, Any, Any]) -> System:
+    system = System(*functions, (), args, vectorized)
+    system.prepare(*prepared)
+    return system
 
 
 def entries_of(matrix: Any) -> list[tuple[int, int, float]]:

@@ -1,5 +1,6 @@
 """apsis.solve_ivp has the arguments and results of scipy.integrate.solve_ivp, for stiff problems and for separate T and Q."""
 import math
+import pickle
 
 import apsis
 import numpy as np
@@ -148,6 +149,52 @@ def test_dense_output_is_positive_where_steps_are():
     radau = scipy_integrate.solve_ivp(decays, (0, 1), [1.0, 0.0], method="Radau", rtol=1e-2, atol=1e-4, dense_output=True)
     assert found.y.min() >= 0 and inside.min() >= 0
     assert radau.sol(np.geomspace(1e-7, 1, 400)).min() < 0  # dense output is not positive by itself
+
+
+def positive(y):
+    return np.all(y >= 0)
+
+
+@pytest.mark.parametrize("arguments", [
+    dict(method="imdrk-9-5", admissible=positive), dict(jac=[[-1e4, 0.0], [1e4, -1.0]]), dict(method="extrapolated-euler-5", mass=[[2.0, 1.0], [0.5, 3.0]]),
+    dict(method="md-imex-8-3-mixed", dt=0.01)], ids=["admissible", "jac", "mass", "dt"])
+def test_a_pickled_result_has_the_same_values_inside_steps(arguments):
+    found = apsis.solve_ivp(None, decays, (0, 1), [1.0, 0.0], rtol=1e-2, atol=1e-4, dense_output=True, **arguments)
+    copy = pickle.loads(pickle.dumps(found))
+    times = np.geomspace(1e-7, 1, 50)
+    assert isinstance(copy.sol, scipy_integrate.OdeSolution) and copy.steps == found.steps
+    np.testing.assert_array_equal(copy.sol(times), found.sol(times))
+    np.testing.assert_array_equal(copy.y, found.y)
+    assert "admissible" not in arguments or copy.sol(times).min() >= 0
+
+
+def test_functions_without_a_name_in_a_module_cannot_be_pickled():
+    found = apsis.solve_ivp(None, lambda t, y: -y, (0, 1), [1.0], dense_output=True)
+    with pytest.raises((pickle.PicklingError, AttributeError), match="lambda"):
+        pickle.dumps(found)
+    found.sol = None
+    np.testing.assert_array_equal(pickle.loads(pickle.dumps(found)).y, found.y)
+
+
+def test_dense_output_at_many_times_has_the_values_of_single_times():
+    found = apsis.solve_ivp(None, decays, (0, 1), [1.0, 0.0], rtol=1e-3, dense_output=True)
+    times = np.array([0.7, 1e-5, 0.3, 0.7, 1.0, 0.0, 1e-5, *found.t])
+    together = found.sol(times)
+    assert together.shape == (2, len(times))
+    np.testing.assert_array_equal(together, np.stack([found.sol(t) for t in times], axis=-1))
+    calls = []
+
+    def counted(t, y):
+        calls.append(t)
+        return decays(t, y)
+
+    found = apsis.solve_ivp(None, counted, (0, 1), [1.0, 0.0], rtol=1e-3, dense_output=True)
+    costs = []
+    for many in ([0.7], [0.7] * 50):
+        calls.clear()
+        found.sol(np.array(many))
+        costs.append(len(calls))
+    assert costs[0] == costs[1] > 0
 
 
 def brusselator(t, y):

@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _core
 from .arguments import number, type_of, whole_number
+from .case_text import CaseText
 from .errors import InputError
 from .methods import html_table
 
@@ -138,6 +139,8 @@ def run(case: Case, *overrides: str, out: str | Path | None = None, restart: str
         initial: Initial | None = None, jumps: Sequence[float] = (), comm: Any = None) -> Result | None:
     """Runs a case: the name of a built-in one, a file, or a mapping such as {"model": {"name": "bgk"}, …}.
 
+    Values of a mapping are numbers, text, lists and mappings; arrays, numbers of NumPy, tuples and paths become these.
+
         overrides   "key=value", such as "space.cells=80"
         out         folder for the results
         restart     checkpoint to continue from, such as "results/one/checkpoint.h5"
@@ -161,18 +164,25 @@ def run(case: Case, *overrides: str, out: str | Path | None = None, restart: str
     and after an exception of `progress`, `out` has a checkpoint and the results so far."""
     handle = _handle(comm)
     try:
-        arguments = (*_arguments(case, overrides, out, restart, wall, threads, device, progress, initial, jumps), handle)
+        text = CaseText(case) if isinstance(case, Mapping) else None
+        arguments = (*_arguments(case, text, overrides, out, restart, wall, threads, device, progress, initial, jumps), handle)
     except Exception as problem:
         if handle is not None:
             _core.refuse_on_all(handle, str(problem))
         raise
-    got = _core.run(*arguments)
+    try:
+        got = _core.run(*arguments)
+    except InputError as problem:
+        message = str(problem) if text is None else text.with_keys(str(problem))
+        if message == str(problem):
+            raise
+        raise InputError(message) from problem.__cause__
     if got is None:
         return None
     return Result(summary=json.loads(got.pop("json")), **got)
 
 
-def _arguments(case: Case, overrides: Sequence[str], out: str | Path | None, restart: str | Path | None, wall: float | None,
+def _arguments(case: Case, text: CaseText | None, overrides: Sequence[str], out: str | Path | None, restart: str | Path | None, wall: float | None,
                threads: int | None, device: str | int | None, progress: Progress | None, initial: Initial | None,
                jumps: Sequence[float]) -> tuple[Any, ...]:
     """Returns the arguments of the compiled part but the communicator. Raises InputError."""
@@ -183,9 +193,8 @@ def _arguments(case: Case, overrides: Sequence[str], out: str | Path | None, res
             raise InputError(f"override {one!r} is {type_of(one)} (it must be text); write \"key=value\"")
     if progress is not None and not callable(progress):
         raise InputError(f"progress is {type_of(progress)} (it must be callable); give a function")
-    text = to_toml(case) if isinstance(case, Mapping) else None
     everything = list(overrides) + ([] if initial is None else ["initial.from=python"])
-    return (text, "case" if text is not None else str(case), everything, _path(out), _path(restart),
+    return (None if text is None else text.text, str(case) if text is None else "case", everything, _path(out), _path(restart),
             None if wall is None else number("wall", wall, positive=True),
             None if threads is None else whole_number("threads", threads),
             None if device is None else str(device), progress,
@@ -198,28 +207,6 @@ def _handle(comm: Any) -> int | None:
     if not hasattr(comm, "py2f"):
         raise InputError(f"comm is {type_of(comm)} (it must be a communicator of mpi4py); give MPI.COMM_WORLD")
     return int(comm.py2f())
-
-
-def to_toml(case: Mapping[str, Any]) -> str:
-    """Returns the text of a case file."""
-    plain = [f"{key} = {_value(value)}" for key, value in case.items() if not isinstance(value, Mapping)]
-    sections = [f"[{key}]\n" + "\n".join(f"{name} = {_value(x)}" for name, x in value.items())
-                for key, value in case.items() if isinstance(value, Mapping)]
-    return "\n".join(plain + sections) + "\n"
-
-
-def _value(x: Any) -> str:
-    if isinstance(x, (bool, np.bool_)):
-        return "true" if x else "false"
-    if isinstance(x, (int, np.integer)):
-        return str(int(x))
-    if isinstance(x, (float, np.floating)):
-        return repr(float(x))
-    if isinstance(x, Mapping):
-        return "{" + ", ".join(f"{name} = {_value(one)}" for name, one in x.items()) + "}"
-    if isinstance(x, (list, tuple, np.ndarray)):
-        return "[" + ", ".join(_value(one) for one in x) + "]"
-    return json.dumps(str(x), ensure_ascii=False)
 
 
 def _path(path: str | Path | None) -> str | None:

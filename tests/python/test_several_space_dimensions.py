@@ -180,7 +180,7 @@ def test_a_run_reports_its_memory(tmp_path):
     program = Path(apsis.__file__).parents[2] / "app" / "apsis"
     if not program.exists():
         pytest.skip("the program was not built beside the package")
-    (tmp_path / "case.toml").write_text(apsis.runs.to_toml(VORTEX))
+    (tmp_path / "case.toml").write_text(apsis.case_text.to_toml(VORTEX))
     done = subprocess.run([program, "run", "case.toml"], cwd=tmp_path, capture_output=True, text=True, check=True)
     assert "case.toml: needs 2 MB of memory (16 x 12 cells x 144 unknowns)" in done.stderr
     assert "no probes, slices and surfaces are written" in done.stderr

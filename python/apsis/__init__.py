@@ -11,7 +11,7 @@ All quantities are dimensionless.
 """
 from ._core import model_names as models
 from ._core import version as _version
-from .errors import ClaimError, CostWarning, Error, FileError, InputError, NumericalError
+from .errors import ApsisWarning, ClaimError, CostWarning, Error, FileError, InputError, NumericalError
 from .general import GeneralProblem
 from .ivp import solve_ivp
 from .kinetic import KineticProblem
@@ -23,6 +23,6 @@ from .stored import open
 
 __version__: str = _version()
 
-__all__ = ["Case", "Certificate", "ClaimError", "CostWarning", "Error", "FileError", "GeneralProblem", "InputError", "KineticProblem", "Method", "NumericalError",
+__all__ = ["ApsisWarning", "Case", "Certificate", "ClaimError", "CostWarning", "Error", "FileError", "GeneralProblem", "InputError", "KineticProblem", "Method", "NumericalError",
            "OrderCondition", "RelaxationProblem", "Result", "Solution", "SteadyState", "cases", "integrate", "method", "methods", "models",
            "open", "order_conditions", "read_method", "run", "solve_ivp", "solve_steady"]

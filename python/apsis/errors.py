@@ -29,7 +29,11 @@ class FileError(Error, OSError):
     exit_code = 4
 
 
-class CostWarning(UserWarning):
+class ApsisWarning(UserWarning):
+    """A likely mistake, such as a step that is unfit for a method; the computation continues. Base class of all warnings of Apsis."""
+
+
+class CostWarning(ApsisWarning):
     """A computation takes far longer than another one with the same result."""
 
 

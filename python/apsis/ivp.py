@@ -2,7 +2,6 @@
 from __future__ import annotations
 
 import math
-import warnings
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any, Callable, Sequence
 
@@ -14,6 +13,7 @@ from .arguments import number, real_array, text, type_of
 from .dense import StepOutput, Steps
 from .derivatives import as_square_matrix
 from .errors import CostWarning, InputError, NumericalError
+from .library_warnings import LibraryWarnings, warn
 from .methods import Method, method as find_method
 from .system import System, entries_of
 
@@ -91,7 +91,8 @@ def solve_ivp(transport: Function | None, collision: Function | None, t_span: Se
                                 [_endings(e) > 0 for e in listed])
     inside = Steps(problem, integrator, arguments, evolution) if dense_output else None
     record = _Record(evolution, wanted, inside, span[0], start)
-    status, message = _march(evolution, record, span, start, listed)
+    with LibraryWarnings():
+        status, message = _march(evolution, record, span, start, listed)
     found = [[(t, y) for k, t, y in evolution.found if k == number_of] for number_of in range(len(listed))]
     return scipy.optimize.OptimizeResult(
         t=np.array(record.t), y=np.array(record.y).reshape(-1, start.size).T.copy(),
@@ -230,8 +231,8 @@ def _is_krylov(solver: str, problem: System, n: int, integrator: Method) -> bool
     if solver == "krylov" and problem.places is not None:
         raise InputError("solver=\"krylov\" has no meaning with jac_sparsity or a sparse jac (systems are factorized); remove one of them")
     if solver == "dense" and problem.places is None and n > 200 and problem.collision is not None and integrator.kind != "explicit":
-        warnings.warn(f"a stage has {n} unknowns (each of its Newton steps takes about {n:.0e}^3 = {n**3:.0e} operations); give "
-                      "jac_sparsity, or solver=\"krylov\" if Q is not stiff", CostWarning, stacklevel=3)
+        warn(f"a stage has {n} unknowns (each of its Newton steps takes about {n:.0e}^3 = {n**3:.0e} operations); give "
+             "jac_sparsity, or solver=\"krylov\" if Q is not stiff", CostWarning)
     return solver == "krylov"
 
 

@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from . import _core
 from .arguments import finite, number, real_array, type_of, whole_number
 from .errors import InputError
+from .library_warnings import LibraryWarnings
 
 Array = NDArray[np.float64]
 Interval = Sequence[float]
@@ -102,11 +103,11 @@ class KineticProblem:
         `initial` is a name of the model's data, or a function of the coordinates of a point that returns all components.
         Averages are exact to rounding if it is smooth between the `jumps` (in increasing order, on a line).
         Raises InputError if the discrete model does not support the data."""
-        if isinstance(initial, str):
-            return self._core.sample_named(initial)
-        if not callable(initial):
+        if not isinstance(initial, str) and not callable(initial):
             raise InputError(f"initial is {type_of(initial)} (a name or a function of the coordinates is needed); give one")
-        return self._core.sample_function(initial, [number("jumps", x) for x in jumps])
+        with LibraryWarnings():
+            return self._core.sample_named(initial) if isinstance(initial, str) else self._core.sample_function(
+                initial, [number("jumps", x) for x in jumps])
 
     def state(self, *, jumps: Sequence[float] = (), **variables: ArrayLike | Callable[..., ArrayLike] | Sequence[Any]) -> Array:
         """Returns the state with these variables of the model: of a gas the Maxwellians of rho, u and T, or f (g and h of a
@@ -121,7 +122,8 @@ class KineticProblem:
         and of v_x, v_y, v_z, an array [velocities] for each velocity dimension. They return an array [velocities]. Functions give
         averages as in sample(), or point values. Arrays are the averages, or the point values, of cells. Raises InputError with the
         point or the cell."""
-        return self._core.state(variables, sorted(number("jumps", x) for x in jumps))
+        with LibraryWarnings():
+            return self._core.state(variables, sorted(number("jumps", x) for x in jumps))
 
     def fields(self, u: ArrayLike) -> dict[str, Array]:
         """Returns the macroscopic fields of a state by name, [cells] each."""

@@ -1,9 +1,8 @@
 """Problems defined by functions on arrays."""
 from __future__ import annotations
 
-import warnings
 from dataclasses import dataclass
-from typing import Any, Callable, Sequence
+from typing import Any, Callable, Sequence, Union
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -13,9 +12,11 @@ from .arguments import number, real_array, text, type_of, whole_number
 from .errors import CostWarning, InputError
 from .general import GeneralProblem, collision_functions
 from .kinetic import KineticProblem
+from .library_warnings import LibraryWarnings, warn
 from .methods import Method, html_table, method as find_method
 
 Array = NDArray[np.float64]
+StepsBy = tuple[Union[float, None], float, Union[int, None], Union[float, None], str]  # dt, safety, startup_growth, tolerance, controller
 
 
 @dataclass
@@ -88,7 +89,7 @@ def integrate(problem: RelaxationProblem | GeneralProblem | KineticProblem, u0: 
         threads         of a problem on a mesh; all processors for large problems by default, and results do not depend on it
 
     The result has the chosen method and the reason. Without dt, and with forward_euler_step, admissible or positivity, "auto" preserves
-    bounds. A warning on standard error names a better method if dt is unfit for ε (docs/plateaus.md). On a mesh r Δt_FE is at most the
+    bounds. An ApsisWarning names a better method if dt is unfit for ε (docs/plateaus.md). On a mesh r Δt_FE is at most the
     linear stability limit (Certificate.cfl_limits).
 
     The estimated error of a step is the largest difference to the embedded solution of the method. With a tolerance, steps are shortened
@@ -112,15 +113,21 @@ def integrate(problem: RelaxationProblem | GeneralProblem | KineticProblem, u0: 
                 whole_number("startup_growth", startup_growth) if startup == "graded" else None,
                 None if tolerance is None else number("tolerance", tolerance), text("controller", controller))
     times_wanted = real_array("t", t).ravel().tolist()
+    with LibraryWarnings():
+        return _integrate(problem, real_array("u0", u0), times_wanted, integrator, steps_by, reason, threads)
+
+
+def _integrate(problem: RelaxationProblem | GeneralProblem | KineticProblem, u0: Array, times_wanted: list[float], integrator: Method,
+               steps_by: StepsBy, reason: str, threads: int | None) -> Solution:
     if isinstance(problem, KineticProblem):
-        return Solution(*problem._core.integrate(real_array("u0", u0), times_wanted, integrator._core, *steps_by,
+        return Solution(*problem._core.integrate(u0, times_wanted, integrator._core, *steps_by,
                                                  None if threads is None else whole_number("threads", threads)), integrator.name, reason)
     if isinstance(problem, GeneralProblem):
-        return _integrate_general(problem, real_array("u0", u0), times_wanted, integrator, steps_by, reason)
+        return _integrate_general(problem, u0, times_wanted, integrator, steps_by, reason)
     _require_functions(problem, ("transport", "moments", "equilibrium", "rate"), ("forward_euler_step", "admissible"))
     times, states, steps, rejected = _core.integrate(
         problem.transport, problem.moments, problem.equilibrium, problem.rate, problem.forward_euler_step, problem.admissible,
-        number("epsilon", problem.epsilon), real_array("u0", u0), times_wanted, integrator._core, *steps_by)
+        number("epsilon", problem.epsilon), u0, times_wanted, integrator._core, *steps_by)
     return Solution(times, states, steps, rejected, integrator.name, reason)
 
 
@@ -149,12 +156,12 @@ def _warn_of_cost(unknowns: int, integrator: Method) -> None:
     """A warning before an expensive run."""
     if unknowns <= 200 or integrator.kind == "explicit":
         return
-    warnings.warn(f"a stage has {unknowns} unknowns (each of its Newton steps takes about {unknowns:.0e}^3 = {unknowns**3:.0e} operations "
-                  f"and {3 * unknowns} calls of collision); if Q acts cell by cell, give u0 as [cells, unknowns] and local=True, if it "
-                  "is not stiff solver=\"krylov\", or a RelaxationProblem if Q has that form", CostWarning, stacklevel=4)
+    warn(f"a stage has {unknowns} unknowns (each of its Newton steps takes about {unknowns:.0e}^3 = {unknowns**3:.0e} operations "
+         f"and {3 * unknowns} calls of collision); if Q acts cell by cell, give u0 as [cells, unknowns] and local=True, if it "
+         "is not stiff solver=\"krylov\", or a RelaxationProblem if Q has that form", CostWarning)
 
 
-def _integrate_general(problem: GeneralProblem, u0: Array, times: list[float], integrator: Method, steps_by: tuple[Any, ...],
+def _integrate_general(problem: GeneralProblem, u0: Array, times: list[float], integrator: Method, steps_by: StepsBy,
                        reason: str) -> Solution:
     _require_functions(problem, ("collision",), ("transport", "jacobian", "forward_euler_step", "admissible"))
     if u0.size == 0:

@@ -14,6 +14,7 @@ from . import _core
 from .arguments import number, type_of, whole_number
 from .case_text import CaseText
 from .errors import InputError
+from .library_warnings import LibraryWarnings
 from .methods import html_table
 
 Array = NDArray[np.float64]
@@ -161,17 +162,20 @@ def run(case: Case, *overrides: str, out: str | Path | None = None, restart: str
     between their `jumps`. Results and restarts name the data `from = "python"`; a restart takes the state of the checkpoint.
 
     Releases the GIL. Raises InputError, NumericalError, FileError and KeyboardInterrupt, on all processes. After KeyboardInterrupt,
-    and after an exception of `progress`, `out` has a checkpoint and the results so far."""
+    and after an exception of `progress`, `out` has a checkpoint and the results so far. A warning is an ApsisWarning of the module
+    `warnings`; a filter that makes it an exception ends the run as an exception of `progress` does."""
     handle = _handle(comm)
     try:
         text = CaseText(case) if isinstance(case, Mapping) else None
-        arguments = (*_arguments(case, text, overrides, out, restart, wall, threads, device, progress, initial, jumps), handle)
+        warned = LibraryWarnings(text.with_keys if text is not None else lambda message: message)
+        arguments = (*_arguments(case, text, overrides, out, restart, wall, threads, device, _watch(warned, progress), initial, jumps), handle)
     except Exception as problem:
         if handle is not None:
             _core.refuse_on_all(handle, str(problem))
         raise
     try:
-        got = _core.run(*arguments)
+        with warned:
+            got = _core.run(*arguments)
     except InputError as problem:
         message = str(problem) if text is None else text.with_keys(str(problem))
         if message == str(problem):
@@ -183,7 +187,7 @@ def run(case: Case, *overrides: str, out: str | Path | None = None, restart: str
 
 
 def _arguments(case: Case, text: CaseText | None, overrides: Sequence[str], out: str | Path | None, restart: str | Path | None, wall: float | None,
-               threads: int | None, device: str | int | None, progress: Progress | None, initial: Initial | None,
+               threads: int | None, device: str | int | None, progress: Progress, initial: Initial | None,
                jumps: Sequence[float]) -> tuple[Any, ...]:
     """Returns the arguments of the compiled part but the communicator. Raises InputError."""
     if not isinstance(case, (str, Path, Mapping)):
@@ -191,14 +195,24 @@ def _arguments(case: Case, text: CaseText | None, overrides: Sequence[str], out:
     for one in overrides:
         if not isinstance(one, str):
             raise InputError(f"override {one!r} is {type_of(one)} (it must be text); write \"key=value\"")
-    if progress is not None and not callable(progress):
-        raise InputError(f"progress is {type_of(progress)} (it must be callable); give a function")
     everything = list(overrides) + ([] if initial is None else ["initial.from=python"])
     return (None if text is None else text.text, str(case) if text is None else "case", everything, _path(out), _path(restart),
             None if wall is None else number("wall", wall, positive=True),
             None if threads is None else whole_number("threads", threads),
             None if device is None else str(device), progress,
             dict(initial) if isinstance(initial, Mapping) else initial, sorted(number("jumps", x) for x in jumps))
+
+
+def _watch(warned: LibraryWarnings, progress: Progress | None) -> Progress:
+    """Returns a function that passes warnings on while the run continues, and then calls `progress`. Raises InputError."""
+    if progress is not None and not callable(progress):
+        raise InputError(f"progress is {type_of(progress)} (it must be callable); give a function")
+
+    def watch(step: int, steps: int, t: float, smallest: float) -> Any:
+        warned.pass_on()
+        return None if progress is None else progress(step, steps, t, smallest)
+
+    return watch
 
 
 def _handle(comm: Any) -> int | None:

@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 from .arguments import number, real_array, type_of, whole_number
 from .errors import InputError
 from .kinetic import KineticProblem
+from .library_warnings import LibraryWarnings
 
 Array = NDArray[np.float64]
 
@@ -52,6 +53,7 @@ def solve_steady(problem: KineticProblem, u0: ArrayLike, tolerance: float = 1e-8
         raise InputError(f"iterations is {iterations} (at least one is needed); give more")
     if not 0 <= whole_number("images", images) <= 20:
         raise InputError(f"images is {images} (0 to 20 are possible); change it")
-    found = problem._core.solve_steady(real_array("u0", u0), float(tolerance), int(iterations), int(images),
-                                       None if threads is None else whole_number("threads", threads))
+    with LibraryWarnings():
+        found = problem._core.solve_steady(real_array("u0", u0), float(tolerance), int(iterations), int(images),
+                                           None if threads is None else whole_number("threads", threads))
     return SteadyState(*found)

@@ -47,6 +47,7 @@ inline py::array_t<double> to_fixed_array(std::span<const double> numbers,
 }
 
 void bind_errors(py::module_& m);
+void bind_warnings(py::module_& m);
 void bind_methods(py::module_& m);
 void bind_integrate(py::module_& m);
 void bind_general(py::module_& m);

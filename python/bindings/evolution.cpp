@@ -100,7 +100,7 @@ class counted_problem : public newton_problem<transport, timed_field> {
  public:
   using parent = newton_problem<transport, timed_field>;
   counted_problem(const equations& of, linear_solver solver)
-      : parent({&of}, timed_field(of), newton_options{.solver = solver}) {}
+      : parent({&of}, timed_field(of), newton_options{.solver = solver, .warns_of_cost = false}) {}
 
   void solve_collision(double t, double a, double b, state& u) {
     parent::solve_collision(t, a, b, u);

@@ -53,7 +53,9 @@ class python_field {
 class collisions_alone {
  public:
   collisions_alone(const collision_functions& of, const extents& cell, linear_solver solver)
-      : of_(of), shape_(cell), local_({}, python_field(of, cell), newton_options{solver}) {
+      : of_(of),
+        shape_(cell),
+        local_({}, python_field(of, cell), newton_options{.solver = solver, .warns_of_cost = false}) {
     for (const auto n : cell) length_ *= static_cast<std::size_t>(n);
     cell_.resize(length_);
     if (of.admissible)

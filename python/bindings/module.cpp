@@ -7,6 +7,7 @@ PYBIND11_MODULE(_core, m) {
   // A library says nothing that was not asked for.
   apsis::log::set_level(apsis::log::level::warning);
   apsis::python::bind_errors(m);
+  apsis::python::bind_warnings(m);
   apsis::python::bind_methods(m);
   apsis::python::bind_integrate(m);
   apsis::python::bind_general(m);

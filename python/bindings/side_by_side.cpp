@@ -80,7 +80,8 @@ py::array indices_from(std::size_t first, std::size_t count) {
 class collisions_side_by_side::slot {
  public:
   slot(bool limited, linear_solver solver)
-      : problem_({}, waiting_field(wanted_, pause_), newton_options{solver}) {
+      : problem_({}, waiting_field(wanted_, pause_),
+                 newton_options{.solver = solver, .warns_of_cost = false}) {
     if (limited)
       problem_.with_admissible([field = waiting_field(wanted_, pause_)](std::span<const double> v) mutable {
         return field.is_admissible(v);

@@ -18,9 +18,18 @@ namespace {
 using testing::internal::CaptureStderr;
 using testing::internal::GetCapturedStderr;
 
-/// Restores full verbosity when a test ends.
+std::vector<std::string> received;
+
+void receive(const std::string& message) {
+  received.push_back(message);
+}
+
+/// Restores full verbosity and standard error when a test ends.
 struct log_of_messages : testing::Test {
-  ~log_of_messages() override { apsis::log::set_level(apsis::log::level::info); }
+  ~log_of_messages() override {
+    apsis::log::set_level(apsis::log::level::info);
+    apsis::log::set_warning_receiver(nullptr);
+  }
 
   static std::string both_at(apsis::log::level lowest) {
     apsis::log::set_level(lowest);
@@ -41,6 +50,23 @@ TEST_F(log_of_messages, level_warning_hides_info_messages) {
 
 TEST_F(log_of_messages, level_quiet_hides_all_messages) {
   EXPECT_EQ(both_at(apsis::log::level::quiet), "");
+}
+
+TEST_F(log_of_messages, a_receiver_gets_the_warnings_that_standard_error_would_show) {
+  received.clear();
+  EXPECT_EQ(apsis::log::set_warning_receiver(receive), nullptr);
+  const apsis::warning_record record;
+  CaptureStderr();
+  apsis::log::warning("first");
+  apsis::log::info("no warning");
+  apsis::log::set_level(apsis::log::level::quiet);
+  apsis::log::warning("hidden");
+  apsis::log::set_level(apsis::log::level::warning);
+  EXPECT_EQ(apsis::log::set_warning_receiver(nullptr), receive);
+  apsis::log::warning("second");
+  EXPECT_EQ(GetCapturedStderr(), "info: no warning\nwarning: second\n");
+  EXPECT_THAT(received, testing::ElementsAre("first"));
+  EXPECT_THAT(record.messages(), testing::ElementsAre("first", "hidden", "second"));
 }
 
 TEST_F(log_of_messages, records_of_warnings_have_those_of_their_life_at_any_level) {

@@ -208,7 +208,8 @@ def test_a_stored_run_is_the_computed_one(tmp_path, case, more):
 
 def test_warnings_are_listed_in_the_summary(tmp_path):
     case = ["paper/decay", "time.method=imdrk-1-2", "time.dt=0.3"]
-    run = apsis.run(*case, out=tmp_path)
+    with pytest.warns(apsis.ApsisWarning):
+        run = apsis.run(*case, out=tmp_path)
     assert len(run.summary["warnings"]) == 1 and "does not divide time.end" in run.summary["warnings"][0]
     assert apsis.open(tmp_path).summary["warnings"] == run.summary["warnings"]
     assert apsis.run(*case[:2], "time.dt=0.5").summary["warnings"] == []

@@ -15,6 +15,7 @@ namespace apsis::log {
 namespace {
 
 std::atomic<level> lowest_shown{level::info};
+std::atomic<warning_receiver> receiver_of_warnings{nullptr};
 
 /// Returns true if standard error is a terminal that supports colours.
 bool supports_colour() {
@@ -40,6 +41,10 @@ level set_level(level lowest) {
   return lowest_shown.exchange(lowest);
 }
 
+warning_receiver set_warning_receiver(warning_receiver receiver) {
+  return receiver_of_warnings.exchange(receiver);
+}
+
 void info(const std::string& message) {
   if (lowest_shown >= level::info) write("info", "\033[32m", message);
 }
@@ -47,7 +52,11 @@ void info(const std::string& message) {
 void warning(const std::string& message) {
   if (!warnings_once::is_new(message)) return;
   warning_record::add_to_all(message);
-  if (lowest_shown >= level::warning) write("warning", "\033[33m\033[1m", message);
+  if (lowest_shown < level::warning) return;
+  if (const warning_receiver receiver = receiver_of_warnings)
+    receiver(message);
+  else
+    write("warning", "\033[33m\033[1m", message);
 }
 
 }  // namespace apsis::log

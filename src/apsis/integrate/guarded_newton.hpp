@@ -70,6 +70,7 @@ struct newton_options {
   linear_solver solver = linear_solver::automatic;  ///< linear solver of every iteration
   std::size_t dense_limit = 96;                     ///< most unknowns for which `automatic` is dense
   int max_iterations = 200;                         ///< iteration limit; exceeding it is an error
+  bool warns_of_cost = true;                        ///< newton_problem logs a warning of large dense systems
 };
 
 /// Report of guarded_newton().

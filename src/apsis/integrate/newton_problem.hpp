@@ -293,7 +293,8 @@ class newton_problem {
 
   /// Warns once, before the first solve.
   void warn_of_cost() {
-    if (sparse_ || options_.solver != linear_solver::dense || warned_ || v_.size() <= most_unknowns_of_newton)
+    if (sparse_ || options_.solver != linear_solver::dense || warned_ || !options_.warns_of_cost ||
+        v_.size() <= most_unknowns_of_newton)
       return;
     warned_ = true;
     const double n = static_cast<double>(v_.size());

@@ -13,7 +13,7 @@
 namespace apsis {
 namespace {
 
-const std::string head = "parameters.";
+const std::string head_of_parameters = "parameters.";
 
 bool in_name(char c) {
   return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_';
@@ -47,14 +47,15 @@ std::string suggest_parameter(const std::string& name, const std::vector<std::st
 void check_overridden_parameters(const case_text& text) {
   std::set<std::string> words;
   for (const auto& [path, raw] : text.values)
-    if (!path.starts_with(head)) add_words(raw, words);
+    if (!path.starts_with(head_of_parameters)) add_words(raw, words);
   std::vector<std::string> used;
   for (const auto& [path, raw] : text.values)
-    if (path.starts_with(head) && words.contains(path.substr(head.size())))
-      used.push_back(path.substr(head.size()));
+    if (path.starts_with(head_of_parameters) && words.contains(path.substr(head_of_parameters.size())))
+      used.push_back(path.substr(head_of_parameters.size()));
   for (const auto& [path, raw] : text.values) {
-    const bool overridden = path.starts_with(head) && raw.place.line == 0;  // values of a file have lines
-    const std::string name = overridden ? path.substr(head.size()) : "";
+    const bool overridden =
+        path.starts_with(head_of_parameters) && raw.place.line == 0;  // values of a file have lines
+    const std::string name = overridden ? path.substr(head_of_parameters.size()) : "";
     if (overridden && !words.contains(name))
       throw input_error(raw.place, fmt::format("no formula uses the parameter '{}' (it changes nothing); {}",
                                                shown(name), suggest_parameter(name, used)));

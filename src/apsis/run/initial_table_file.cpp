@@ -29,7 +29,8 @@ constexpr std::uint64_t most_table_rows = 1'000'000'000;
 const std::set<std::string> not_columns = {"f", "v", "v_weights", "v_x", "v_y", "v_z", "t"};
 
 /// Returns the member of a JSON object at a path of names; null if it is missing.
-nlohmann::ordered_json at(const nlohmann::ordered_json& object, std::initializer_list<const char*> path) {
+nlohmann::ordered_json member_at(const nlohmann::ordered_json& object,
+                                 std::initializer_list<const char*> path) {
   const nlohmann::ordered_json* found = &object;
   for (const char* name : path) {
     if (!found->is_object() || !found->contains(name)) return nullptr;
@@ -81,19 +82,19 @@ std::string initial_table_file::place_of_row(std::size_t row) const {
 /// the case cannot use.
 void initial_table_file::take_manifest(const std::string& text) {
   manifest_ = json::parse(text, nullptr, false);
-  const auto name = at(manifest_, {"case", "model", "name"});
+  const auto name = member_at(manifest_, {"case", "model", "name"});
   if (!name.is_string()) refuse("its manifest cannot be read (damaged file); give another file");
   const model_entry *mine = try_find_model(config_.model.name),
                     *theirs = try_find_model(name.get<std::string>());
   const bool gases = theirs != nullptr && mine->has_velocity_grid && theirs->has_velocity_grid;
-  const bool same_variables =
-      at(manifest_, {"case", "model", "variables"}) == at(to_json(config_), {"model", "variables"});
+  const bool same_variables = member_at(manifest_, {"case", "model", "variables"}) ==
+                              member_at(to_json(config_), {"model", "variables"});
   if (!gases && (theirs != mine || !same_variables))
     refuse(fmt::format(
         "it is a result of model '{}'{} (the case has model '{}'); give a result of this model",
         name.get<std::string>(), theirs == mine ? " with other variables" : "", config_.model.name));
   const std::string key = discretization_key;
-  const auto discretized = at(manifest_, {"case", "space", key.substr(key.find('.') + 1).c_str()});
+  const auto discretized = member_at(manifest_, {"case", "space", key.substr(key.find('.') + 1).c_str()});
   if (discretized.is_string()) {
     const auto* entry = try_find_discretization(discretized.get<std::string>());
     if (entry == nullptr)
@@ -103,8 +104,8 @@ void initial_table_file::take_manifest(const std::string& text) {
                       key, discretized.get<std::string>()));
     unknown_ = &entry->instance().unknown();
   }
-  const auto scales = at(manifest_, {"scales"});
-  const bool in_si = at(manifest_, {"case", "output", "units"}) == choice_name(units_choice::si);
+  const auto scales = member_at(manifest_, {"scales"});
+  const bool in_si = member_at(manifest_, {"case", "output", "units"}) == choice_name(units_choice::si);
   if (!scales.is_null() && config_.scales && !in_si && scales != to_json(*config_.scales))
     refuse(
         "its units are those of another table [gas] (the scales differ); write it with output.units = "
@@ -127,7 +128,7 @@ void initial_table_file::read_csv() {
   if (std::filesystem::path(path_).filename() == "fields.csv" && std::filesystem::exists(manifest)) {
     constexpr std::size_t longest = 100'000'000;
     take_manifest(read_text_file(manifest.string(), longest, "manifest"));
-    const json units = at(manifest_, {"units"});
+    const json units = member_at(manifest_, {"units"});
     for (const auto& [name, unit] : units.items())
       if (unit.is_string()) units_[name] = unit.get<std::string>();
   }
@@ -173,8 +174,8 @@ void initial_table_file::read_fields(const hdf5_file& file) {
   if (several) times = file.read("snapshots/t");
   if (times.empty()) refuse("it has no snapshots (damaged file); give another file");
   units_["t"] = several ? file.units("snapshots/t") : units_["t"];
-  if (units_["t"].empty() && result && at(manifest_, {"units", "t"}).is_string())
-    units_["t"] = at(manifest_, {"units", "t"}).get<std::string>();
+  if (units_["t"].empty() && result && member_at(manifest_, {"units", "t"}).is_string())
+    units_["t"] = member_at(manifest_, {"units", "t"}).get<std::string>();
   if (result) {
     const std::size_t k = chosen(times);
     if (k + 1 < times.size()) earlier = k;
@@ -363,7 +364,7 @@ void initial_table_file::read_snapshot_of_state(double t) {
   for (const auto& entry : fs::directory_iterator(folder, ignored)) {
     if (entry.path().extension() != ".h5") continue;
     const hdf5_file file = hdf5_file::open(entry.path().string());
-    const auto cells = at(manifest_, {"case", "space", "cells"});
+    const auto cells = member_at(manifest_, {"case", "space", "cells"});
     const double wanted = t * unit;
     if (std::abs(file.read_attribute("t") - wanted) > 1e-12 * (1.0 + std::abs(wanted)) || !file.has("f") ||
         file.stored("f") != precision::float64)
@@ -386,12 +387,12 @@ bool initial_table_file::same_unknowns(const hdf5_file& file) const {
     if (count != points.size() || file.read("v") != points) return false;
   }
   if (manifest_.is_null()) return true;
-  const auto scales = at(manifest_, {"scales"});
+  const auto scales = member_at(manifest_, {"scales"});
   if (!scales.is_null() && config_.scales && scales != to_json(*config_.scales)) return false;
   const char* const kept = "degrees_of_freedom";
   const auto mine_of = config_.model.parameters.find(kept);
   return mine_of == config_.model.parameters.end() ||
-         at(manifest_, {"case", "model", kept}) == mine_of->second;
+         member_at(manifest_, {"case", "model", kept}) == mine_of->second;
 }
 
 /// Returns the index of initial.time among `times`, in the units of the file; without it, the last index.
@@ -454,9 +455,9 @@ std::vector<double> initial_table_file::column(const std::vector<std::string>& n
 }
 
 initial_table_file::line_ends initial_table_file::ends(int cells) const {
-  const auto domain = at(manifest_, {"case", "space", "domain"});
+  const auto domain = member_at(manifest_, {"case", "space", "domain"});
   if (domain.is_array() && domain.size() == 2 && domain[0].is_number() && domain[1].is_number()) {
-    const auto theirs = at(manifest_, {"scales", "length", "value"});
+    const auto theirs = member_at(manifest_, {"scales", "length", "value"});
     const double unit =
         theirs.is_number() && config_.scales && theirs != config_.scales->unit(dimensions::length)
             ? theirs.get<double>() / config_.scales->unit(dimensions::length)

@@ -52,6 +52,18 @@ TEST_P(every_stiff_problem, is_solved_to_the_digits_of_its_tolerance) {
 INSTANTIATE_TEST_SUITE_P(stiff_problems, every_stiff_problem, ::testing::ValuesIn(names(false)),
                          [](const auto& test) { return plain(test.param); });
 
+/// The method that `auto` chooses for systems whose stages Newton's method solves.
+class every_stiff_problem_by_default : public ::testing::TestWithParam<std::string> {};
+
+TEST_P(every_stiff_problem_by_default, is_solved_to_the_digits_of_its_tolerance) {
+  for (const int digits : {4, 6, 8}) require_digits(find_stiff_problem(GetParam()), "ark-548-2", digits);
+}
+
+INSTANTIATE_TEST_SUITE_P(stiff_problems, every_stiff_problem_by_default, ::testing::ValuesIn(names(false)),
+                         [](const auto& test) { return plain(test.param); });
+INSTANTIATE_TEST_SUITE_P(slow_stiff_problems, every_stiff_problem_by_default, ::testing::ValuesIn(names(true)),
+                         [](const auto& test) { return plain(test.param); });
+
 class every_slow_stiff_problem : public ::testing::TestWithParam<std::tuple<std::string, int>> {};
 
 TEST_P(every_slow_stiff_problem, is_solved_to_the_digits_of_its_tolerance) {

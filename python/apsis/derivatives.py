@@ -8,6 +8,7 @@ from typing import Any, Callable, Iterable
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from .derivative_checks import ComplexStepCheck
 from .errors import InputError
 
 Array = NDArray[np.float64]
@@ -19,14 +20,17 @@ class Derivatives:
     by      "jacobian", "complex steps" or "finite differences"
 
     A jacobian returns an array or a sparse matrix. `columns`, a function of arrays of shape (n, k) for u of shape (n,), gives all
-    columns of Q' in one call. The kind of derivatives is found at u, and at `others` if there are any. With `rows`, u is an array of m points, of shape (m, n), to which Q applies one by one; a jacobian
-    then returns an array of shape (m, n, n).
+    columns of Q' in one call. The kind of derivatives is found at u, and at `others` if there are any. `check` chooses later states at
+    which complex steps are compared with differences. With `rows`, u is an array of m points, of shape (m, n), to which Q applies one by
+    one; a jacobian then returns an array of shape (m, n, n).
     """
 
     def __init__(self, collision: Callable[[Array], ArrayLike], jacobian: Callable[[Array], Any] | None, u: Array,
-                 columns: Callable[[Array], ArrayLike] | None = None, rows: bool = False, others: Iterable[Array] = ()) -> None:
+                 columns: Callable[[Array], ArrayLike] | None = None, rows: bool = False, others: Iterable[Array] = (),
+                 check: ComplexStepCheck | None = None) -> None:
         self._collision, self._jacobian, self._columns, self._rows = collision, jacobian, columns, rows
         self._known: tuple[bytes, Any] | None = None
+        self.check = check or ComplexStepCheck(_first_check(u))
         self.by = "jacobian" if jacobian is not None else "complex steps" if all(map(self._is_analytic, (u, *others))) else "finite differences"
 
     def product(self, u: Array, x: Array) -> Array:
@@ -35,7 +39,43 @@ class Derivatives:
             return np.zeros(u.shape)
         if self._jacobian is not None or self._columns is not None:
             return np.asarray(self.matrix(u) @ x[..., None] if self._rows else self.matrix(u) @ x.ravel()).reshape(u.shape)
-        return self._complex_step(u, x) if self.by == "complex steps" else self.difference(u, x)
+        if self.by == "complex steps" and self.check.is_due():
+            self.compare(u)
+        if self.by == "complex steps":
+            try:
+                return self._complex_step(u, x)
+            except Exception:  # noqa: BLE001 - whatever a function for real numbers does with complex ones
+                self._collision(_fixed(u))  # its own exceptions come from real numbers
+                self._fail(wrong=False)
+        return self.difference(u, x)
+
+    def compare(self, u: Array) -> None:
+        """Compares a complex step with differences at u, in a direction that excites every unknown. Continues with differences if they
+        differ, and then warns or raises NotAnalytic. Differences that cannot be computed, or those across a kink, decide nothing."""
+        x = _directions(u, self._rows)[self.check.checks % 2]
+        try:
+            with np.errstate(all="ignore"):
+                exact = self._complex_step(u, x)
+                h, upper, lower = self._two_sides(u, x)
+                near = (upper - lower) / (2 * h)
+                rounding = 16 * np.finfo(np.float64).eps * _sizes(upper, self._rows) / h
+                same = np.abs(exact - near) <= 1e-4 * _sizes(near, self._rows) + 1e-7 * _sizes(exact, self._rows) + rounding
+                if np.all(same) or self.bends(np.asarray(self._collision(_fixed(u)), dtype=np.float64), upper, lower):
+                    return
+        except Exception:  # noqa: BLE001 - u ± hx may be outside of the states for which Q is defined
+            return
+        if np.all(np.isfinite(near)):
+            self._fail()
+
+    def use_differences(self) -> None:
+        """Replaces complex steps by differences."""
+        if self.by == "complex steps":
+            self.by = "finite differences"
+            self.forget()
+
+    def _fail(self, wrong: bool = True) -> None:
+        self.use_differences()
+        self.check.fail(wrong)
 
     def curvature(self, u: Array, k: Array, x: Array) -> Array:
         """Returns Q''(u)[k, x] to a few digits."""
@@ -48,6 +88,8 @@ class Derivatives:
         """Returns Q'(u), for u of n numbers an array or a sparse matrix of shape (n, n), and keeps it until u is another."""
         key = u.tobytes()
         if self._known is None or self._known[0] != key:
+            if self.by == "complex steps" and self.check.is_due():
+                self.compare(u)
             self._known = key, self._all_columns(u) if self._jacobian is None else self._given(self._jacobian(_fixed(u)), u)
         return self._known[1]
 
@@ -62,7 +104,11 @@ class Derivatives:
         assert self._columns is not None
         if self.by == "complex steps":
             h = 1e-30 * max(_size(u), 1e-200)
-            return np.imag(np.asarray(self._columns(_fixed(u[:, None] + 1j * h * np.eye(u.size))))) / h
+            try:
+                return np.imag(np.asarray(self._columns(_fixed(u[:, None] + 1j * h * np.eye(u.size))))) / h
+            except Exception:  # noqa: BLE001 - whatever a function for real numbers does with complex ones
+                self._collision(_fixed(u))  # its own exceptions come from real numbers
+                self._fail(wrong=False)
         steps = 6e-6 * np.maximum(np.abs(u), 1e-6 * (_size(u) or 1.0))
         upper, lower = (np.asarray(self._columns(_fixed(u[:, None] + sign * np.diag(steps))), dtype=np.float64) for sign in (1, -1))
         return (upper - lower) / (2 * steps)
@@ -73,9 +119,29 @@ class Derivatives:
 
     def difference(self, u: Array, x: Array) -> Array:
         """Returns Q'(u) x by a central difference, to about ten digits."""
-        h = _length(u, x, 6e-6, self._rows)
-        return (np.asarray(self._collision(_fixed(u + h * x)), dtype=np.float64) -
-                np.asarray(self._collision(_fixed(u - h * x)), dtype=np.float64)) / (2 * h)
+        h, upper, lower = self._two_sides(u, x)
+        return (upper - lower) / (2 * h)
+
+    def _two_sides(self, u: Array, x: Array, part: float = 6e-6) -> tuple[Array, Array, Array]:
+        """Returns h, Q(u + hx) and Q(u − hx)."""
+        h = _length(u, x, part, self._rows)
+        return (h, np.asarray(self._collision(_fixed(u + h * x)), dtype=np.float64),
+                np.asarray(self._collision(_fixed(u - h * x)), dtype=np.float64))
+
+    def _has_kink(self, u: Array, x: Array, at: Array, upper: Array, lower: Array) -> bool:
+        """Whether Q has a kink at u, such as abs at 0, where a central difference agrees with a derivative that does not exist. `at` is Q(u),
+        `upper` and `lower` are values of _two_sides(). The second difference of a kink is proportional to h, otherwise to h²."""
+        if not self.bends(at, upper, lower):
+            return False
+        before = np.max(np.abs(upper - 2 * at + lower))
+        _, upper, lower = self._two_sides(u, x, 1.5e-6)
+        return self.bends(at, upper, lower) and bool(np.max(np.abs(upper - 2 * at + lower)) > before / 8)
+
+    def bends(self, at: Array, upper: Array, lower: Array) -> bool:
+        """Whether the changes of Q from lower over at to upper differ by more than smooth functions and rounding allow."""
+        rounding = 8 * np.finfo(np.float64).eps * _sizes(at, self._rows)
+        change = _sizes(np.maximum(np.abs(upper - at), np.abs(at - lower)), self._rows)
+        return bool(np.any(np.abs(upper - 2 * at + lower) > 1e-2 * change + rounding))
 
     def _is_analytic(self, u: Array) -> bool:
         """Whether complex steps work, and agree with differences in two directions that excite every unknown."""
@@ -92,9 +158,11 @@ class Derivatives:
                     exact = self._complex_step(u, x)
             except Exception:  # noqa: BLE001 - whatever a function for real numbers does with complex ones
                 return False
-            near = self.difference(u, x)
+            h, upper, lower = self._two_sides(u, x)
+            near = (upper - lower) / (2 * h)
             sizes = 1e-4 * _sizes(near, self._rows) + 1e-7 * _sizes(exact, self._rows) if exact.shape == u.shape else 0.0
-            if exact.shape != u.shape or not np.all(np.abs(exact - near) <= sizes):
+            if exact.shape != u.shape or not np.all(np.abs(exact - near) <= sizes) or self._has_kink(
+                    u, x, np.asarray(found, dtype=np.float64), upper, lower):
                 return False
         return True
 
@@ -112,6 +180,11 @@ class CellDerivatives:
         """How derivatives are evaluated."""
         return self._of_cells.by
 
+    @property
+    def check(self) -> ComplexStepCheck:
+        """The checks of complex steps."""
+        return self._of_cells.check
+
     def product(self, u: Array, x: Array, cells: Any) -> Array:
         """Returns Q'(u) x."""
         return self._at(cells).product(u, x)
@@ -128,78 +201,6 @@ class CellDerivatives:
             self._cells = cells
             self._of_cells.forget()
         return self._of_cells
-
-
-class TimedDerivatives:
-    """Q'(t, u) x, Q''(t, u)[k, x] and ∂Q(t, u)/∂t of a function of time and of arrays of one shape.
-
-    `interval`: times at which Q may be called."""
-
-    def __init__(self, collision: Callable[[Any, Array], ArrayLike], jacobian: Callable[[float, Array], Any] | None, u: Array,
-                 interval: tuple[float, float], columns: Callable[[float, Array], ArrayLike] | None = None) -> None:
-        self._collision, self._interval, self._t = collision, interval, interval[0]
-        self._at = Derivatives(lambda v: collision(self._t, v), self._now(jacobian), u, self._now(columns))
-        self._complex_time = self._is_analytic_in_time(u)
-
-    @property
-    def by(self) -> str:
-        """How derivatives by u are evaluated."""
-        return self._at.by
-
-    def error_of_jacobian(self, u: Array) -> float:
-        """Returns how much products with a given jacobian at the start differ from differences, relative to these."""
-        at = self._at_time(self._interval[0])
-        return max((_size(at.product(u, x) - near) / (_size(near) or 1.0) for x in _directions(u) for near in [at.difference(u, x)]))
-
-    def product(self, t: float, u: Array, x: Array) -> Array:
-        """Returns Q'(t, u) x."""
-        return self._at_time(t).product(u, x)
-
-    def curvature(self, t: float, u: Array, k: Array, x: Array) -> Array:
-        """Returns Q''(t, u)[k, x] to a few digits."""
-        return self._at_time(t).curvature(u, k, x)
-
-    def time_derivative(self, t: float, u: Array) -> Array:
-        """Returns ∂Q(t, u)/∂t, by a complex step where that agrees with differences at the start."""
-        return self._complex_step(t, u) if self._complex_time else self._difference(t, u)
-
-    def _now(self, function: Callable[[float, Array], Any] | None) -> Callable[[Array], Any] | None:
-        return None if function is None else partial(self._call, function)
-
-    def _call(self, function: Callable[[float, Array], Any], u: Array) -> Any:
-        return function(self._t, u)
-
-    def _at_time(self, t: float) -> Derivatives:
-        if t != self._t:
-            self._t = t
-            self._at.forget()
-        return self._at
-
-    def _scale(self, t: float) -> float:
-        return max(abs(t), min(1.0, self._interval[1] - self._interval[0]))
-
-    def _complex_step(self, t: float, u: Array) -> Array:
-        h = 1e-30 * self._scale(t)
-        return np.asarray(np.imag(np.asarray(self._collision(complex(t, h), _fixed(u.copy())))) / h)
-
-    def _difference(self, t: float, u: Array) -> Array:
-        """Returns a difference of second order, one-sided at the ends of the interval."""
-        h = 6e-6 * self._scale(t)
-        first, last = self._interval
-        shifts, weights = (((0, 1, 2), (-1.5, 2.0, -0.5)) if t - h < first else
-                           ((0, -1, -2), (1.5, -2.0, 0.5)) if t + h > last else ((1, -1), (0.5, -0.5)))
-        values = [np.asarray(self._collision(t + k * h, _fixed(u.copy())), dtype=np.float64) for k in shifts]
-        return np.asarray(sum(w * value for w, value in zip(weights, values)) / h)
-
-    def _is_analytic_in_time(self, u: Array) -> bool:
-        try:
-            with np.errstate(all="ignore"), warnings.catch_warnings():
-                warnings.simplefilter("error")
-                exact = self._complex_step(self._interval[0], u)
-        except Exception:  # noqa: BLE001 - whatever a function for real numbers does with a complex one
-            return False
-        near = self._difference(self._interval[0], u)
-        return exact.shape == u.shape and bool(np.all(np.abs(exact - near) <= 1e-4 * _size(near) + 1e-7 * _size(exact)))
 
 
 def some_cells(count: int) -> NDArray[np.int64]:
@@ -224,6 +225,11 @@ def as_matrices(subject: str, found: Any, m: int, n: int) -> Array:
         raise InputError(f"{subject} an array of shape {matrices.shape} and type {matrices.dtype} (real numbers of shape ({m}, {n}, {n}) "
                          "are needed, a matrix for each cell); give such")
     return matrices.astype(np.float64)
+
+
+def _first_check(u: Array) -> int:
+    """The first product that is checked: after those of the first matrix, which are at the start."""
+    return min(u.size, 8) + 1
 
 
 def _directions(u: Array, rows: bool = False) -> tuple[Array, Array]:

@@ -35,8 +35,8 @@ class GeneralProblem:
                                   for the m cells as the last argument: collision(u, p), such as ε(x) or rates of each cell
 
     Without a jacobian, derivatives are complex steps Im Q(u + ihx)/h, exact to rounding. They require that Q accepts complex
-    numbers, and that they agree with finite differences at u0. Otherwise derivatives are central differences with about ten
-    digits. Solution.derivatives names the kind. Q' enters the solution through Q'Q: if Q is 1e4 times as fast as a step, or more,
+    numbers, and that they agree with finite differences at u0 and at some later states. Otherwise derivatives are central differences
+    with about ten digits; later, after an ApsisWarning. Solution.derivatives names the kind. Q' enters the solution through Q'Q: if Q is 1e4 times as fast as a step, or more,
     give the jacobian or a Q of analytic functions. Stages preserve the sums that Q conserves, to rounding.
 
     solver    "dense": a Newton step of n unknowns takes n³ operations and at least n evaluations of Q, with a CostWarning above 200

@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from . import _core
 from .arguments import number, real_array, text, type_of
 from .dense import StepOutput, Steps
+from .derivative_checks import NotAnalytic
 from .derivatives import as_square_matrix
 from .errors import CostWarning, InputError, NumericalError
 from .library_warnings import LibraryWarnings, warn
@@ -43,7 +44,8 @@ def solve_ivp(transport: Function | None, collision: Function | None, t_span: Se
         collision(t, y)           Q, of shape (n,), stiff; None: Q = 0. With vectorized=True T and Q get y of shape (n, k) and return
                                   that shape, so that one call gives all derivatives
         jac(t, y)                 ∂Q/∂y, an array or a sparse matrix of shape (n, n); or a constant matrix; or None: complex steps
-                                  where Q accepts complex numbers, else differences (GeneralProblem)
+                                  where Q accepts complex numbers, else differences (GeneralProblem). An ApsisWarning reports complex
+                                  steps that are wrong at a later time, as with abs or .real; derivatives are then differences
         events                    functions g(t, y) with zeros that are reported; attributes `terminal` (True, or a number of zeros) and
                                   `direction` as in SciPy. A zero at the start of the integration is not an event
         forward_euler_step(t, y)  Δt_FE of T: steps are at most r Δt_FE, and preserve the properties that forward Euler steps preserve
@@ -87,12 +89,18 @@ def solve_ivp(transport: Function | None, collision: Function | None, t_span: Se
         problem.require_exact(start, integrator.name)
     arguments = (relative, absolute, *_step_lengths(dt, first_step, max_step, forward_euler_step is not None),
                  text("controller", controller), _is_krylov(solver, problem, start.size, integrator), problem.places, masses)
-    evolution = _core.Evolution(problem, integrator._core, *arguments, [int(np.sign(getattr(e, "direction", 0))) for e in listed],
-                                [_endings(e) > 0 for e in listed])
-    inside = Steps(problem, integrator, arguments, evolution) if dense_output else None
-    record = _Record(evolution, wanted, inside, span[0], start)
+
+    def march() -> tuple[Any, _Record, int, str]:
+        evolution = _core.Evolution(problem, integrator._core, *arguments, [int(np.sign(getattr(e, "direction", 0))) for e in listed],
+                                    [_endings(e) > 0 for e in listed])
+        inside = Steps(problem, integrator, arguments, evolution) if dense_output else None
+        record = _Record(evolution, wanted, inside, span[0], start)
+        return evolution, record, *_march(evolution, record, span, start, listed)
+
+    problem.restart_if_wrong(bool(np.any(integrator.ddot != 0)))
     with LibraryWarnings():
-        status, message = _march(evolution, record, span, start, listed)
+        evolution, record, status, message = _with_restarts(march, problem)
+    problem.restart_if_wrong(False)
     found = [[(t, y) for k, t, y in evolution.found if k == number_of] for number_of in range(len(listed))]
     return scipy.optimize.OptimizeResult(
         t=np.array(record.t), y=np.array(record.y).reshape(-1, start.size).T.copy(),
@@ -142,6 +150,18 @@ def _march(evolution: Any, record: _Record, span: tuple[float, float], start: Ar
     except NumericalError as failure:
         return -1, str(failure)
     return 0, "the end of the interval was reached"
+
+
+def _with_restarts(march: Callable[[], tuple[Any, _Record, int, str]], problem: System) -> tuple[Any, _Record, int, str]:
+    """Returns what march() returns with derivatives that are right, as far as checks of complex steps show it."""
+    while True:  # derivatives by y and by t may each become differences, once
+        try:
+            found = march()
+            if found[2] < 0 and problem.compare_again():
+                continue
+            return found
+        except NotAnalytic:
+            continue
 
 
 def _scipy() -> Any:

@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _core
 from .arguments import number, real_array, text, type_of, whole_number
+from .derivative_checks import NotAnalytic
 from .errors import CostWarning, InputError
 from .general import GeneralProblem, collision_functions
 from .kinetic import KineticProblem
@@ -173,9 +174,15 @@ def _integrate_general(problem: GeneralProblem, u0: Array, times: list[float], i
     if problem.solver == "dense":
         _warn_of_cost(u0.shape[-1] if problem.local else u0.size, integrator)
     q = collision_functions(problem, u0)
-    found = _core.integrate_general(q.collision, q.derivatives.product, q.derivatives.curvature, problem.transport,
-                                    problem.forward_euler_step, q.admissible, q.coupling, problem.solver == "krylov", u0, times,
-                                    integrator._core, *steps_by)
+    q.derivatives.check.restarts = bool(np.any(integrator.ddot != 0))
+    while True:
+        try:
+            found = _core.integrate_general(q.collision, q.derivatives.product, q.derivatives.curvature, problem.transport,
+                                            problem.forward_euler_step, q.admissible, q.coupling, problem.solver == "krylov", u0, times,
+                                            integrator._core, *steps_by)
+            break
+        except NotAnalytic:  # once: derivatives are differences now
+            continue
     return Solution(*found, integrator.name, reason, q.derivatives.by)
 
 

@@ -8,8 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .arguments import type_of
-from .derivatives import TimedDerivatives, as_square_matrix
+from .derivatives import as_square_matrix
 from .errors import InputError
+from .timed_derivatives import TimedDerivatives
 
 Array = NDArray[np.float64]
 Function = Callable[..., Any]
@@ -21,7 +22,7 @@ class System:
     nfev     calls of transport and collision
     njev     calls of a Jacobian function
     places   (n, [(row, column), …]): where Q' may differ from 0; None: anywhere
-    by       how derivatives of Q are evaluated: "jacobian", "complex steps", "finite differences"; "" without Q
+    by       "jacobian", "complex steps", "finite differences"; "" without Q
     """
 
     def __init__(self, transport: Function | None, collision: Function | None, forward_euler_step: Function | None,
@@ -34,7 +35,6 @@ class System:
                 raise InputError(f"{name} is {type_of(function)} (it must be callable); give a function or None")
         self.nfev = self.njev = 0
         self.places: tuple[int, list[tuple[int, int]]] | None = None
-        self.by = ""
         self._args, self._vectorized, self._of_columns = args, vectorized, collision
         self._pattern: Any = None
         self._derivatives: TimedDerivatives | None = None
@@ -54,11 +54,28 @@ class System:
         jacobian = self._jacobian(jac, interval[0], y0)
         columns = self._all_columns if self._vectorized and self._pattern is None else None
         self._derivatives = TimedDerivatives(self.collision, jacobian, y0, interval, columns)
-        self.by = self._derivatives.by
+
+    @property
+    def by(self) -> str:
+        """How derivatives of Q are evaluated."""
+        return "" if self._derivatives is None else self._derivatives.by
+
+    def restart_if_wrong(self, restarts: bool) -> None:
+        """Sets whether wrong derivatives raise NotAnalytic, because they are a part of the solution."""
+        if self._derivatives is not None:
+            self._derivatives.restart_if_wrong(restarts)
+
+    def compare_again(self) -> bool:
+        """Compares complex steps with differences at the last state. Returns whether derivatives are differences since then."""
+        before = self.by
+        if self._derivatives is not None:
+            self._derivatives.compare_again()
+        return self.by != before
 
     def __reduce__(self) -> tuple[Callable[..., System], tuple[Any, ...]]:
         """Copies the functions without events, and the derivatives, to be prepared again."""
-        return _copy, (self._functions, self._args, self._vectorized, self._prepared)
+        return _copy, (self._functions, self._args, self._vectorized, self._prepared,
+                       None if self._derivatives is None else self._derivatives.kinds)
 
     def require_exact(self, y0: Array, method: str) -> None:
         """Raises InputError unless jac agrees with differences of collision, for methods whose solutions depend on Q'."""
@@ -136,9 +153,12 @@ class System:
                              "none there); give jac_sparsity with all places")
 
 
-def _copy(functions: tuple[Any, Any, Any, Any], args: tuple[Any, ...], vectorized: bool, prepared: tuple[Any, Any, Any, Any]) -> System:
+def _copy(functions: tuple[Any, Any, Any, Any], args: tuple[Any, ...], vectorized: bool, prepared: tuple[Any, Any, Any, Any],
+          kinds: tuple[bool, bool] | None) -> System:
     system = System(*functions, (), args, vectorized)
     system.prepare(*prepared)
+    if system._derivatives is not None and kinds is not None:
+        system._derivatives.use_at_most(kinds)
     return system
 
 

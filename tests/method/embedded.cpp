@@ -5,6 +5,7 @@
 #include <apsis/core/errors.hpp>
 #include <apsis/method/coefficient.hpp>
 #include <apsis/method/export.hpp>
+#include <apsis/method/order_conditions.hpp>
 
 #include <cmath>
 
@@ -244,6 +245,59 @@ TEST(embedded_row, with_a_changed_coefficient_is_detected) {
 TEST(SLOW_embedded_row, with_a_changed_coefficient_is_detected_for_many_stages) {
   for (const auto& name : methods_where([](const method& m) { return m.embedded && m.stages() >= 9; }))
     expect_changes_are_detected(find_method(name));
+}
+
+TEST(embedded_row, shares_the_evaluation_of_the_order_conditions_with_the_method) {
+  for (const char* name : {"md-imex-8-3-accurate", "ark-548-2", "extrapolated-euler-5"}) {
+    const method& m = find_method(name);
+    const auto alone = to_butcher(m.coefficients<mp_real>());
+    const auto extended = to_butcher(m.with_embedded_row().coefficients<mp_real>());
+    order_levels<mp_real> levels(extended, colours_of(m.kind), 2);
+    std::size_t before = 0;
+    for (int order = 1; order <= 5; ++order) {
+      const auto trees = rooted_trees(order, colours_of(m.kind));
+      const auto& level = levels.at(order);
+      ASSERT_EQ(before + level.trees.size(), trees.size()) << name;
+      const auto weights = elementary_weights(alone, trees), of_row = elementary_weights(extended, trees);
+      for (std::size_t k = 0; k < level.trees.size(); ++k) {
+        EXPECT_EQ(level.trees[k].name, trees[before + k].name);
+        EXPECT_EQ(level.weights[0][k], weights[before + k])
+            << name << " " << level.trees[k].name;  // every bit
+        EXPECT_EQ(level.weights[1][k], of_row[before + k]) << name << " " << level.trees[k].name;
+      }
+      before = trees.size();
+    }
+  }
+}
+
+TEST(certificate_of_claims, has_everything_that_a_method_claims_and_its_steps_use) {
+  for (const char* name :
+       {"md-imex-8-3-accurate", "ark-548-2", "dop853", "imdrk-9-5", "extrapolated-euler-4"}) {
+    const method& m = find_method(name);
+    const certificate all = certify(m), claims = certify(m, certificate_scope::claims);
+    EXPECT_EQ(claims.order, all.order) << name;
+    EXPECT_EQ(claims.order_residual, all.order_residual) << name;
+    EXPECT_EQ(claims.ssp_coefficient, all.ssp_coefficient) << name;
+    EXPECT_EQ(claims.type, all.type) << name;
+    EXPECT_EQ(claims.remaining_terms(), all.remaining_terms()) << name;
+    EXPECT_EQ(claims.failures, all.failures) << name;
+    ASSERT_EQ(claims.embedded.has_value(), all.embedded.has_value()) << name;
+    if (all.embedded) {
+      EXPECT_EQ(m.embedded->weight, all.embedded->weight) << name;
+    }
+    EXPECT_EQ(find_certificate(name).stability.angle, all.stability.angle) << name;  // complete
+  }
+  EXPECT_EQ(find_certificate("extrapolated-euler-2").stability.angle, 90.0);
+}
+
+TEST(certificate_of_claims, includes_the_stability_that_a_file_claims) {
+  const auto holds = [](bool claimed) {
+    method m = find_method("extrapolated-euler-2");  // L-stable
+    m.claims.l_stable = claimed;
+    return certify(m, certificate_scope::claims).claims_hold;
+  };
+  EXPECT_TRUE(holds(true));
+  EXPECT_FALSE(holds(false));
 }
 
 }  // namespace

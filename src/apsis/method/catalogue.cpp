@@ -24,7 +24,8 @@ namespace {
 
 struct entry {
   method parsed;
-  certificate certified;
+  certificate of_claims;                   ///< certificate_scope::claims
+  std::unique_ptr<certificate> certified;  ///< complete, from the first call of find_certificate()
 };
 
 /// Whether two methods have the same kind and equal values of all coefficients. Embedded rows are not
@@ -78,7 +79,7 @@ void require_own_name(const method& m, const std::string& path) {
 
 /// Certifies a method and gives its embedded row the weight from the certificate.
 certificate certify_and_complete(method& m) {
-  certificate c = certify(m);
+  certificate c = certify(m, certificate_scope::claims);
   if (m.embedded && c.embedded) m.embedded->weight = c.embedded->weight;
   return c;
 }
@@ -98,21 +99,25 @@ method make_named_method(std::string_view name) {
   throw input_error("unknown method '" + text + "' (there is no such name); " + suggest(text, known));
 }
 
-/// Parses and certifies a method on first use and caches it. A method file is cached by path and contents, so
-/// that a changed file is certified again. Entries of earlier contents stay, because callers hold references
-/// to them.
-const entry& find_entry(const std::string& name) {
+std::mutex& entries_guard() {
   static std::mutex guard;
+  return guard;
+}
+
+/// Parses a method, certifies its claims on first use and caches both. A method file is cached by path and
+/// contents, so that a changed file is certified again. Entries of earlier contents stay, because callers
+/// hold references to them.
+entry& find_entry(const std::string& name) {
   static std::map<std::pair<std::string, std::string>, std::unique_ptr<entry>> known;
   const bool is_file = is_method_file(name);
   std::pair key(name, is_file ? read_method_text(name) : std::string());
-  const std::lock_guard lock(guard);
+  const std::lock_guard lock(entries_guard());
   const auto found = known.find(key);
   if (found != known.end()) return *found->second;
   auto made = std::make_unique<entry>();
   made->parsed = is_file ? parse_method(key.second, name) : make_named_method(name);
-  made->certified = certify_and_complete(made->parsed);
-  if (is_file && made->certified.claims_hold) require_own_name(made->parsed, name);
+  made->of_claims = certify_and_complete(made->parsed);
+  if (is_file && made->of_claims.claims_hold) require_own_name(made->parsed, name);
   return *known.emplace(std::move(key), std::move(made)).first->second;
 }
 
@@ -120,12 +125,15 @@ const entry& find_entry(const std::string& name) {
 
 const method& find_method(std::string_view name) {
   const entry& found = find_entry(std::string(name));
-  require_claims(found.certified);
+  require_claims(found.of_claims);
   return found.parsed;
 }
 
 const certificate& find_certificate(const std::string& name) {
-  return find_entry(name).certified;
+  entry& found = find_entry(name);
+  const std::lock_guard lock(entries_guard());
+  if (!found.certified) found.certified = std::make_unique<certificate>(certify(found.parsed));
+  return *found.certified;
 }
 
 std::vector<std::string> method_names() {

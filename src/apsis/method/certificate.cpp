@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <optional>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -30,19 +31,29 @@ int last_order(method_kind kind) {
   return certificate::highest_order + (kind == method_kind::imex ? 0 : 1);
 }
 
-/// Finds the order of `b`, the conditioned_form(), and the conditions of the next order that it violates.
-void find_order(const butcher_form<mp_real>& b, const mp_real& tolerance, certificate& c) {
+/// Order conditions of a result: that of the method or its embedded solution.
+struct conditions_of_result {
+  order_levels<mp_real>& levels;
+  std::size_t result;
+
+  const std::vector<rooted_tree>& trees(int order) const { return levels.at(order).trees; }
+  const std::vector<mp_real>& weights(int order) const { return levels.at(order).weights[result]; }
+};
+
+/// Finds the order of a result, and the conditions of the next order that it violates.
+void find_order(const conditions_of_result& of, const mp_real& tolerance, certificate& c) {
   const int last = last_order(c.kind);
+  mp_real largest(0);
+  int conditions = 0;
   for (int p = 1; p <= last && c.order == p - 1; ++p) {
-    const auto trees = rooted_trees(p, colours_of(c.kind));
-    const auto weights = elementary_weights(b, trees);
-    mp_real largest(0), squares(0);
+    const auto& trees = of.trees(p);
+    const auto& weights = of.weights(p);
+    mp_real squares(0);
     c.next.clear();
-    int conditions = 0;
     for (std::size_t k = 0; k < trees.size(); ++k) {
       const mp_real wanted = mp_real(1) / mp_real(trees[k].density);
       const mp_real residual = abs(weights[k] - wanted);
-      if (trees[k].order == p) squares += residual * residual;
+      squares += residual * residual;
       ++conditions;
       if (!(residual <= tolerance)) {
         c.next.push_back({trees[k].name, p, weights[k], wanted});
@@ -130,12 +141,11 @@ void find_intermediate_regime(const shu_osher_form<mp_real>& form, const mp_real
 }
 
 /// Returns |cosine| of the angle between the residuals of order p and 1/γ.
-mp_real alignment_of(const butcher_form<mp_real>& b, int p, method_kind kind) {
-  const auto trees = rooted_trees(p, colours_of(kind));
-  const auto weights = elementary_weights(b, trees);
+mp_real alignment_of(const conditions_of_result& of, int p) {
+  const auto& trees = of.trees(p);
+  const auto& weights = of.weights(p);
   mp_real along(0), residuals(0), exact(0);
   for (std::size_t k = 0; k < trees.size(); ++k) {
-    if (trees[k].order != p) continue;
     const mp_real wanted = mp_real(1) / mp_real(trees[k].density);
     along += (weights[k] - wanted) * wanted;
     residuals += (weights[k] - wanted) * (weights[k] - wanted);
@@ -181,21 +191,20 @@ int precision_of(const method& extended, const embedded_row& row) {
   return own > 0 ? std::min(own, extended.precision()) : extended.precision();
 }
 
-void find_embedded_solution(const method& m, certificate& c) {
-  if (!m.embedded) return;
-  const method extended = m.with_embedded_row();
+/// Requires an embedded row; `extended` has it as a further row.
+void find_embedded_solution(const method& m, const method& extended, const conditions_of_result& conditions,
+                            certificate& c) {
   const auto form = extended.coefficients<mp_real>();
-  const auto b = to_butcher(form);
   const mp_real tolerance = residual_tolerance(precision_of(extended, *m.embedded));
   certificate row;
   row.kind = m.kind;
-  find_order(b, tolerance, row);
+  find_order(conditions, tolerance, row);
   embedded_certificate e;
   e.order = row.order;
   e.conditions = row.conditions;
   e.order_residual = row.order_residual;
   e.estimate = row.error_constant;
-  e.alignment = alignment_of(b, row.order + 1, m.kind);
+  e.alignment = alignment_of(conditions, row.order + 1);
   e.relaxes = m.kind != method_kind::explicit_only && !extended.ends_with_update();
   e.implicit_solves = e.relaxes ? 1 : 0;
   if (m.kind == method_kind::imex && e.relaxes)
@@ -225,27 +234,41 @@ void find_embedded_solution(const method& m, certificate& c) {
 
 }  // namespace
 
-certificate certify(const method& m) {
+certificate certify(const method& m, certificate_scope scope) {
   certificate c;
   c.name = m.name;
   c.kind = m.kind;
   const auto form = m.coefficients<mp_real>();
   const auto b = to_butcher(form);
   const mp_real tolerance = residual_tolerance(m.precision());
-  find_order(conditioned_form(form, m.kind), tolerance, c);
+  // Both results of a method with an embedded row have the same stages, and are evaluated together.
+  std::optional<method> extended;
+  if (m.embedded) extended = m.with_embedded_row();
+  const bool together = extended && !solves_exactly(m.kind);
+  order_levels<mp_real> levels(
+      together ? to_butcher(extended->coefficients<mp_real>()) : conditioned_form(form, m.kind),
+      colours_of(m.kind), together ? 2 : 1);
+  find_order({levels, 0}, tolerance, c);
   if (solves_exactly(m.kind)) {
     find_ssp_of_exact_collisions(form, b, tolerance, c);
   } else {
     find_ssp(b, tolerance, c);
   }
   find_structure(m, form, b, c);
-  if (has_derivatives(m.kind)) c.stability = analyse_stability(m.coefficients<long double>());
+  const bool complete = scope == certificate_scope::all;
+  if (has_derivatives(m.kind) && (complete || m.claims.l_stable))
+    c.stability = analyse_stability(m.coefficients<long double>());
   if (m.kind == method_kind::imex) {
     find_intermediate_regime(form, tolerance, c);
-    c.band = compute_intermediate_band(to_butcher(m.coefficients<long double>()));
+    if (complete) c.band = compute_intermediate_band(to_butcher(m.coefficients<long double>()));
   }
   check_claims(m, form, tolerance, c);
-  find_embedded_solution(m, c);
+  if (together) {
+    find_embedded_solution(m, *extended, {levels, 1}, c);
+  } else if (extended) {
+    order_levels<mp_real> own(to_butcher(extended->coefficients<mp_real>()), colours_of(m.kind), 1);
+    find_embedded_solution(m, *extended, {own, 0}, c);
+  }
   c.claims_hold = c.failures.empty();
   return c;
 }

@@ -95,9 +95,16 @@ struct certificate {
   std::vector<std::string> failures;  ///< one line per failed claim: condition, value, tree
 };
 
+/// Which properties certify() derives.
+enum class certificate_scope {
+  all,    ///< all
+  claims  ///< those that a method may claim, and those of its embedded row: without stability that is not
+          ///< claimed, and without the band where ε ~ Δt
+};
+
 /// Certifies a method in arithmetic of 60 digits. Tolerance: 10^{3−n} for coefficients of n decimals, 1e-50
 /// for exact ones. A claim that does not hold is an entry of `failures`.
-certificate certify(const method& m);
+certificate certify(const method& m, certificate_scope scope = certificate_scope::all);
 
 /// Returns the certificate of the method called `name`; a method file that has changed is certified again.
 /// Throws like find_method(), except for claims that do not hold: the certificate lists them.

@@ -61,7 +61,8 @@ TEST_P(every_stiff_problem_by_default, is_solved_to_the_digits_of_its_tolerance)
 
 INSTANTIATE_TEST_SUITE_P(stiff_problems, every_stiff_problem_by_default, ::testing::ValuesIn(names(false)),
                          [](const auto& test) { return plain(test.param); });
-INSTANTIATE_TEST_SUITE_P(slow_stiff_problems, every_stiff_problem_by_default, ::testing::ValuesIn(names(true)),
+INSTANTIATE_TEST_SUITE_P(slow_stiff_problems, every_stiff_problem_by_default,
+                         ::testing::ValuesIn(names(true)),
                          [](const auto& test) { return plain(test.param); });
 
 class every_slow_stiff_problem : public ::testing::TestWithParam<std::tuple<std::string, int>> {};

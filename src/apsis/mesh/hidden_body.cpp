@@ -62,10 +62,11 @@ std::string why_hidden(const grid& mesh, const outside_function& body) {
   if (has_corner_in(mesh, body)) return "(it lies in another body or a solid box); remove it, or move it";
   const double depth = -least_value(mesh, body);
   if (!(depth > 0.0)) return "(it lies outside the domain); move it, or change space.domain";
-  constexpr double cells_of_depth = 2.0;  // 4 cells across
+  constexpr double cells_of_depth = 2.0;         // 4 cells across
+  constexpr double without_rounding = 1 - 1e-9;  // the depth is known to 1e-12 cells
   std::vector<double> cells;
   for (int k = 0; k < mesh.dimensions(); ++k)
-    cells.push_back(std::ceil(cells_of_depth * mesh.cells(k) * mesh.spacing(k) / depth));
+    cells.push_back(std::ceil(without_rounding * cells_of_depth * mesh.cells(k) * mesh.spacing(k) / depth));
   return fmt::format(
       "(it is about {:.3g} thick, and lies between the corners of cells); enlarge it, or give about "
       "space.cells = [{:.0f}]",

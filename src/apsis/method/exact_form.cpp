@@ -49,20 +49,30 @@ std::string to_decimals(const mp_real& value, int digits) {
   return abs(value) < mp_real(1e-48) ? "0" : value.str(digits, std::ios_base::fixed);
 }
 
-shu_osher_form<std::string> to_decimals(const shu_osher_form<mp_real>& form, method_kind kind, int digits) {
+/// Returns a form whose coefficients are text(value).
+template <class Text>
+shu_osher_form<std::string> written(const shu_osher_form<mp_real>& form, const Text& text) {
   const std::size_t s = form.stages();
   shu_osher_form<std::string> e;
   e.P = e.W = e.D = zero_coefficients(s);
-  e.r = to_decimals(form.r, digits);
+  e.r = text(form.r);
   for (std::size_t i = 0; i < s; ++i) {
-    e.ddot.push_back(to_decimals(form.ddot[i], digits));
-    for (std::size_t j = 0; j < i; ++j) {
-      e.P(i, j) = to_decimals(form.P(i, j), digits);
-      e.W(i, j) = to_decimals(form.W(i, j), digits);
+    e.ddot.push_back(text(form.ddot[i]));
+    for (std::size_t j = 0; j <= i; ++j) {
+      e.P(i, j) = text(form.P(i, j));
+      e.W(i, j) = text(form.W(i, j));
+      e.D(i, j) = text(form.D(i, j));
     }
-    if (kind != method_kind::explicit_only) e.D(i, i) = to_decimals(form.D(i, i), digits);
   }
   return e;
+}
+
+/// Returns a convex form without rounding errors below the diagonal of D. An explicit method has no D.
+shu_osher_form<mp_real> with_diagonal(shu_osher_form<mp_real> form, method_kind kind) {
+  for (std::size_t i = 0; i < form.stages(); ++i)
+    for (std::size_t j = 0; j <= i; ++j)
+      if (j < i || kind == method_kind::explicit_only) form.D(i, j) = 0;
+  return form;
 }
 
 /// Returns the form with R = I, or nothing if Ȧ is not diagonal.
@@ -101,22 +111,6 @@ std::optional<shu_osher_form<mp_real>> without_earlier_derivatives(const butcher
   return to_shu_osher(b, inverse_lower(inverse), mp_real(1));
 }
 
-shu_osher_form<std::string> to_texts(const shu_osher_form<mp_real>& form, int decimals) {
-  const std::size_t s = form.stages();
-  shu_osher_form<std::string> e;
-  e.P = e.W = e.D = zero_coefficients(s);
-  e.r = coefficient_text(form.r, decimals);
-  for (std::size_t i = 0; i < s; ++i) {
-    e.ddot.push_back(coefficient_text(form.ddot[i], decimals));
-    for (std::size_t j = 0; j <= i; ++j) {
-      e.P(i, j) = coefficient_text(form.P(i, j), decimals);
-      e.W(i, j) = coefficient_text(form.W(i, j), decimals);
-      e.D(i, j) = coefficient_text(form.D(i, j), decimals);
-    }
-  }
-  return e;
-}
-
 }  // namespace
 
 matrix<std::string> zero_coefficients(std::size_t s) {
@@ -132,11 +126,13 @@ std::optional<shu_osher_form<std::string>> exact_shu_osher(const butcher_form<st
   const mp_real zero = digits > 0 ? pow(mp_real(10), 3 - digits) : mp_real(1e-50);
   const butcher_form<mp_real> numbers{
       values(b.A_hat), values(kind == method_kind::explicit_only ? b.A_hat : b.A), values(b.A_dot)};
-  const int written = digits > 0 ? std::min(digits, 50) : 50;
+  const int most = digits > 0 ? std::min(digits, 50) : 50;
   if (const auto convex = convex_form(numbers, kind, zero, reason))
-    return to_decimals(*convex, kind, written);
+    return written(with_diagonal(*convex, kind),
+                   [most](const mp_real& value) { return to_decimals(value, most); });
   if (auto sums = increments(b, kind)) return sums;
-  if (const auto form = without_earlier_derivatives(numbers, zero)) return to_texts(*form, written);
+  if (const auto form = without_earlier_derivatives(numbers, zero))
+    return written(*form, [most](const mp_real& value) { return coefficient_text(value, most); });
   return std::nullopt;
 }
 

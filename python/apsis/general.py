@@ -12,6 +12,7 @@ from . import _core
 from .arguments import real_array
 from .derivatives import CellDerivatives, Derivatives, some_cells
 from .errors import InputError
+from .preconditioners import of_solver
 
 Array = NDArray[np.float64]
 
@@ -40,7 +41,10 @@ class GeneralProblem:
     give the jacobian or a Q of analytic functions. Stages preserve the sums that Q conserves, to rounding.
 
     solver    "dense": a Newton step of n unknowns takes n³ operations and at least n evaluations of Q, with a CostWarning above 200
-              unknowns; "krylov": iterations without n³ operations and without preconditioner, for Q that is not stiff
+              unknowns; "krylov": GMRES without matrices and n³ operations, for Q that is not stiff or with a preconditioner
+    preconditioner(u, gamma)  with "krylov": returns a solver of (1 − γQ'(u)) x = r, at least an approximate one: a function of r, an
+              object with such a `solve` (scipy.sparse.linalg.splu), or the inverse as a matrix. r has the shape (n,). Called once for
+              each γ of a step; a stage with b < 0 has γ = √−b and applies it twice. Not with local=True
 
     Large systems take less time with local=True. If Q has the form of a RelaxationProblem, use that class: its stages have a
     closed form."""
@@ -54,6 +58,7 @@ class GeneralProblem:
     vectorized: bool = False
     parameters: ArrayLike | None = None
     solver: str = "dense"
+    preconditioner: Callable[[Array, float], Any] | None = None
 
 
 @dataclass(frozen=True)
@@ -66,6 +71,7 @@ class CollisionFunctions:
     collision: Callable[..., ArrayLike]
     derivatives: Derivatives | CellDerivatives
     admissible: Callable[..., Any] | None
+    preconditioner: Callable[..., Any] | None = None
 
 
 def collision_functions(problem: GeneralProblem, u0: Array) -> CollisionFunctions:
@@ -76,11 +82,14 @@ def collision_functions(problem: GeneralProblem, u0: Array) -> CollisionFunction
     if problem.parameters is not None and not problem.vectorized:
         raise InputError("parameters have no meaning without vectorized = True (they are those of several cells); give vectorized=True "
                          "too, or remove them")
+    preconditioner = of_solver(problem.preconditioner, problem.solver)
+    if preconditioner is not None and problem.local:
+        raise InputError("preconditioner has no meaning with local = True (each cell is a small system of its own); remove it")
     if problem.vectorized:
         return _functions_of_cells(problem, u0)
     if not problem.local:
         derivatives = Derivatives(problem.collision, problem.jacobian, u0.copy())
-        return CollisionFunctions(_core.Coupling.all, problem.collision, derivatives, problem.admissible)
+        return CollisionFunctions(_core.Coupling.all, problem.collision, derivatives, problem.admissible, preconditioner)
     cells = u0.reshape(-1, u0.shape[-1])
     first, *others = (cells[k].copy() for k in some_cells(len(cells)))
     derivatives = Derivatives(problem.collision, problem.jacobian, first, others=others)

@@ -10,12 +10,13 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _core
 from .arguments import number, real_array, text, type_of
-from .dense import StepOutput, Steps
-from .derivative_checks import NotAnalytic
+from .dense import Steps
 from .derivatives import as_square_matrix
-from .errors import CostWarning, InputError, NumericalError
+from .errors import CostWarning, InputError
+from .ivp_runs import Record, Run, endings_of, march_to_end, run_until_accurate, run_with_restarts
 from .library_warnings import LibraryWarnings, warn
 from .methods import Method, method as find_method
+from .preconditioners import of_solver
 from .system import System, entries_of
 
 if TYPE_CHECKING:
@@ -31,7 +32,8 @@ def solve_ivp(transport: Function | None, collision: Function | None, t_span: Se
               args: Sequence[Any] | None = (), rtol: ArrayLike = 1e-3, atol: ArrayLike = 1e-6, jac: Any = None, jac_sparsity: Any = None,
               vectorized: bool = False, first_step: float | None = None, max_step: float = math.inf, dt: float | None = None,
               forward_euler_step: Function | None = None, admissible: Function | None = None, solver: str = "dense",
-              controller: str = "predictive", mass: Any = None) -> OptimizeResult:
+              controller: str = "predictive", mass: Any = None, preconditioner: Function | None = None,
+              end_error: bool = False) -> OptimizeResult:
     """Solves y' = T(t, y) + Q(t, y), y(t0) = y0, T explicitly and Q implicitly. Returns the result object of SciPy's solve_ivp.
 
         scipy.integrate.solve_ivp(f, t_span, y0, method="Radau", jac=J)        becomes
@@ -50,16 +52,24 @@ def solve_ivp(transport: Function | None, collision: Function | None, t_span: Se
                                   `direction` as in SciPy. A zero at the start of the integration is not an event
         forward_euler_step(t, y)  Δt_FE of T: steps are at most r Δt_FE, and preserve the properties that forward Euler steps preserve
         admissible(y)             whether y is in the set of valid states: no Newton iterate and no step leaves this set
+        preconditioner(t, y, γ)   with solver="krylov": returns a solver of (M − γ ∂Q/∂y) x = r, at least an approximate one: a function
+                                  of r, an object with such a `solve` (scipy.sparse.linalg.splu), or the inverse as a matrix
 
     Steps keep the estimated error of every y_i below ``rtol_i |y_i| + atol_i``; both may be arrays. With dt all steps have that length,
     without error control. first_step and max_step limit the steps. `controller` is the law that computes the next step from the
     errors of the last steps (`apsis list controllers`), such as "pi" or "pid". `method` is a name, a file or a one-step Method; "auto"
     chooses from the table of `apsis list choices`. jac_sparsity is a matrix of shape (n, n) that is nonzero where ∂Q/∂y may be
     nonzero. It or a sparse jac chooses sparse factorizations; differences then need one call for each group of columns. A constant
-    matrix, or a sparse jac at (t0, y0), defines the pattern itself. solver="krylov" iterates without matrices, for Q that is not stiff.
+    matrix, or a sparse jac at (t0, y0), defines the pattern itself. solver="krylov" iterates by GMRES without matrices, for Q that is not stiff or
+    with a preconditioner. This function is called once for each γ of a step. A stage with Q'Q applies it twice.
 
     `mass`, a constant array or sparse matrix M of shape (n, n), makes the system M y' = T(t, y) + Q(t, y), as finite elements have it.
     M must be invertible. forward_euler_step is then that of y' = M⁻¹ T. A sparse M and a sparse jac keep stage systems sparse.
+
+    end_error=True repeats the integration with smaller tolerances until the estimated error of the result, at t_eval or at the end, is
+    within rtol and atol. Without it they bound the error of each step, and errors of steps add up. This takes two integrations or more.
+    The entries error (in units of the tolerances) and refined (their last factor) of the result then report the estimate. If results
+    do not converge, status is −1.
 
     Returns scipy.optimize.OptimizeResult with t (m,), y (n, m), sol (scipy.integrate.OdeSolution or None), t_events, y_events, nfev
     (calls of transport and collision), njev (of jac), nlu (matrices factorized), status (0: end reached, 1: a terminal event, −1: a step
@@ -75,7 +85,8 @@ def solve_ivp(transport: Function | None, collision: Function | None, t_span: Se
         raise InputError("y0 is missing (the arguments are transport, collision, t_span, y0); for solve_ivp(fun, t_span, y0) of SciPy write "
                          "solve_ivp(None, fun, t_span, y0)")
     listed = _event_functions(events)
-    problem = System(transport, collision, forward_euler_step, admissible, listed, _extra(args), bool(vectorized))
+    problem = System(transport, collision, forward_euler_step, admissible, listed, _extra(args), bool(vectorized),
+                     of_solver(preconditioner, solver))
     span, start = _interval(t_span), _state(y0)
     wanted = None if t_eval is None else _times(t_eval, span)
     relative, absolute = _tolerance("rtol", rtol), _tolerance("atol", atol)
@@ -87,81 +98,33 @@ def solve_ivp(transport: Function | None, collision: Function | None, t_span: Se
     masses = None if mass is None else (start.size, entries_of(as_square_matrix("mass is", mass, start.size)))
     if np.any(integrator.ddot != 0):
         problem.require_exact(start, integrator.name)
-    arguments = (relative, absolute, *_step_lengths(dt, first_step, max_step, forward_euler_step is not None),
-                 text("controller", controller), _is_krylov(solver, problem, start.size, integrator), problem.places, masses)
+    if end_error and dt is not None:
+        raise InputError("dt and end_error are given (with dt steps have no tolerances); remove one of them")
+    further = (*_step_lengths(dt, first_step, max_step, forward_euler_step is not None), text("controller", controller),
+               _is_krylov(solver, problem, start.size, integrator), problem.places, masses)
 
-    def march() -> tuple[Any, _Record, int, str]:
+    def march(factor: float = 1.0) -> Run:
+        arguments = ([factor * x for x in relative], [factor * x for x in absolute], *further)
         evolution = _core.Evolution(problem, integrator._core, *arguments, [int(np.sign(getattr(e, "direction", 0))) for e in listed],
-                                    [_endings(e) > 0 for e in listed])
+                                    [endings_of(e) > 0 for e in listed])
         inside = Steps(problem, integrator, arguments, evolution) if dense_output else None
-        record = _Record(evolution, wanted, inside, span[0], start)
-        return evolution, record, *_march(evolution, record, span, start, listed)
+        record = Record(evolution, wanted, inside, span[0], start)
+        return Run(evolution, record, *march_to_end(evolution, record, span, start, listed))
 
     problem.restart_if_wrong(bool(np.any(integrator.ddot != 0)))
     with LibraryWarnings():
-        evolution, record, status, message = _with_restarts(march, problem)
+        runs, estimate = run_until_accurate(march, problem, relative, absolute) if end_error else ([run_with_restarts(march, problem)], {})
     problem.restart_if_wrong(False)
+    evolution, record = runs[-1].evolution, runs[-1].record
     found = [[(t, y) for k, t, y in evolution.found if k == number_of] for number_of in range(len(listed))]
     return scipy.optimize.OptimizeResult(
         t=np.array(record.t), y=np.array(record.y).reshape(-1, start.size).T.copy(),
         sol=scipy.integrate.OdeSolution(record.ends, record.steps) if record.steps else None,
         t_events=[np.array([t for t, _ in of]) for of in found] if listed else None,
         y_events=[np.array([y for _, y in of]) for of in found] if listed else None, nfev=problem.nfev, njev=problem.njev,
-        nlu=evolution.systems, status=status, message=message, success=status >= 0, method=integrator.name, reason=reason,
-        steps=evolution.steps, rejected=evolution.rejected, derivatives=problem.by)
-
-
-class _Record:
-    """The times and states of a result, and its dense output, collected step by step."""
-
-    def __init__(self, evolution: Any, wanted: list[float] | None, inside: Steps | None, t0: float, y0: Array) -> None:
-        self._evolution, self._wanted, self._inside = evolution, wanted, inside
-        self.t: list[float] = [t0] if wanted is None or wanted[:1] == [t0] else []
-        self.y: list[Array] = [y0] if self.t else []
-        self.ends, self.steps = [t0], list[StepOutput]()
-        self._before = y0
-
-    def add_step(self) -> None:
-        """Adds the last step of the evolution."""
-        begin, t, y = self._evolution.begin_of_step, self._evolution.t, self._evolution.u
-        if self._inside is not None:
-            self.ends.append(t)
-            self.steps.append(StepOutput(self._inside, begin, self._before, t, y))
-            self._before = y
-        if self._wanted is None:
-            self.t.append(t)
-            self.y.append(y)
-            return
-        for x in self._wanted[len(self.t):]:
-            if x > t:
-                break
-            self.t.append(x)
-            self.y.append(self._evolution.at(x))
-
-
-def _march(evolution: Any, record: _Record, span: tuple[float, float], start: Array, events: list[Function]) -> tuple[int, str]:
-    """Advances to the end, to the last event or to a failure; returns status and message."""
-    evolution.start(span[0], start.tolist())
-    try:
-        while evolution.advance(span[1], record.add_step):
-            last = evolution.found[-1][0]
-            if sum(k == last for k, _, _ in evolution.found) >= _endings(events[last]):
-                return 1, f"event {last} ended the integration"
-    except NumericalError as failure:
-        return -1, str(failure)
-    return 0, "the end of the interval was reached"
-
-
-def _with_restarts(march: Callable[[], tuple[Any, _Record, int, str]], problem: System) -> tuple[Any, _Record, int, str]:
-    """Returns what march() returns with derivatives that are right, as far as checks of complex steps show it."""
-    while True:  # derivatives by y and by t may each become differences, once
-        try:
-            found = march()
-            if found[2] < 0 and problem.compare_again():
-                continue
-            return found
-        except NotAnalytic:
-            continue
+        nlu=sum(run.evolution.systems for run in runs), status=runs[-1].status, message=runs[-1].message, success=runs[-1].status >= 0,
+        method=integrator.name, reason=reason, steps=sum(run.evolution.steps for run in runs),
+        rejected=sum(run.evolution.rejected for run in runs), derivatives=problem.by, **estimate)
 
 
 def _scipy() -> Any:
@@ -252,7 +215,7 @@ def _is_krylov(solver: str, problem: System, n: int, integrator: Method) -> bool
         raise InputError("solver=\"krylov\" has no meaning with jac_sparsity or a sparse jac (systems are factorized); remove one of them")
     if solver == "dense" and problem.places is None and n > 200 and problem.collision is not None and integrator.kind != "explicit":
         warn(f"a stage has {n} unknowns (each of its Newton steps takes about {n:.0e}^3 = {n**3:.0e} operations); give "
-             "jac_sparsity, or solver=\"krylov\" if Q is not stiff", CostWarning)
+             "jac_sparsity, or solver=\"krylov\" with a preconditioner, or without one if Q is not stiff", CostWarning)
     return solver == "krylov"
 
 
@@ -269,8 +232,3 @@ def _event_functions(events: Function | Sequence[Function] | None) -> list[Funct
             if not whole or (attribute == "terminal" and value < 0):
                 raise InputError(f"event {k} has {attribute} = {value!r} (it must be {meaning}); change it")
     return listed
-
-
-def _endings(event: Function) -> int:
-    """The number of zeros of an event after which the integration ends; 0: it never does."""
-    return int(getattr(event, "terminal", False) or 0)

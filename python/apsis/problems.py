@@ -159,7 +159,7 @@ def _warn_of_cost(unknowns: int, integrator: Method) -> None:
         return
     warn(f"a stage has {unknowns} unknowns (each of its Newton steps takes about {unknowns:.0e}^3 = {unknowns**3:.0e} operations "
          f"and {3 * unknowns} calls of collision); if Q acts cell by cell, give u0 as [cells, unknowns] and local=True, if it "
-         "is not stiff solver=\"krylov\", or a RelaxationProblem if Q has that form", CostWarning)
+         "is not stiff solver=\"krylov\", if it is a preconditioner too, or a RelaxationProblem if Q has that form", CostWarning)
 
 
 def _integrate_general(problem: GeneralProblem, u0: Array, times: list[float], integrator: Method, steps_by: StepsBy,
@@ -178,7 +178,8 @@ def _integrate_general(problem: GeneralProblem, u0: Array, times: list[float], i
     while True:
         try:
             found = _core.integrate_general(q.collision, q.derivatives.product, q.derivatives.curvature, problem.transport,
-                                            problem.forward_euler_step, q.admissible, q.coupling, problem.solver == "krylov", u0, times,
+                                            problem.forward_euler_step, q.admissible, q.preconditioner, q.coupling, problem.solver == "krylov",
+                                            u0, times,
                                             integrator._core, *steps_by)
             break
         except NotAnalytic:  # once: derivatives are differences now

@@ -26,13 +26,16 @@ class System:
     """
 
     def __init__(self, transport: Function | None, collision: Function | None, forward_euler_step: Function | None,
-                 admissible: Function | None, events: Sequence[Function], args: tuple[Any, ...], vectorized: bool) -> None:
+                 admissible: Function | None, events: Sequence[Function], args: tuple[Any, ...], vectorized: bool,
+                 preconditioner: Function | None = None) -> None:
         self._functions = (transport, collision, forward_euler_step, admissible)
         self._prepared: tuple[Any, ...] = ()
         for name, function in (("transport", transport), ("collision", collision), ("forward_euler_step", forward_euler_step),
                                ("admissible", admissible)):
             if function is not None and not callable(function):
                 raise InputError(f"{name} is {type_of(function)} (it must be callable); give a function or None")
+        self.preconditioner = None if preconditioner is None else partial(self._call_with_shift, preconditioner)
+        self._preconditioner = preconditioner
         self.nfev = self.njev = 0
         self.places: tuple[int, list[tuple[int, int]]] | None = None
         self._args, self._vectorized, self._of_columns = args, vectorized, collision
@@ -74,7 +77,7 @@ class System:
 
     def __reduce__(self) -> tuple[Callable[..., System], tuple[Any, ...]]:
         """Copies the functions without events, and the derivatives, to be prepared again."""
-        return _copy, (self._functions, self._args, self._vectorized, self._prepared,
+        return _copy, (self._functions, self._args, self._vectorized, self._preconditioner, self._prepared,
                        None if self._derivatives is None else self._derivatives.kinds)
 
     def require_exact(self, y0: Array, method: str) -> None:
@@ -111,6 +114,9 @@ class System:
 
     def _call(self, function: Function, t: float, y: Array) -> Any:
         return function(t, y, *self._args)
+
+    def _call_with_shift(self, function: Function, t: float, y: Array, gamma: float) -> Any:
+        return function(t, y, gamma, *self._args)
 
     def _all_columns(self, t: float, y: Array) -> Any:
         assert self._of_columns is not None
@@ -153,9 +159,9 @@ class System:
                              "none there); give jac_sparsity with all places")
 
 
-def _copy(functions: tuple[Any, Any, Any, Any], args: tuple[Any, ...], vectorized: bool, prepared: tuple[Any, Any, Any, Any],
-          kinds: tuple[bool, bool] | None) -> System:
-    system = System(*functions, (), args, vectorized)
+def _copy(functions: tuple[Any, Any, Any, Any], args: tuple[Any, ...], vectorized: bool, preconditioner: Function | None,
+          prepared: tuple[Any, Any, Any, Any], kinds: tuple[bool, bool] | None) -> System:
+    system = System(*functions, (), args, vectorized, preconditioner)
     system.prepare(*prepared)
     if system._derivatives is not None and kinds is not None:
         system._derivatives.use_at_most(kinds)

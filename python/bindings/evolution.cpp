@@ -2,8 +2,10 @@
 
 #include "arrays.hpp"
 #include "callback.hpp"
+#include "preconditioner.hpp"
 
 #include <apsis/core/errors.hpp>
+#include <apsis/integrate/end_error.hpp>
 #include <apsis/integrate/mass_matrix.hpp>
 #include <apsis/integrate/newton_problem.hpp>
 #include <apsis/integrate/sparsity_pattern.hpp>
@@ -33,6 +35,7 @@ struct equations {
         forward_euler_step(optional_of(of, "forward_euler_step")),
         admissible(optional_of(of, "admissible")),
         events(optional_of(of, "events")),
+        preconditioner(optional_of(of, "preconditioner")),
         product(of.attr("product"), "jac"),
         curvature(of.attr("curvature"), "jac"),
         time_derivative(of.attr("time_derivative"), "collision") {}
@@ -41,7 +44,7 @@ struct equations {
     return optional_callback(of.attr(name).cast<std::optional<py::function>>(), name);
   }
 
-  std::optional<callback> transport, collision, forward_euler_step, admissible, events;
+  std::optional<callback> transport, collision, forward_euler_step, admissible, events, preconditioner;
   callback product, curvature, time_derivative;
 };
 
@@ -158,6 +161,10 @@ class python_evolution {
     }
     if (places) problem_.with_sparsity(sparsity_pattern(places->first, places->second));
     if (mass) problem_.with_mass(std::move(*mass));
+    if (of_.preconditioner)
+      problem_.with_preconditioner([this](double t, std::span<const double> v, double gamma) {
+        return solver_of((*of_.preconditioner)(t, look(v), gamma));
+      });
     if (of_.admissible)
       problem_.with_admissible(
           [this](std::span<const double> v) { return of_.admissible->truth((*of_.admissible)(look(v))); });
@@ -210,6 +217,13 @@ class python_evolution {
 }  // namespace
 
 void bind_evolution(py::module_& m) {
+  m.def("refine_until_accurate", [](const py::function& solve, const py::function& difference) {
+    const auto found = refine_until_accurate([&](double factor) -> py::object { return solve(factor); },
+                                             [&](const py::object& coarse, const py::object& fine) {
+                                               return difference(coarse, fine).cast<double>();
+                                             });
+    return py::make_tuple(found.solution, found.factor, found.error);
+  });
   py::class_<python_evolution>(m, "Evolution")
       .def(py::init(
                [](const py::object& of, const method& by, std::vector<double> rtol, std::vector<double> atol,

@@ -1,6 +1,7 @@
 #include "arrays.hpp"
 #include "callback.hpp"
 #include "march.hpp"
+#include "preconditioner.hpp"
 #include "side_by_side.hpp"
 
 #include <apsis/core/errors.hpp>
@@ -58,6 +59,10 @@ class collisions_alone {
         local_({}, python_field(of, cell), newton_options{.solver = solver, .warns_of_cost = false}) {
     for (const auto n : cell) length_ *= static_cast<std::size_t>(n);
     cell_.resize(length_);
+    if (of.preconditioner)
+      local_.with_preconditioner([this](double, std::span<const double> v, double gamma) {
+        return solver_of((*of_.preconditioner)(to_fixed_array(v, shape_), gamma));
+      });
     if (of.admissible)
       local_.with_admissible([this](std::span<const double> v) {
         return of_.admissible->truth((*of_.admissible)(to_fixed_array(v, shape_)));
@@ -77,6 +82,9 @@ class collisions_alone {
     state solved = u;
     for_each_cell(solved, [&](state& cell) { local_.solve_collision(t, a, b, cell); });
     u.swap(solved);
+  }
+  void begin_step(double t, const state& u) {
+    if (of_.preconditioner) local_.begin_step(t, u);
   }
   bool are_admissible(const state& u) {
     if (!of_.admissible) return true;
@@ -132,6 +140,8 @@ class general_problem {
     });
   }
   void solve_collision(double t, double a, double b, state& u) { collisions_.solve(t, a, b, u); }
+  void begin_step(double t, const state& u) { collisions_.begin_step(t, u); }
+  void end_step() {}
   bool is_admissible(const state& u) { return collisions_.are_admissible(u); }
   bool has_transport(double t, const state& u) { return of_.transport && !is_zero(transport(t, u)); }
   double forward_euler_step(double t, const state& u) const {
@@ -192,14 +202,15 @@ void bind_general(py::module_& m) {
       "integrate_general",
       [](const py::function& collision, const py::function& product, const py::function& curvature,
          const std::optional<py::function>& transport, const std::optional<py::function>& forward_euler_step,
-         const std::optional<py::function>& admissible, coupling coupled, bool krylov, const array& u0,
-         const std::vector<double>& t, const apsis::method& method, std::optional<double> dt, double safety,
-         std::optional<int> growth, std::optional<double> tolerance, const std::string& controller) {
+         const std::optional<py::function>& admissible, const std::optional<py::function>& preconditioner,
+         coupling coupled, bool krylov, const array& u0, const std::vector<double>& t,
+         const apsis::method& method, std::optional<double> dt, double safety, std::optional<int> growth,
+         std::optional<double> tolerance, const std::string& controller) {
         if (u0.size() == 0) throw input_error("u0 has no numbers; give an initial state");
-        const collision_functions q{callback(collision, "collision"),
-                                    callback(product, "the derivative of collision"),
-                                    callback(curvature, "the second derivative of collision"),
-                                    optional_callback(admissible, "admissible")};
+        const collision_functions q{
+            callback(collision, "collision"), callback(product, "the derivative of collision"),
+            callback(curvature, "the second derivative of collision"),
+            optional_callback(admissible, "admissible"), optional_callback(preconditioner, "preconditioner")};
         const transport_functions of{optional_callback(transport, "transport"),
                                      optional_callback(forward_euler_step, "forward_euler_step")};
         const auto solver = krylov ? linear_solver::krylov : linear_solver::dense;

@@ -11,10 +11,10 @@
 
 namespace apsis::python {
 
-/// Q, Q'x, Q''[k, x], and whether a state is admissible as a stage.
+/// Q, Q'x, Q''[k, x], whether a state is admissible as a stage, and the preconditioner of Krylov solvers.
 struct collision_functions {
   callback collision, product, curvature;
-  std::optional<callback> admissible;
+  std::optional<callback> admissible, preconditioner;
 };
 
 /// Collisions that couple the numbers of a cell only, for functions of many cells. The stages of some hundred
@@ -36,6 +36,8 @@ class collisions_side_by_side {
   /// Sets u ← v with v = u + a Q(v) + b Q'(v)Q(v). Throws numerical_error with the number of the first cell
   /// that has no solution; u is then unchanged.
   void solve(double t, double a, double b, std::vector<double>& u);
+  /// Nothing is shared by the stages of a step.
+  void begin_step(double, const std::vector<double>&) {}
   /// Returns whether all cells are admissible.
   bool are_admissible(const std::vector<double>& u) const;
 

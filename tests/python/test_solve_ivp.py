@@ -443,3 +443,51 @@ def test_a_place_outside_the_pattern_is_noticed():
     with pytest.raises(apsis.InputError, match="jac has an entry in row 0 and column 1"):
         apsis.solve_ivp(None, lambda t, y: np.array([-y[0] + t * y[1], -y[1]]), (0, 1), [1.0, 1.0],
                         jac=lambda t, y: scipy_sparse.csr_matrix([[-1.0, t], [0.0, -1.0]]), method="extrapolated-euler-4")
+
+
+def oscillations(t, y):
+    """1000 periods of an oscillation without damping, and a fast decay to it."""
+    return np.array([2 * math.pi * y[1], -2 * math.pi * y[0], 1e4 * (y[0] - y[2])])
+
+
+def test_errors_of_steps_add_up_unless_the_error_at_the_end_is_controlled():
+    options = dict(rtol=1e-4, atol=1e-4, method="ark-548-2")
+    by_steps = apsis.solve_ivp(None, oscillations, (0, 100), [1.0, 0.0, 1.0], **options)
+    at_the_end = apsis.solve_ivp(None, oscillations, (0, 100), [1.0, 0.0, 1.0], end_error=True, **options)
+    tolerance = 2e-4  # rtol |y| + atol of y = 1
+    assert abs(by_steps.y[0, -1] - 1) > 10 * tolerance  # otherwise this test shows nothing
+    assert abs(at_the_end.y[0, -1] - 1) < tolerance and abs(at_the_end.y[1, -1]) < 1e-4
+    assert at_the_end.success and at_the_end.error <= 1 and at_the_end.refined <= 0.1
+    assert at_the_end.steps > by_steps.steps and at_the_end.nfev > by_steps.nfev
+
+
+def test_the_error_is_controlled_at_all_times_of_t_eval_and_at_events():
+    times = np.linspace(10, 50, 9)
+    found = apsis.solve_ivp(None, oscillations, (0, 50), [1.0, 0.0, 1.0], end_error=True, t_eval=times, rtol=1e-5, atol=1e-5)
+    np.testing.assert_allclose(found.y[0], 1, rtol=0, atol=2e-5)
+
+    def last(t, y):
+        return t - 30.25
+    last.terminal = True
+    found = apsis.solve_ivp(None, oscillations, (0, 50), [1.0, 0.0, 1.0], end_error=True, events=last, rtol=1e-5, atol=1e-5)
+    assert found.status == 1 and found.t[-1] == pytest.approx(30.25, abs=1e-12)
+    np.testing.assert_allclose(found.y[:2, -1], [0, -1], rtol=0, atol=2e-5)
+
+
+def test_results_that_do_not_converge_are_a_failure():
+    def chaotic(t, y):  # the system of Lorenz: errors grow by a factor 1e24 in this time
+        return np.array([10 * (y[1] - y[0]), y[0] * (28 - y[2]) - y[1], y[0] * y[1] - 8 / 3 * y[2]])
+
+    found = apsis.solve_ivp(None, chaotic, (0, 60), [1.0, 1.0, 1.0], end_error=True, rtol=1e-3, atol=1e-3)
+    assert found.status == -1 and "the error at the end is not within the tolerances" in found.message
+    assert not hasattr(found, "error")
+
+
+def test_a_failed_run_is_not_refined():
+    found = apsis.solve_ivp(None, lambda t, y: y**2, (0, 2), [1.0], end_error=True)
+    assert found.status == -1 and found.t[-1] == pytest.approx(1, abs=1e-2)
+
+
+def test_steps_of_given_length_have_no_error_at_the_end():
+    with pytest.raises(apsis.InputError, match="dt and end_error are given"):
+        apsis.solve_ivp(None, oscillations, (0, 1), [1.0, 0.0, 1.0], dt=0.1, end_error=True)

@@ -87,6 +87,25 @@ TEST(SLOW_stiff_problems, errors_of_lasting_oscillations_add_up) {
   EXPECT_GE(solve_stiff_problem(problem, "extrapolated-euler-6", 1e-6).digits, 4);
 }
 
+// Smaller tolerances make up for it.
+TEST(SLOW_stiff_problems, lasting_oscillations_reach_the_digits_of_a_tolerance_at_the_end) {
+  const auto& problem = find_stiff_problem("ring-modulator");
+  for (const int digits : {4, 6}) {
+    const auto found = apsis::solve_stiff_problem_to_end(problem, "ark-548-2", std::pow(10.0, -digits));
+    EXPECT_GE(found.digits, digits - 1) << digits;
+  }
+}
+
+TEST(stiff_problems, digits_of_a_tolerance_at_the_end_are_at_least_its_own) {
+  for (const char* name : {"oregonator", "hires", "brusselator"}) {
+    const auto& problem = find_stiff_problem(name);
+    const auto by_steps = solve_stiff_problem(problem, "ark-548-2", 1e-5);
+    const auto found = apsis::solve_stiff_problem_to_end(problem, "ark-548-2", 1e-5);
+    EXPECT_GE(found.digits, 5) << name;
+    EXPECT_GT(found.steps, 2 * by_steps.steps) << name;  // it counts all runs
+  }
+}
+
 TEST(stiff_problems, have_what_an_entry_must_have) {
   std::set<std::string> all;
   for (const auto* one : stiff_problem_entries()) {

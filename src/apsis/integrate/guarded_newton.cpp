@@ -5,6 +5,9 @@
 
 #include <apsis/integrate/guarded_newton.hpp>
 
+#include "internal/krylov_step.hpp"
+#include "internal/newton_step.hpp"
+
 #include <apsis/core/errors.hpp>
 #include <apsis/integrate/mass_matrix.hpp>
 #include <apsis/integrate/unsquared_newton.hpp>
@@ -17,95 +20,18 @@
 
 #include <Eigen/Dense>
 #include <fmt/format.h>
-#include <unsupported/Eigen/IterativeSolvers>
-
-namespace apsis::detail {
-
-/// R'(v) as a matrix-free operator for the iterative solvers of Eigen.
-template <class Real>
-class newton_operator;
-
-}  // namespace apsis::detail
-
-namespace Eigen::internal {
-template <class Real>
-struct traits<apsis::detail::newton_operator<Real>> : traits<SparseMatrix<Real>> {};
-}  // namespace Eigen::internal
-
-namespace apsis::detail {
-
-template <class Real>
-using column = Eigen::Matrix<Real, Eigen::Dynamic, 1>;
-
-template <class Real>
-std::span<Real> as_span(column<Real>& x) {
-  return {x.data(), static_cast<std::size_t>(x.size())};
-}
-template <class Real>
-std::span<const Real> as_span(const column<Real>& x) {
-  return {x.data(), static_cast<std::size_t>(x.size())};
-}
-
-template <class Real>
-column<Real> masses(const stage_equation<Real>& equation, const column<Real>& x) {
-  if (equation.mass() == nullptr) return x;
-  column<Real> y(x.size());
-  equation.mass()->multiply(as_span(x), as_span(y));
-  return y;
-}
-
-template <class Real>
-class newton_operator : public Eigen::EigenBase<newton_operator<Real>> {
- public:
-  using Scalar = Real;
-  using RealScalar = Real;
-  using StorageIndex = int;
-  enum { ColsAtCompileTime = Eigen::Dynamic, MaxColsAtCompileTime = Eigen::Dynamic, IsRowMajor = false };
-
-  newton_operator(stage_equation<Real>& equation, const column<Real>& v) : equation_(equation), v_(v) {}
-  Eigen::Index rows() const { return v_.size(); }
-  Eigen::Index cols() const { return v_.size(); }
-
-  template <class Rhs>
-  Eigen::Product<newton_operator, Rhs, Eigen::AliasFreeProduct> operator*(
-      const Eigen::MatrixBase<Rhs>& x) const {
-    return {*this, x.derived()};
-  }
-
-  column<Real> apply(const column<Real>& x) const {
-    column<Real> y(x.size()), z(x.size());
-    equation_.differential(as_span(v_), as_span(x), as_span(y), as_span(z));
-    return masses(equation_, x) + y + z;
-  }
-
- private:
-  stage_equation<Real>& equation_;
-  const column<Real>& v_;
-};
-
-}  // namespace apsis::detail
-
-namespace Eigen::internal {
-template <class Real, class Rhs>
-struct generic_product_impl<apsis::detail::newton_operator<Real>, Rhs, SparseShape, DenseShape, GemvProduct>
-    : generic_product_impl_base<apsis::detail::newton_operator<Real>, Rhs,
-                                generic_product_impl<apsis::detail::newton_operator<Real>, Rhs>> {
-  using Scalar = Real;
-  template <class Dest>
-  // NOLINTNEXTLINE(readability-identifier-naming): Eigen looks for this name
-  static void scaleAndAddTo(Dest& dest, const apsis::detail::newton_operator<Real>& lhs, const Rhs& rhs,
-                            const Scalar& alpha) {
-    dest.noalias() += alpha * lhs.apply(rhs);
-  }
-};
-}  // namespace Eigen::internal
 
 namespace apsis {
 namespace {
 
+using detail::advice;
 using detail::as_span;
 using detail::column;
-using detail::masses;
+using detail::fail_singular;
+using detail::krylov_step;
+using detail::largest;
+using detail::newton_step;
+using detail::singular_below;
 
 template <class Real>
 using square = Eigen::Matrix<Real, Eigen::Dynamic, Eigen::Dynamic>;
@@ -123,35 +49,6 @@ template <class Real>
 Real stiffness_of(const square<Real>& m) {
   return std::sqrt(m.cwiseProduct(m.transpose()).maxCoeff());
 }
-
-template <class Real>
-constexpr Real singular_below = Real(45) * std::numeric_limits<Real>::epsilon();
-
-/// Maximum norm: the squares in a Euclidean norm of a decayed solution would underflow.
-template <class Real>
-Real largest(const column<Real>& x) {
-  return x.template lpNorm<Eigen::Infinity>();
-}
-
-constexpr const char* advice =
-    "change the time step, use a method with d > 0 at every stage, or relaxation_problem";
-
-[[noreturn]] void fail_singular(int iteration, double measure) {
-  throw numerical_error(
-      fmt::format("the stage equation is singular to working precision (relative smallest singular value "
-                  "{:.2g} at Newton iteration {}; a stage with d = 0 is singular where Δt λ = ±i/√|ḋ| for an "
-                  "eigenvalue λ of G'); {}",
-                  measure, iteration, advice));
-}
-
-/// A Newton step, and the size of R(v) due to rounding alone.
-template <class Real>
-struct newton_step {
-  column<Real> delta;
-  Real noise;
-  Real stiffness;  ///< stiffness_of() the terms of R'; above stiffest() there is no step
-  std::function<column<Real>(const column<Real>&)> correct;  ///< r ↦ −R'(v)⁻¹ r; empty if not available
-};
 
 /// Solves R'(v) Δ = −r by LU, without a mass matrix. Rows and columns are scaled by the terms of R' before
 /// they cancel, so that the test for singularity measures cancellation and neither stiffness nor units.
@@ -187,35 +84,6 @@ newton_step<Real> dense_step(stage_equation<Real>& equation, const column<Real>&
     return -(cols.asDiagonal() * lu.solve(rows.asDiagonal() * residual));
   };
   return {correct(r), noise, stiffness, correct};
-}
-
-/// Solves R'(v) Δ = −r by GMRES, to a few digits only, because Newton's method repeats it.
-template <class Real>
-newton_step<Real> krylov_step(stage_equation<Real>& equation, const column<Real>& v, const column<Real>& r,
-                              int iteration) {
-  const detail::newton_operator<Real> jacobian(equation, v);
-  Eigen::GMRES<detail::newton_operator<Real>, Eigen::IdentityPreconditioner> gmres(jacobian);
-  gmres.set_restart(60);
-  gmres.setMaxIterations(600);
-  gmres.setTolerance(Real(1e-6));
-  // Scale the right-hand side to size 1: GMRES squares it, and small residuals would underflow.
-  const Real size = largest<Real>(r);
-  const column<Real> step = gmres.solve(-r / size) * size;
-  column<Real> y(v.size()), z(v.size());
-  equation.differential(as_span<Real>(v), as_span<Real>(step), as_span(y), as_span(z));
-  const column<Real> moved = masses(equation, step);
-  const Real applied = largest<Real>(moved + y + z);
-  const Real terms = largest<Real>(moved.cwiseAbs() + y.cwiseAbs() + z.cwiseAbs());
-  if (applied < singular_below<Real> * terms) fail_singular(iteration, static_cast<double>(applied / terms));
-  if (!step.allFinite() || !(largest<Real>(moved + y + z + r) <= Real(0.1) * size))
-    throw numerical_error(
-        fmt::format("GMRES does not solve the linear system of Newton iteration {} (nearly singular, or too "
-                    "stiff without a preconditioner); reduce the time step, or use linear_solver::dense",
-                    iteration));
-  equation.differential(as_span<Real>(v), as_span<Real>(v), as_span(y), as_span(z));
-  const Real noise = std::numeric_limits<Real>::epsilon() *
-                     largest<Real>(masses(equation, v).cwiseAbs() + y.cwiseAbs() + z.cwiseAbs());
-  return {step, noise, Real(0), {}};
 }
 
 template <class Real>

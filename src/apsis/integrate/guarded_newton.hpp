@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <limits>
 #include <span>
@@ -44,6 +45,17 @@ class stage_equation {
   /// stage is singular where they cancel.
   virtual void differential(std::span<const Real> v, std::span<const Real> x, std::span<Real> y,
                             std::span<Real> z) = 0;
+  /// Whether precondition() is available.
+  virtual bool has_preconditioner() const { return false; }
+  /// Prepares precondition() at v. An earlier one for the same coefficients may serve, unless `again`.
+  virtual void prepare_preconditioner(std::span<const Real> v, bool again) {
+    (void)v;
+    (void)again;
+  }
+  /// Sets x ← P⁻¹ r for a P that approximates R'.
+  virtual void precondition(std::span<const Real> r, std::span<Real> x) {
+    std::copy(r.begin(), r.end(), x.begin());
+  }
   /// Whether v is admissible; Newton iterates never leave the admissible set once they are inside.
   virtual bool admissible(std::span<const Real> v) = 0;
   /// Returns the size of a correction δ of v in units of the accuracy that is needed. After a correction of
@@ -59,7 +71,7 @@ class stage_equation {
 enum class linear_solver {
   automatic,  ///< dense up to newton_options::dense_limit unknowns
   dense,      ///< LU of R', assembled from the differential in unit directions
-  krylov      ///< matrix-free restarted GMRES on the differential
+  krylov      ///< matrix-free restarted GMRES on the differential, with the preconditioner of the equation
 };
 
 /// Unknowns above which dense systems are reported before a run: LU takes n³ operations in every Newton step.

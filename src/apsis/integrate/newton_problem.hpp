@@ -10,6 +10,7 @@
 #include <apsis/integrate/newton_stage.hpp>
 #include <apsis/integrate/problem.hpp>
 #include <apsis/integrate/simplified_newton.hpp>
+#include <apsis/integrate/stage_preconditioner.hpp>
 #include <apsis/integrate/unsquared_newton.hpp>
 
 #include <algorithm>
@@ -78,10 +79,24 @@ class newton_problem {
   }
 
   /// Solves stages by sparse factorizations (sparse_newton): G' has entries at the places of the pattern
-  /// only.
+  /// only. Throws input_error after with_preconditioner().
   newton_problem& with_sparsity(const sparsity_pattern& pattern) {
+    if (equation_.preconditioner) refuse_both();
     places_ = pattern;
     choose_matrices();
+    return *this;
+  }
+
+  /// Solves stages by matrix-free GMRES with a preconditioner, whatever the options are. `prepare`
+  /// (t, v, γ) returns a function (r, x) that sets x ≈ (M − γ G'(t, v))⁻¹ r, such as a multigrid cycle. It is
+  /// called once for each γ of a step, and again where GMRES does not converge. γ is a, or √−b for b < 0
+  /// (stage_preconditioner.hpp). Throws input_error without a function, or after with_sparsity().
+  newton_problem& with_preconditioner(shifted_solves<real> prepare) {
+    if (!prepare)
+      throw input_error("the preconditioner is empty (it must be callable); give a function of t, v and γ");
+    if (places_) refuse_both();
+    equation_.preconditioner = stage_preconditioner<real>(std::move(prepare));
+    options_.solver = linear_solver::krylov;
     return *this;
   }
 
@@ -152,6 +167,7 @@ class newton_problem {
   /// Required by `problem_with_steps`: stages with b = 0 of a step share a derivative, if there are
   /// tolerances.
   void begin_step(real t, const State& u) {
+    equation_.preconditioner.begin_step();
     if (!equation_.tolerances) return;
     load(u);
     simplified_.begin_step(t, v_);
@@ -209,6 +225,12 @@ class newton_problem {
       if (!solve_by_kept_derivative()) report_ = solve_from_start();
     }
     unload(v_, u);
+  }
+
+  [[noreturn]] static void refuse_both() {
+    throw input_error(
+        "a problem has a sparsity pattern and a preconditioner (sparse systems are factorized, without "
+        "iterations); give one of them");
   }
 
   newton_report solve_from_start() {
@@ -302,7 +324,8 @@ class newton_problem {
     std::snprintf(
         text, sizeof text,
         "a stage has %.0f unknowns, and each of its Newton steps takes about n^3 = %.0e operations (dense "
-        "linear systems); use with_sparsity, linear_solver::krylov if G is not stiff, or relaxation_problem, "
+        "linear systems); use with_sparsity, with_preconditioner, linear_solver::krylov if G is not stiff, "
+        "or relaxation_problem, "
         "whose "
         "stages are closed formulas",
         n, n * n * n);

@@ -4,6 +4,7 @@
 #include <apsis/integrate/component_tolerances.hpp>
 #include <apsis/integrate/mass_matrix.hpp>
 #include <apsis/integrate/simplified_newton.hpp>
+#include <apsis/integrate/stage_preconditioner.hpp>
 
 #include <cstddef>
 #include <functional>
@@ -30,6 +31,13 @@ struct newton_stage final : timed_stage_equation<Real> {
   void rate(std::span<const Real> v, std::span<Real> out) override { field.value(v, out); }
   void rate_product(std::span<const Real> v, std::span<const Real> k, std::span<Real> jk) override {
     field.flow_product(v, k, jk);
+  }
+  bool has_preconditioner() const override { return static_cast<bool>(preconditioner); }
+  void prepare_preconditioner(std::span<const Real> v, bool again) override {
+    preconditioner.prepare(t, v, a, b, again);
+  }
+  void precondition(std::span<const Real> r, std::span<Real> x) override {
+    preconditioner.divide(mass(), r, x);
   }
   Real size_of_correction(std::span<const Real> v, std::span<const Real> delta) override {
     return tolerances ? tolerances->of_change(v, delta) / share : std::numeric_limits<Real>::infinity();
@@ -101,6 +109,7 @@ struct newton_stage final : timed_stage_equation<Real> {
   Real t = Real(0), theta = Real(0);                          ///< set_time() of the stage
   std::function<bool(std::span<const Real>)> admissible_set;  ///< or none
   std::optional<component_tolerances<Real>> tolerances;       ///< of the step; none: solve to rounding
+  stage_preconditioner<Real> preconditioner;                  ///< of Krylov solvers; or none
   std::optional<mass_matrix<Real>> mass_of_rates;             ///< M; none: 1
   Real share = Real(0);                                       ///< part of the tolerances that a stage may use
   Real a = Real(0), b = Real(0);                              ///< coefficients of the stage

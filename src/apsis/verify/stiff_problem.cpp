@@ -3,6 +3,7 @@
 #include <apsis/core/errors.hpp>
 #include <apsis/core/suggest.hpp>
 #include <apsis/integrate/component_tolerances.hpp>
+#include <apsis/integrate/end_error.hpp>
 #include <apsis/integrate/error_control.hpp>
 #include <apsis/integrate/newton_problem.hpp>
 
@@ -103,6 +104,27 @@ stiff_solution solve_stiff_problem(const stiff_problem_entry& problem, const std
   }
   found.digits = correct_digits(problem, found.u);
   return found;
+}
+
+stiff_solution solve_stiff_problem_to_end(const stiff_problem_entry& problem, const std::string& method,
+                                          double rtol, double most_seconds) {
+  const double begin = cpu_seconds();
+  const component_tolerances<double> wanted({rtol}, absolute_tolerances(problem, rtol));
+  stiff_solution all;
+  const auto refined = refine_until_accurate(
+      [&](double factor) {
+        auto found = solve_stiff_problem(problem, method, factor * rtol, std::numeric_limits<long>::max(),
+                                         most_seconds - (cpu_seconds() - begin));
+        all.steps += found.steps;
+        all.rejected += found.rejected;
+        all.evaluations += found.evaluations;
+        all.products += found.products;
+        return found;
+      },
+      [&](const stiff_solution& coarse, const stiff_solution& fine) { return wanted(coarse.u, fine.u); });
+  all.u = refined.solution.u;
+  all.digits = refined.solution.digits;
+  return all;
 }
 
 }  // namespace apsis

@@ -107,4 +107,11 @@ stiff_solution solve_stiff_problem(const stiff_problem_entry& problem, const std
                                    long most_steps = 1000000,
                                    double most_seconds = std::numeric_limits<double>::infinity());
 
+/// Solves a problem like solve_stiff_problem(), with smaller and smaller tolerances until the estimated error
+/// at the end is within rtol (refine_until_accurate). The counts are those of all runs. Throws
+/// numerical_error also if no tolerance suffices.
+stiff_solution solve_stiff_problem_to_end(const stiff_problem_entry& problem, const std::string& method,
+                                          double rtol,
+                                          double most_seconds = std::numeric_limits<double>::infinity());
+
 }  // namespace apsis

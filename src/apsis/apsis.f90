@@ -321,6 +321,11 @@ module apsis
       type(c_ptr), value :: integrator
       real(c_double), value :: dt
     end function
+    integer(c_int) function apsis_set_first_step(integrator, dt) bind(c)
+      import :: c_double, c_int, c_ptr
+      type(c_ptr), value :: integrator
+      real(c_double), value :: dt
+    end function
     integer(c_int) function apsis_set_forward_euler_step(integrator, step) bind(c)
       import :: c_funptr, c_int, c_ptr
       type(c_ptr), value :: integrator

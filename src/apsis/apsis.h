@@ -236,6 +236,10 @@ int apsis_set_relaxation_time(apsis_integrator* integrator, apsis_time_function*
 /// Sets the length of steps; it is reduced until it divides the interval of apsis_integrate(). With a
 /// tolerance it is the largest length. 0 removes it.
 int apsis_set_step(apsis_integrator* integrator, double dt);
+/// Sets the length of the first step after apsis_start(), with a tolerance. The step is shorter where the
+/// estimated error, another limit or the end of the interval requires it. 0 removes it; the problem then
+/// determines the first step. It cannot be combined with a graded start.
+int apsis_set_first_step(apsis_integrator* integrator, double dt);
 /// Sets Δt_FE of T for the property to be preserved. The method must have an SSP coefficient.
 int apsis_set_forward_euler_step(apsis_integrator* integrator, apsis_time_function* step);
 /// Sets the factor of r Δt_FE, initially 1.

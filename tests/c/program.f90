@@ -118,6 +118,8 @@ contains
     call c_f_pointer(apsis_state(s), u, [2])
     ! A method of any order is exact; differences of q in time have ten digits.
     call check(maxval(abs(u - 1)) < 1e-9_c_double, "the solution t")
+    call check(apsis_set_first_step(s, -1.0_c_double) == APSIS_INPUT_ERROR, "a negative first step")
+    call check(index(apsis_string(apsis_error_message()), "the first step is -1") > 0, "its message")
     call apsis_free_integrator(s)
   end subroutine
 

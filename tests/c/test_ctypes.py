@@ -28,6 +28,8 @@ apsis.apsis_free_integrator.argtypes = [c_void_p]
 apsis.apsis_set_transport.argtypes = [c_void_p, TRANSPORT]
 apsis.apsis_set_stage.argtypes = [c_void_p, STAGE]
 apsis.apsis_set_step.argtypes = [c_void_p, c_double]
+apsis.apsis_set_first_step.argtypes = [c_void_p, c_double]
+apsis.apsis_set_tolerance.argtypes = [c_void_p, c_double, c_double]
 apsis.apsis_start.argtypes = [c_void_p, c_double, NUMBERS]
 apsis.apsis_integrate.argtypes = [c_void_p, c_double]
 apsis.apsis_state.argtypes = [c_void_p]
@@ -118,6 +120,22 @@ class FromPython(unittest.TestCase):
 
         self.assertEqual(Integrator("md-imex-6-3", 0.1, 64, gives_nan).integrate(), NUMERICAL_ERROR)
         self.assertIn("the result of the callback 'transport' is not finite (component 0)", message())
+
+    def test_begins_with_the_given_step(self):
+        def steps(first):
+            one = Integrator("md-imex-6-3", 1.0, 64)
+            self.assertEqual(apsis.apsis_set_step(one.handle, 0.0), OK)
+            self.assertEqual(apsis.apsis_set_tolerance(one.handle, 0.0, 1e-3), OK)
+            self.assertEqual(apsis.apsis_set_first_step(one.handle, first), OK)
+            self.assertEqual(one.integrate(2.0**-10), OK)
+            return apsis.apsis_count(one.handle, 0)
+
+        # Without a first step, one step suffices. Steps grow by factors of 2 at most: 2**-20 + … + 2**-11 < 2**-10.
+        self.assertEqual(steps(0.0), 1)
+        self.assertGreater(steps(2.0**-20), 10)
+        one = Integrator("md-imex-6-3", 1.0, 64)
+        self.assertEqual(apsis.apsis_set_first_step(one.handle, -1.0), INPUT_ERROR)
+        self.assertIn("the first step is -1", message())
 
     def test_two_threads_have_the_results_of_one(self):
         expected = [solution("md-imex-6-3", 0.1, 256), solution("md-imex-3-2", 1e-4, 256)]

@@ -159,6 +159,13 @@ step_rule<double> rule_of(const callbacks& of, const step_limits& limits, bool f
     throw input_error(
         "a graded start needs the width of the initial layer (there is no relaxation time); give it by "
         "apsis_set_relaxation_time()");
+  if (limits.first_step && limits.absolute.empty())
+    throw input_error(
+        "a first step is given without a tolerance (the steps have the same length or follow Δt_FE); give a "
+        "tolerance by apsis_set_tolerance(), or remove the first step");
+  if (limits.first_step && limits.growth > 0)
+    throw input_error(
+        "a first step and a graded start are given (each determines the first step); remove one of them");
   const auto rule = limits.dt ? step_rule<double>::fixed(*limits.dt)
                     : limited ? step_rule<double>::ssp(limits.safety)
                               : step_rule<double>::unlimited();
@@ -175,7 +182,7 @@ std::unique_ptr<any_run> make_run(const time_integrator& m, callbacks& of, const
   if (!limits.absolute.empty())
     tolerance = {1.0,
                  [limits](const numbers& a, const numbers& b) { return weighted_difference(limits, a, b); },
-                 std::nullopt, limits.controller};
+                 fresh ? limits.first_step : std::nullopt, limits.controller};
   const bool by_newton = (has_derivatives(of) || of.mass) && !m.needs.exact_collision;
   if (by_newton && of.relaxation_time != nullptr)
     throw input_error(

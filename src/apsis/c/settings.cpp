@@ -8,6 +8,7 @@
 #include <apsis/method/step_law.hpp>
 
 #include <cmath>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -36,6 +37,13 @@ int set(apsis_integrator* integrator, const Change& change) {
     end_run(s);
     return APSIS_OK;
   });
+}
+
+/// Returns a length of steps, nothing for 0. Throws input_error for other numbers that are not positive.
+std::optional<double> length_of(const char* what, double dt) {
+  if (!(dt >= 0.0) || !std::isfinite(dt))
+    throw input_error(fmt::format("{} is {} (a length is needed); give dt > 0, or 0 to remove it", what, dt));
+  return dt > 0.0 ? std::optional(dt) : std::nullopt;
 }
 
 void set_tolerances(apsis_integrator& s, double relative, numbers absolute) {
@@ -157,13 +165,11 @@ int apsis_set_dense_limit(apsis_integrator* integrator, size_t unknowns) {
 }
 
 int apsis_set_step(apsis_integrator* integrator, double dt) {
-  return set(integrator, [=](auto& s) {
-    if (!(dt >= 0.0) || !std::isfinite(dt))
-      throw apsis::input_error(
-          fmt::format("dt is {} (a length is needed); give dt > 0, or 0 to remove it", dt));
-    s.limits.dt.reset();
-    if (dt > 0.0) s.limits.dt = dt;
-  });
+  return set(integrator, [=](auto& s) { s.limits.dt = length_of("dt", dt); });
+}
+
+int apsis_set_first_step(apsis_integrator* integrator, double dt) {
+  return set(integrator, [=](auto& s) { s.limits.first_step = length_of("the first step", dt); });
 }
 
 int apsis_set_safety(apsis_integrator* integrator, double safety) {

@@ -22,7 +22,7 @@ using numbers = std::vector<double>;
 
 /// Limits of the steps.
 struct step_limits {
-  std::optional<double> dt;
+  std::optional<double> dt, first_step;
   double safety = 1.0, relative = 0.0;
   numbers absolute;  ///< of each unknown; empty without a tolerance
   int growth = 0;    ///< of a graded start; 0 without one

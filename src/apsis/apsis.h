@@ -183,20 +183,26 @@ int apsis_set_data(apsis_integrator* integrator, void* data);
 /// Sets T. Without it T = 0.
 int apsis_set_transport(apsis_integrator* integrator, apsis_transport_function* transport);
 
-/// The collision is given in one of two ways: by apsis_set_stage(), or by apsis_set_rate() with one of
-/// apsis_set_jacobian() and apsis_set_product(). With a rate, Newton's method solves the stages. Without a
-/// collision, Q = 0.
+/// The collision is given in one of two ways: by a solver of its stages (apsis_set_stage()), or by its rate
+/// (apsis_set_rate()). Newton's method solves the stages if there is no solver. Its derivatives of Q come
+/// from apsis_set_jacobian() or apsis_set_product(). Without a collision, Q = 0.
+///
+/// Without derivatives of Q, central differences of the rate replace them, with about ten digits. A matrix
+/// takes two calls of the rate for each unknown of a block, or for each group of columns of a sparsity
+/// pattern. Unknowns change by 6e-6 max(|u_i|, 1e-6 max_j |u_j|), so that they may leave the admissible set.
+/// A rate that is not defined there has no derivative. Errors of differences enter Q̇ = Q'Q. If Q is much
+/// faster than a step, choose a method without second derivatives, such as "extrapolated-euler-5".
 
 /// Sets the solver of stages.
 int apsis_set_stage(apsis_integrator* integrator, apsis_stage_function* stage);
-/// Sets Q, which explicit methods and Newton's method need.
+/// Sets Q, which Newton's method and methods with APSIS_NEEDS_RATE evaluate.
 int apsis_set_rate(apsis_integrator* integrator, apsis_rate_function* rate);
 /// Sets Q(t, u) instead of Q(u). Methods without T that use Q̇ then need ∂Q/∂t, which differences of Q compute
-/// over 1e-5 of the step. Derivatives must be products with the Jacobian (apsis_set_timed_product).
+/// over 1e-5 of the step. Its derivatives are apsis_set_timed_product(), or differences.
 int apsis_set_timed_rate(apsis_integrator* integrator, apsis_timed_rate_function* rate);
-/// Sets products with the Jacobian of Q(t, u).
+/// Sets products with the Jacobian of Q(t, u). Without them, differences of Q(t, u) replace them.
 int apsis_set_timed_product(apsis_integrator* integrator, apsis_timed_product_function* product);
-/// Sets the Jacobian of Q as a matrix.
+/// Sets the Jacobian of Q as a matrix. Without it and without products, differences of Q replace it.
 int apsis_set_jacobian(apsis_integrator* integrator, apsis_jacobian_function* jacobian);
 /// Sets products with the Jacobian of Q, which are used in preference to the matrix.
 int apsis_set_product(apsis_integrator* integrator, apsis_product_function* product);
@@ -308,7 +314,7 @@ enum apsis_counter {
   APSIS_TRANSPORT_EVALUATIONS = 2,  ///< calls of the transport
   APSIS_STAGE_SOLVES = 3,           ///< calls of the stage solver, or of Newton's method for a block
   APSIS_NEWTON_ITERATIONS = 4,      ///< linear systems of Newton's method
-  APSIS_RATE_EVALUATIONS = 5,       ///< calls of the rate
+  APSIS_RATE_EVALUATIONS = 5,       ///< calls of the rate, including those for differences
   APSIS_JACOBIAN_EVALUATIONS = 6,   ///< calls of the Jacobian matrix
   APSIS_PRODUCT_EVALUATIONS = 7,    ///< calls of products with the Jacobian
   APSIS_FLOW_EVALUATIONS = 8,       ///< calls of the exact flow

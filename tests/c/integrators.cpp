@@ -365,9 +365,11 @@ TEST(c_integrators, refuse_bad_settings) {
          const auto one = ready("md-imex-6-3");
          apsis_set_step(one.get(), 0.1);
          apsis_set_stage(one.get(), nullptr);
+         apsis_set_rate(one.get(), nullptr);
          advance(one);
        },
-       {"method 'md-imex-6-3' solves stages", "apsis_set_jacobian()"}},
+       {"method 'md-imex-6-3' solves stages (and there is neither a stage solver nor a rate)",
+        "apsis_set_rate()"}},
       {[&] {
          const auto one = ready("md-imex-6-3");
          apsis_set_step(one.get(), 0.1);
@@ -382,6 +384,14 @@ TEST(c_integrators, refuse_bad_settings) {
          apsis_set_step(one.get(), 0.1);
          apsis_set_stage(one.get(), nullptr);
          apsis_set_jacobian(one.get(), jacobian);
+         apsis_set_relaxation_time(one.get(), relaxation_time);
+         advance(one);
+       },
+       {"a relaxation time is given and Newton's method solves the stages"}},
+      {[&] {
+         const auto one = ready("md-imex-6-3");
+         apsis_set_step(one.get(), 0.1);
+         apsis_set_stage(one.get(), nullptr);  // the rate remains
          apsis_set_relaxation_time(one.get(), relaxation_time);
          advance(one);
        },

@@ -36,8 +36,18 @@ void known_jacobian::product(callbacks& of, const stage_position& now, std::span
   }
 }
 
+void block_rate::operator()(double t, std::span<const double> u, std::span<double> q) const {
+  try {
+    of->evaluate_block(t, now->block, u, q);
+  } catch (const numerical_error&) {
+    // A stage may still be solved with the derivative at another state.
+    std::fill(q.begin(), q.end(), std::nan(""));
+  }
+}
+
 void block_field::product(known_jacobian& known, std::span<const double> u, std::span<const double> x,
                           std::span<double> jx) {
+  if (of_->is_differenced()) return differences_.jacobian_product(u, x, jx);
   if (of_->timed_product == nullptr && of_->product == nullptr) return known.product(*of_, *now_, u, x, jx);
   of_->count(APSIS_PRODUCT_EVALUATIONS);
   const std::size_t n = u.size();
@@ -64,6 +74,7 @@ void block_field::curvature(std::span<const double> u, std::span<const double> k
   if (of_->curvature != nullptr)
     return require_success("curvature", of_->curvature(now_->block, u.size(), u.data(), k.data(), x.data(),
                                                        hx.data(), of_->data));
+  if (of_->is_differenced()) return differences_.curvature(u, k, x, hx);
   std::fill(hx.begin(), hx.end(), 0.0);
   const double along = largest(k);
   if (!(along > 0.0)) return;

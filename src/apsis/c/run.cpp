@@ -71,10 +71,6 @@ class run_of final : public any_run {
   evolution<Problem> evolution_;
 };
 
-bool has_derivatives(const callbacks& of) {
-  return of.jacobian != nullptr || of.product != nullptr || of.timed_product != nullptr;
-}
-
 bool has_collision(const callbacks& of) {
   return of.stage != nullptr || of.has_rate() || of.flow != nullptr;
 }
@@ -84,6 +80,13 @@ bool is_explicit(const time_integrator& m) {
   return m.file() != nullptr && m.file()->kind == method_kind::explicit_only;
 }
 
+/// Whether Newton's method solves the stages, or a mass matrix divides the rates of an explicit method.
+bool is_newton(const time_integrator& m, const callbacks& of) {
+  if (m.needs.exact_collision) return false;
+  const bool by_differences = of.is_differenced() && of.stage == nullptr && !is_explicit(m);
+  return of.has_derivatives() || of.mass || by_differences;
+}
+
 /// Throws input_error if functions of Q(u) and of Q(t, u) are mixed.
 void require_one_time(const callbacks& of) {
   if (of.rate != nullptr && of.timed_rate != nullptr)
@@ -91,7 +94,9 @@ void require_one_time(const callbacks& of) {
   if (of.timed_rate != nullptr &&
       (of.jacobian != nullptr || of.product != nullptr || of.curvature != nullptr))
     throw input_error(
-        "derivatives of Q(u) are given for Q(t, u) (they do not receive t); give apsis_set_timed_product()");
+        "derivatives of Q(u) are given for Q(t, u) (they do not receive t); give apsis_set_timed_product(), "
+        "or "
+        "remove them");
   if (of.timed_product != nullptr && of.timed_rate == nullptr)
     throw input_error(
         "derivatives of Q(t, u) are given without Q(t, u) (stages need both); give it by "
@@ -121,10 +126,10 @@ void require_matrices(const time_integrator& m, const callbacks& of) {
 
 /// Throws input_error unless the collision is given in the form that the method needs.
 void require_collision(const time_integrator& m, const callbacks& of) {
-  if (of.stage != nullptr && has_derivatives(of))
+  if (of.stage != nullptr && of.has_derivatives())
     throw input_error(
         "a stage solver and derivatives of Q are given (only one of them can solve the stages); remove one");
-  if (has_derivatives(of) && !of.has_rate())
+  if (of.has_derivatives() && !of.has_rate())
     throw input_error("derivatives of Q are given without Q (stages need both); give it by apsis_set_rate()");
   require_one_time(of);
   require_matrices(m, of);
@@ -137,11 +142,10 @@ void require_collision(const time_integrator& m, const callbacks& of) {
     throw input_error("method '" + m.name +
                       "' evaluates Q (and there is no rate); give it by apsis_set_rate(), or choose another "
                       "method");
-  if (!m.needs.exact_collision && !is_explicit(m) && of.stage == nullptr && !has_derivatives(of))
-    throw input_error(
-        "method '" + m.name +
-        "' solves stages (and there is neither a stage solver nor a derivative of Q); give one by "
-        "apsis_set_stage(), apsis_set_jacobian() or apsis_set_product()");
+  if (!m.needs.exact_collision && !is_explicit(m) && of.stage == nullptr && !of.has_rate())
+    throw input_error("method '" + m.name +
+                      "' solves stages (and there is neither a stage solver nor a rate); give one by "
+                      "apsis_set_stage() or apsis_set_rate()");
 }
 
 /// Returns the limit of the steps. Throws input_error unless there is one.
@@ -183,7 +187,7 @@ std::unique_ptr<any_run> make_run(const time_integrator& m, callbacks& of, const
     tolerance = {1.0,
                  [limits](const numbers& a, const numbers& b) { return weighted_difference(limits, a, b); },
                  fresh ? limits.first_step : std::nullopt, limits.controller};
-  const bool by_newton = (has_derivatives(of) || of.mass) && !m.needs.exact_collision;
+  const bool by_newton = is_newton(m, of);
   if (by_newton && of.relaxation_time != nullptr)
     throw input_error(
         "a relaxation time is given and Newton's method solves the stages (it belongs to a stage solver); "

@@ -2,6 +2,8 @@
 
 #include "callbacks.hpp"
 
+#include <apsis/integrate/difference_derivatives.hpp>
+
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -28,21 +30,34 @@ class known_jacobian {
   long long solve_ = -1;
 };
 
+/// Q on one block as a function of t and u, for differences.
+struct block_rate {
+  callbacks* of;
+  const stage_position* now;
+
+  /// q ← Q(t, u); NaN if the rate rejects u.
+  void operator()(double t, std::span<const double> u, std::span<double> q) const;
+};
+
 /// Q and its derivatives on one block (`differentiated_in_time` of integrate/autodiff.hpp).
 class block_field {
  public:
   /// Stores references.
-  block_field(callbacks& of, const stage_position& now) : of_(&of), now_(&now) {}
+  block_field(callbacks& of, const stage_position& now)
+      : of_(&of), now_(&now), differences_(block_rate{&of, &now}) {}
 
   /// Sets the time of all evaluations that follow.
-  void set_time(double t) { t_ = t; }
+  void set_time(double t) {
+    t_ = t;
+    differences_.set_time(t);
+  }
   /// out ← Q(t, u).
   void value(std::span<const double> u, std::span<double> out) {
     of_->evaluate_block(t_, now_->block, u, out);
   }
   /// out ← ∂Q/∂t by a central difference over a small part of the step; 0 for Q(u).
   void time_derivative(std::span<const double> u, std::span<double> out);
-  /// jx ← ∂Q/∂u x.
+  /// jx ← ∂Q/∂u x, by a difference unless the program has a function for derivatives.
   void jacobian_product(std::span<const double> u, std::span<const double> x, std::span<double> jx) {
     product(middle_, u, x, jx);
   }
@@ -58,6 +73,7 @@ class block_field {
   const stage_position* now_;
   double t_ = 0.0;
   known_jacobian before_, middle_, after_;
+  difference_derivatives<block_rate> differences_;
   std::vector<double> moved_, other_;
 };
 

@@ -51,6 +51,12 @@ struct callbacks {
   void evaluate_block(double t, std::size_t block, std::span<const double> u, std::span<double> q);
   /// Whether there is a rate, of u or of t and u.
   bool has_rate() const { return rate != nullptr || timed_rate != nullptr; }
+  /// Whether there is a function for derivatives of Q.
+  bool has_derivatives() const {
+    return jacobian != nullptr || product != nullptr || timed_product != nullptr;
+  }
+  /// Whether derivatives of Q are differences of the rate.
+  bool is_differenced() const { return has_rate() && !has_derivatives(); }
   /// Whether a block is admissible.
   bool is_admissible(std::size_t block, std::span<const double> u) const;
   /// Returns the first block that is not admissible; nothing if all are.

@@ -6,7 +6,7 @@
 # PUBLIC and PRIVATE as in target_link_libraries; INSIDE is for packages of headers that only sources include, which users
 # of the installed library therefore do not need. The component is kinetic if not given; a room of a component that is
 # not built (ApsisComponents.cmake) is skipped. C_INTERFACE names the header of a room with a C interface: always a shared
-# library, with static rooms inside, the symbols of its exported.map alone, and the ABI_VERSION of the header in its name.
+# library, with static rooms inside, the functions listed in its exported.map alone, and the ABI_VERSION of the header in its name.
 
 add_library(apsis_options INTERFACE)
 target_compile_features(apsis_options INTERFACE cxx_std_20)

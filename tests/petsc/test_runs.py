@@ -97,14 +97,5 @@ class PlugIn(unittest.TestCase):
             self.assertIn(f"-ts_apsis_{option}", text)
 
 
-class Exports(unittest.TestCase):
-    def test_the_library_exports_the_functions_of_its_header_alone(self):
-        text = subprocess.run(["nm", "-D", "--defined-only", LIBRARY_FILE], capture_output=True, text=True, check=True).stdout
-        found = {line.split()[-1].partition("@")[0] for line in text.splitlines() if line.split()[1] in "TWV"}
-        header = (Path(__file__).resolve().parents[2] / "src/apsis/apsis_petsc.h").read_text(encoding="utf-8")
-        declared = set(re.findall(r"^PetscErrorCode (\w+)\(", header, re.M))
-        self.assertEqual(found, declared)
-
-
 if __name__ == "__main__":
     unittest.main()

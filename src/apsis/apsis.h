@@ -4,9 +4,10 @@
 /// (apsis_set_timed_rate()). All quantities are dimensionless. docs/linking.md has an example, and states
 /// what later versions preserve.
 ///
-/// Functions that return an int return one of apsis_status, and never end the program. Errors are negative;
-/// apsis_error_message() describes the last error of the calling thread. There is no global state: threads
-/// may use different handles simultaneously. They may share a method, but not an integrator.
+/// Functions that return an int return one of apsis_status unless they are described otherwise, and never end
+/// the program. Errors are negative; apsis_error_message() describes the last error of the calling thread.
+/// There is no global state: threads may use different handles simultaneously. They may share a method, but
+/// not an integrator.
 #ifndef APSIS_APSIS_H
 #define APSIS_APSIS_H
 
@@ -58,9 +59,10 @@ size_t apsis_catalogue_size(void);
 const char* apsis_catalogue_name(size_t index);
 
 /// Sets *method to the method called `name`: a method of the catalogue, a member of a family, a formula such
-/// as "imex-bdf-3", or a method file given by its path, FILE.toml. apsis_free_method() releases it. Methods
-/// are certified when they are loaded. Errors: APSIS_INPUT_ERROR with the nearest name, APSIS_FILE_ERROR, or
-/// APSIS_CLAIM_ERROR if a claim of a file does not hold; *method is then NULL.
+/// as "imex-bdf-3", or a method file given by its path, FILE.toml. docs/methods.md and `apsis list choices`
+/// recommend methods. apsis_free_method() releases it. Methods are certified when they are loaded. Errors:
+/// APSIS_INPUT_ERROR with the nearest name, APSIS_FILE_ERROR, or APSIS_CLAIM_ERROR if a claim of a file does
+/// not hold; *method is then NULL.
 int apsis_find_method(const char* name, apsis_method** method);
 /// Releases a method; integrators made from it remain valid. NULL is ignored.
 void apsis_free_method(apsis_method* method);
@@ -113,8 +115,8 @@ int apsis_method_file(const apsis_method* method, const char** text);
 /// Sets *text to the certificate, properties derived from the coefficients alone: lines "key = value". Valid
 /// as long as the method.
 int apsis_method_certificate(const apsis_method* method, const char** text);
-/// Sets *value to a number of the certificate; flags are 0 or 1. Error: APSIS_INPUT_ERROR with the nearest
-/// key, or if the value is a text.
+/// Sets *value to a number of the certificate, whose text has the keys; flags are 0 or 1. Error:
+/// APSIS_INPUT_ERROR with the nearest key, or if the value is a text.
 int apsis_method_fact(const apsis_method* method, const char* key, double* value);
 
 // Callbacks -------------------------------------------------------------------------------------------------
@@ -122,7 +124,8 @@ int apsis_method_fact(const apsis_method* method, const char* key, double* value
 /// Callbacks return 0 on success. A positive number rejects the state, as if it were NaN. Steps controlled by
 /// a tolerance are then repeated with a smaller length; others end the integration with
 /// APSIS_NUMERICAL_ERROR. A negative number ends it with APSIS_CALLBACK_ERROR. `data` is the pointer given to
-/// apsis_set_data(), and `n` the number of unknowns in `u`. Outputs have undefined contents before the call.
+/// apsis_set_data(), and `n` the number of unknowns in `u`. Outputs have undefined contents before the
+/// call; callbacks set every entry, also those that are 0.
 
 /// out ← T(t, u).
 typedef int apsis_transport_function(double t, size_t n, const double* u, double* out, void* data);
@@ -137,7 +140,7 @@ typedef int apsis_rate_function(size_t block, size_t n, const double* u, double*
 /// q ← Q(t, u) for one block.
 typedef int apsis_timed_rate_function(double t, size_t block, size_t n, const double* u, double* q,
                                       void* data);
-/// The n × n entries ∂Q_i/∂u_j of one block, row by row.
+/// jacobian[i n + j] ← ∂Q_i/∂u_j (u) for one block: n × n numbers, row by row, i and j from 0.
 typedef int apsis_jacobian_function(size_t block, size_t n, const double* u, double* jacobian, void* data);
 /// jx ← Q'(u) x for one block. Its error enters the solution through Q̇ = Q'Q.
 typedef int apsis_product_function(size_t block, size_t n, const double* u, const double* x, double* jx,
@@ -174,9 +177,9 @@ int apsis_new_integrator(const apsis_method* method, size_t n, apsis_integrator*
 /// Releases an integrator. NULL is ignored.
 void apsis_free_integrator(apsis_integrator* integrator);
 
-/// Every setting may be changed between two calls of apsis_integrate(); NULL removes a callback. Settings
-/// other than data and observers restart the control of step lengths. In callbacks, all settings,
-/// apsis_start() and apsis_integrate() return APSIS_INPUT_ERROR.
+/// Every setting may be changed between two calls of apsis_integrate(), which checks their combination; NULL
+/// removes a callback. Settings other than data and observers restart the control of step lengths. In
+/// callbacks, all settings, apsis_start() and apsis_integrate() return APSIS_INPUT_ERROR.
 
 /// Sets the last argument of all callbacks, initially NULL.
 int apsis_set_data(apsis_integrator* integrator, void* data);
@@ -206,7 +209,7 @@ int apsis_set_timed_product(apsis_integrator* integrator, apsis_timed_product_fu
 int apsis_set_jacobian(apsis_integrator* integrator, apsis_jacobian_function* jacobian);
 /// Sets products with the Jacobian of Q, which are used in preference to the matrix.
 int apsis_set_product(apsis_integrator* integrator, apsis_product_function* product);
-/// Sets the second derivative of Q. Without it, differences of first derivatives replace it.
+/// Sets the second derivative of Q. Without it, differences replace it.
 int apsis_set_curvature(apsis_integrator* integrator, apsis_curvature_function* curvature);
 /// Sets the exact solution of the collision, for methods of kind "exponential".
 int apsis_set_flow(apsis_integrator* integrator, apsis_flow_function* flow);
@@ -215,12 +218,14 @@ int apsis_set_flow(apsis_integrator* integrator, apsis_flow_function* flow);
 /// APSIS_INPUT_ERROR unless the size divides n.
 int apsis_set_block_size(apsis_integrator* integrator, size_t size);
 /// Sets the largest block, initially 96 unknowns, whose linear systems in Newton's method are dense. GMRES
-/// without a preconditioner solves larger ones, which is only suitable if Q is not stiff.
+/// without a preconditioner solves larger ones, which is only suitable if Q is not stiff. For larger stiff
+/// blocks give a sparsity pattern, or a larger limit.
 int apsis_set_dense_limit(apsis_integrator* integrator, size_t unknowns);
 /// Sets the places of the Jacobian of a block that may be nonzero: `count` rows and columns, counted from 0,
 /// which are copied. Places on the diagonal always belong to them. Stages are then solved by sparse
-/// factorizations, and products compute the entries of several columns at a time. Set it after the block
-/// size; count = 0 removes it. Error: APSIS_INPUT_ERROR for a place outside of the block.
+/// factorizations, and products compute the entries of several columns at a time. A Jacobian callback still
+/// has n × n entries; products or differences suit a large block. Set the pattern after the block size; count
+/// = 0 removes it. Error: APSIS_INPUT_ERROR for a place outside of the block.
 int apsis_set_sparsity(apsis_integrator* integrator, size_t count, const size_t* rows, const size_t* columns);
 /// Makes the system M u' = T(t, u) + Q(t, u), where the constant, invertible matrix M couples the unknowns of
 /// a block and is the same for all blocks: `count` entries with rows and columns counted from 0, which are
@@ -253,8 +258,8 @@ int apsis_set_safety(apsis_integrator* integrator, double safety);
 /// Controls the estimated error e of a step: |e_i| ≤ absolute + relative |u_i| for every i. relative ≥ 0, and
 /// absolute > 0; both 0 removes the control. Methods without an embedded solution take each step twice, as
 /// one step and as two halves. Newton's method ends when its error is a thousandth of this bound.
-/// Stages of methods without second derivatives then share one derivative of Q per step and block. If the
-/// derivatives of all blocks have more than 2^24 entries, stages are solved to rounding errors instead.
+/// Stages of methods without second derivatives then share one derivative of Q per step and block. If those
+/// of several blocks have more than 2^24 entries, stages are solved to rounding errors instead.
 int apsis_set_tolerance(apsis_integrator* integrator, double relative, double absolute);
 /// Does the same with an absolute tolerance for each unknown: n positive numbers, which are copied.
 int apsis_set_tolerances(apsis_integrator* integrator, double relative, const double* absolute);
@@ -264,7 +269,8 @@ int apsis_set_tolerances(apsis_integrator* integrator, double relative, const do
 int apsis_set_controller(apsis_integrator* integrator, const char* name);
 /// Divides the first step after apsis_start() into graded steps that resolve the initial layer, for data out
 /// of equilibrium (docs/plateaus.md). `growth`, from 2 to 64, is the ratio of their successive times; 0
-/// removes the graded steps. A relaxation time is required.
+/// removes the graded steps. With a tolerance, they limit the length of the first step instead. A relaxation
+/// time is required.
 int apsis_set_graded_start(apsis_integrator* integrator, int growth);
 /// Sets the function that observes every step.
 int apsis_set_observer(apsis_integrator* integrator, apsis_observer_function* observer);
@@ -286,15 +292,17 @@ int apsis_set_stop_times(apsis_integrator* integrator, size_t count, const doubl
 /// Sets the time and the state, n numbers that are copied, and resets all counters to 0. Error:
 /// APSIS_INPUT_ERROR if a number is not finite.
 int apsis_start(apsis_integrator* integrator, double t0, const double* u0);
-/// Integrates from the time reached to t1 and ends exactly there. After an error the state is that of the
-/// last accepted step; the integration may be continued with other settings. Methods that need equal steps
-/// begin each call with their starter. Returns APSIS_OK, APSIS_STOPPED, APSIS_EVENT or an error.
+/// Integrates from the time reached to a finite t1, not before it, and ends exactly there. An event or the
+/// observer may end it earlier. After an error the state is that of the last accepted step. In each of these
+/// cases another call continues the integration, also with other settings. The number of steps has no limit;
+/// an observer can set one. Methods that need equal steps begin each call with their starter. Returns
+/// APSIS_OK, APSIS_STOPPED, APSIS_EVENT or an error.
 int apsis_integrate(apsis_integrator* integrator, double t1);
 
 /// Returns the time reached; NaN for NULL and before apsis_start().
 double apsis_time(const apsis_integrator* integrator);
 /// Returns the n numbers of the state; NULL without an integrator and before apsis_start(). Valid until the
-/// next call of apsis_start(), apsis_integrate() or apsis_free_integrator().
+/// next setting, or the next call of apsis_start(), apsis_integrate() or apsis_free_integrator().
 const double* apsis_state(const apsis_integrator* integrator);
 
 /// Writes the n numbers of the solution at a time t of the last step to `u`: dense output, also for

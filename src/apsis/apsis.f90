@@ -23,7 +23,7 @@ module apsis
   integer(c_int), parameter :: APSIS_STEPS = 0, APSIS_REJECTED_STEPS = 1, APSIS_TRANSPORT_EVALUATIONS = 2, &
                                APSIS_STAGE_SOLVES = 3, APSIS_NEWTON_ITERATIONS = 4, APSIS_RATE_EVALUATIONS = 5, &
                                APSIS_JACOBIAN_EVALUATIONS = 6, APSIS_PRODUCT_EVALUATIONS = 7, APSIS_FLOW_EVALUATIONS = 8, &
-                               APSIS_EVENTS = 9
+                               APSIS_EVENTS = 9, APSIS_PREPARATIONS = 10, APSIS_PRECONDITIONER_SOLVES = 11
 
   ! Callbacks. A program declares its own with bind(c) and passes c_funloc(name).
   abstract interface
@@ -100,6 +100,21 @@ module apsis
       integer(c_size_t), value :: n
       real(c_double), intent(in) :: u(n)
       real(c_double), intent(out) :: result
+      type(c_ptr), value :: data
+    end function
+    integer(c_int) function apsis_prepare_function(t, gamma, block, n, u, data) bind(c)
+      import :: c_double, c_int, c_ptr, c_size_t
+      real(c_double), value :: t, gamma
+      integer(c_size_t), value :: block, n
+      real(c_double), intent(in) :: u(n)
+      type(c_ptr), value :: data
+    end function
+    integer(c_int) function apsis_precondition_function(t, gamma, block, n, u, r, x, data) bind(c)
+      import :: c_double, c_int, c_ptr, c_size_t
+      real(c_double), value :: t, gamma
+      integer(c_size_t), value :: block, n
+      real(c_double), intent(in) :: u(n), r(n)
+      real(c_double), intent(out) :: x(n)
       type(c_ptr), value :: data
     end function
     integer(c_int) function apsis_admissible_function(block, n, u, result, data) bind(c)
@@ -320,6 +335,11 @@ module apsis
       import :: c_double, c_int, c_ptr
       type(c_ptr), value :: integrator
       real(c_double), value :: dt
+    end function
+    integer(c_int) function apsis_set_preconditioner(integrator, prepare, solve) bind(c)
+      import :: c_funptr, c_int, c_ptr
+      type(c_ptr), value :: integrator
+      type(c_funptr), value :: prepare, solve
     end function
     integer(c_int) function apsis_set_first_step(integrator, dt) bind(c)
       import :: c_double, c_int, c_ptr

@@ -151,6 +151,14 @@ typedef int apsis_timed_product_function(double t, size_t block, size_t n, const
 /// hx ← Q''(u)[k, x] for one block. Its error only slows Newton's method.
 typedef int apsis_curvature_function(size_t block, size_t n, const double* u, const double* k,
                                      const double* x, double* hx, void* data);
+/// Prepares solves of (M − γ Q'(t, u)) x = r for one block, γ > 0, for example by a factorization of an
+/// approximate matrix. M is the mass matrix, or 1.
+typedef int apsis_prepare_function(double t, double gamma, size_t block, size_t n, const double* u,
+                                   void* data);
+/// x ← an approximate solution of (M − γ Q'(t, u)) x = r for one block. t, γ, the block and u are those of the
+/// last call of apsis_prepare_function.
+typedef int apsis_precondition_function(double t, double gamma, size_t block, size_t n, const double* u,
+                                        const double* r, double* x, void* data);
 /// *result ← a positive time: Δt_FE, or the smallest relaxation time ε/C of the state.
 typedef int apsis_time_function(double t, size_t n, const double* u, double* result, void* data);
 /// *result ← 1 if the block u is admissible (for example positive), otherwise 0. An inadmissible stage ends
@@ -219,7 +227,7 @@ int apsis_set_flow(apsis_integrator* integrator, apsis_flow_function* flow);
 int apsis_set_block_size(apsis_integrator* integrator, size_t size);
 /// Sets the largest block, initially 96 unknowns, whose linear systems in Newton's method are dense. GMRES
 /// without a preconditioner solves larger ones, which is only suitable if Q is not stiff. For larger stiff
-/// blocks give a sparsity pattern, or a larger limit.
+/// blocks give a sparsity pattern, a preconditioner, or a larger limit.
 int apsis_set_dense_limit(apsis_integrator* integrator, size_t unknowns);
 /// Sets the places of the Jacobian of a block that may be nonzero: `count` rows and columns, counted from 0,
 /// which are copied. Places on the diagonal always belong to them. Stages are then solved by sparse
@@ -227,6 +235,13 @@ int apsis_set_dense_limit(apsis_integrator* integrator, size_t unknowns);
 /// has n × n entries; products or differences suit a large block. Set the pattern after the block size; count
 /// = 0 removes it. Error: APSIS_INPUT_ERROR for a place outside of the block.
 int apsis_set_sparsity(apsis_integrator* integrator, size_t count, const size_t* rows, const size_t* columns);
+/// Sets a preconditioner: GMRES then solves the linear systems of Newton's method, for any number of unknowns.
+/// Stages without Q̇ have γ = a. Those with Q̇ have γ = √−b, and apply the solver twice. `prepare` may be NULL.
+/// It is called before `solve` for each γ of a step and block, again after a solve for another γ or block,
+/// and where GMRES does not converge. A step of a method with one γ on one block thus takes one call. solve =
+/// NULL removes both. It cannot be combined with a sparsity pattern or a stage solver.
+int apsis_set_preconditioner(apsis_integrator* integrator, apsis_prepare_function* prepare,
+                             apsis_precondition_function* solve);
 /// Makes the system M u' = T(t, u) + Q(t, u), where the constant, invertible matrix M couples the unknowns of
 /// a block and is the same for all blocks: `count` entries with rows and columns counted from 0, which are
 /// copied; values at one place are added. Δt_FE is then that of u' = M⁻¹ T. It cannot be combined with a
@@ -326,7 +341,9 @@ enum apsis_counter {
   APSIS_JACOBIAN_EVALUATIONS = 6,   ///< calls of the Jacobian matrix
   APSIS_PRODUCT_EVALUATIONS = 7,    ///< calls of products with the Jacobian
   APSIS_FLOW_EVALUATIONS = 8,       ///< calls of the exact flow
-  APSIS_EVENTS = 9                  ///< events
+  APSIS_EVENTS = 9,                 ///< events
+  APSIS_PREPARATIONS = 10,          ///< calls of the first function of a preconditioner
+  APSIS_PRECONDITIONER_SOLVES = 11  ///< calls of its second function
 };
 /// Returns a counter, one of apsis_counter; −1 for NULL and for an unknown counter.
 long long apsis_count(const apsis_integrator* integrator, int counter);

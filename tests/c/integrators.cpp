@@ -100,7 +100,7 @@ TEST(c_integrators, count_evaluations) {
   EXPECT_EQ(static_cast<double>(apsis_count(s.get(), APSIS_TRANSPORT_EVALUATIONS)), 64 * of_t);
   EXPECT_EQ(static_cast<double>(apsis_count(s.get(), APSIS_STAGE_SOLVES)), 64 * of_q);
   EXPECT_EQ(apsis_count(s.get(), APSIS_RATE_EVALUATIONS), 0);
-  EXPECT_EQ(apsis_count(s.get(), APSIS_EVENTS + 1), -1);
+  EXPECT_EQ(apsis_count(s.get(), APSIS_PRECONDITIONER_SOLVES + 1), -1);
   const double again[] = {2, 0};
   apsis_start(s.get(), 0, again);
   EXPECT_EQ(apsis_count(s.get(), APSIS_TRANSPORT_EVALUATIONS), 0);

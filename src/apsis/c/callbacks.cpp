@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 
 #include <fmt/format.h>
 
@@ -37,6 +38,21 @@ void callbacks::evaluate_rate(double t, const std::vector<double>& u, std::vecto
     evaluate_block(t, block, all.subspan(block * block_size, block_size),
                    rates.subspan(block * block_size, block_size));
   require_finite(out, "the result of the callback 'rate'");
+}
+
+shifted_solve<double> callbacks::solver_of(std::size_t block, double t, std::span<const double> u,
+                                           double gamma) {
+  const auto ready = std::make_shared<long long>(0);
+  return [this, block, t, gamma, ready, at = std::vector<double>(u.begin(), u.end())](
+             std::span<const double> r, std::span<double> x) {
+    if (prepare != nullptr && (*ready == 0 || *ready != preparation)) {
+      *ready = ++preparation;
+      count(APSIS_PREPARATIONS);
+      require_success("prepare", prepare(t, gamma, block, at.size(), at.data(), data));
+    }
+    count(APSIS_PRECONDITIONER_SOLVES);
+    require_success("solve", precondition(t, gamma, block, at.size(), at.data(), r.data(), x.data(), data));
+  };
 }
 
 bool callbacks::is_admissible(std::size_t block, std::span<const double> u) const {

@@ -186,7 +186,7 @@ const double* apsis_state(const apsis_integrator* integrator) {
 }
 
 long long apsis_count(const apsis_integrator* integrator, int counter) {
-  if (integrator == nullptr || counter < 0 || counter > APSIS_EVENTS) return -1;
+  if (integrator == nullptr || counter < 0 || counter > APSIS_PRECONDITIONER_SOLVES) return -1;
   const auto* run = integrator->run.get();
   if (counter == APSIS_STEPS) return integrator->steps + (run != nullptr ? run->steps() : 0);
   if (counter == APSIS_REJECTED_STEPS) return integrator->rejected + (run != nullptr ? run->rejected() : 0);

@@ -103,7 +103,8 @@ void require_one_time(const callbacks& of) {
         "apsis_set_timed_rate()");
 }
 
-/// Throws input_error unless pattern and mass matrix are those of a block, and Newton's method uses them.
+/// Throws input_error unless pattern, preconditioner and mass matrix are those of a block, and Newton's
+/// method uses them.
 void require_matrices(const time_integrator& m, const callbacks& of) {
   const auto require_size = [&](const char* what, std::size_t n) {
     if (n != of.block_size)
@@ -112,6 +113,13 @@ void require_matrices(const time_integrator& m, const callbacks& of) {
                       "again, after apsis_set_block_size()",
                       what, n, of.block_size));
   };
+  if (of.precondition != nullptr && of.stage != nullptr)
+    throw input_error(
+        "a preconditioner and a stage solver are given (it is part of Newton's method); remove one of them");
+  if (of.precondition != nullptr && of.pattern)
+    throw input_error(
+        "a preconditioner and a sparsity pattern are given (sparse systems are factorized, without "
+        "iterations); remove one of them");
   if (of.pattern) require_size("a sparsity pattern", of.pattern->size());
   if (!of.mass) return;
   require_size("a mass matrix", of.mass->size());

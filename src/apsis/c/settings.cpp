@@ -117,6 +117,18 @@ int apsis_set_sparsity(apsis_integrator* integrator, size_t count, const size_t*
   });
 }
 
+int apsis_set_preconditioner(apsis_integrator* integrator, apsis_prepare_function* prepare,
+                             apsis_precondition_function* solve) {
+  return set(integrator, [=](auto& s) {
+    if (prepare != nullptr && solve == nullptr)
+      throw apsis::input_error(
+          "a preconditioner is prepared and not applied (its second function is NULL); give one, or remove "
+          "both");
+    s.of.prepare = prepare;
+    s.of.precondition = solve;
+  });
+}
+
 int apsis_set_mass(apsis_integrator* integrator, size_t count, const size_t* rows, const size_t* columns,
                    const double* values) {
   return set(integrator, [=](auto& s) {

@@ -8,6 +8,7 @@
 #include <apsis/integrate/array_state.hpp>
 #include <apsis/integrate/mass_matrix.hpp>
 #include <apsis/integrate/sparsity_pattern.hpp>
+#include <apsis/integrate/stage_preconditioner.hpp>
 
 #include <array>
 #include <cstddef>
@@ -30,6 +31,8 @@ struct callbacks {
   apsis_product_function* product = nullptr;
   apsis_timed_product_function* timed_product = nullptr;
   apsis_curvature_function* curvature = nullptr;
+  apsis_prepare_function* prepare = nullptr;
+  apsis_precondition_function* precondition = nullptr;
   apsis_time_function* forward_euler_step = nullptr;
   apsis_time_function* relaxation_time = nullptr;
   apsis_admissible_function* admissible = nullptr;
@@ -39,7 +42,8 @@ struct callbacks {
   std::optional<sparsity_pattern> pattern{};  ///< of the Jacobian of a block
   std::optional<mass_matrix<double>> mass{};  ///< of a block
   observing_thread observing{};
-  std::array<long long, APSIS_FLOW_EVALUATIONS + 1> counts{};
+  std::array<long long, APSIS_PRECONDITIONER_SOLVES + 1> counts{};
+  long long preparation = 0;  ///< number of the last preparation, for which solves are ready
 
   void count(apsis_counter which, long long more = 1) { counts[static_cast<std::size_t>(which)] += more; }
 
@@ -57,6 +61,8 @@ struct callbacks {
   }
   /// Whether derivatives of Q are differences of the rate.
   bool is_differenced() const { return has_rate() && !has_derivatives(); }
+  /// Returns a solver of (M − γQ'(t, u)) x = r for a block. It calls `prepare` if another one was used last.
+  shifted_solve<double> solver_of(std::size_t block, double t, std::span<const double> u, double gamma);
   /// Whether a block is admissible.
   bool is_admissible(std::size_t block, std::span<const double> u) const;
   /// Returns the first block that is not admissible; nothing if all are.

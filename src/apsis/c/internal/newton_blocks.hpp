@@ -112,6 +112,10 @@ class newton_blocks {
           [this, &of](std::span<const double> v) { return of.is_admissible(now.block, v); });
       if (of.pattern) local.with_sparsity(*of.pattern);
       if (of.mass) local.with_mass(*of.mass);
+      if (of.precondition != nullptr)
+        local.with_preconditioner([this, &of](double t, std::span<const double> v, double gamma) {
+          return of.solver_of(now.block, t, v, gamma);
+        });
     }
     solver(const solver&) = delete;  // the problem refers to the position
     solver& operator=(const solver&) = delete;

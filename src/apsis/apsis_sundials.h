@@ -103,7 +103,8 @@ int apsis_sundials_set_stage(apsis_sundials* integrator, apsis_sundials_stage_fu
 /// Sets the linear solver, which the integrator does not own. It is iterative without a matrix, or direct
 /// with a matrix that supports products with vectors and c A + I. A direct solver factorizes I − γJ, γ =
 /// √|b|, to precondition GMRES from both sides. For methods without second derivatives (b = 0, γ = a) it
-/// solves the systems alone. By default GMRES solves them. Error: APSIS_INPUT_ERROR for other pairs.
+/// solves the systems alone. By default GMRES solves them, which needs the operation nvdiv. Error:
+/// APSIS_INPUT_ERROR for other pairs.
 int apsis_sundials_set_linear_solver(apsis_sundials* integrator, SUNLinearSolver solver, SUNMatrix matrix);
 /// Sets products with the Jacobian, and the function that prepares them, or NULL. Without products and
 /// matrix, central differences of Q replace them: ARKStepSetJacTimes.
@@ -136,14 +137,15 @@ int apsis_sundials_set_safety(apsis_sundials* integrator, sunrealtype safety);
 /// ARKStepSStolerances.
 int apsis_sundials_set_tolerance(apsis_sundials* integrator, sunrealtype relative, sunrealtype absolute);
 /// Does the same with an absolute tolerance for each unknown, positive numbers that are
-/// copied: ARKStepSVtolerances.
+/// copied: ARKStepSVtolerances. Error: APSIS_INPUT_ERROR for other numbers, and without the operation nvmin.
 int apsis_sundials_set_tolerances(apsis_sundials* integrator, sunrealtype relative, N_Vector absolute);
 /// Sets the law of step control, as apsis_set_controller(): ARKStepSetAdaptivityMethod.
 int apsis_sundials_set_controller(apsis_sundials* integrator, const char* name);
 /// Requires y_i ≥ 0, > 0, ≤ 0 or < 0 where the constraint is 1, 2, −1 or −2, and nothing where it is 0, as
 /// ARKODE does. The vector is copied; NULL removes it. Newton's method does not leave these states. A stage
 /// outside them ends the step with an error; a step to a tolerance is shortened until its stages and its
-/// result satisfy them: ARKStepSetConstraints.
+/// result satisfy them: ARKStepSetConstraints. Error: APSIS_INPUT_ERROR for other numbers, and without the
+/// operation nvconstrmask.
 int apsis_sundials_set_constraints(apsis_sundials* integrator, N_Vector constraints);
 /// Sets the relaxation time of a collision with a stage solver. Error estimates then give less weight to
 /// deviations from equilibrium that relax within a step.

@@ -11,6 +11,11 @@
 
 namespace apsis::sundials {
 
+void require_operation(const char* name, bool there, const char* use) {
+  if (!there)
+    throw input_error(fmt::format("the vectors have no operation '{}' ({}); add it to their ops", name, use));
+}
+
 bool is_finite(N_Vector v) {
   // The maximum norm of some vectors ignores NaN.
   return std::isfinite(N_VL1Norm(v));

@@ -53,10 +53,7 @@ void require_operations(N_Vector y) {
                                                      {"nvdotprod", has.nvdotprod != nullptr},
                                                      {"nvmaxnorm", has.nvmaxnorm != nullptr},
                                                      {"nvl1norm", has.nvl1norm != nullptr}};
-  for (const auto& [name, there] : operations)
-    if (!there)
-      throw input_error(fmt::format(
-          "the vectors have no operation '{}' (integrations call it); add it to their ops", name));
+  for (const auto& [name, there] : operations) require_operation(name, there, "integrations call it");
 }
 
 void require_finite_start(double t, N_Vector y) {

@@ -14,6 +14,8 @@ namespace {
 
 owned_solver make_gmres(const functions& of, const nvector& like) {
   const bool preconditioned = of.matrix != nullptr || of.preconditioner != nullptr;
+  // Without it, SUNDIALS makes no solver and does not state why.
+  require_operation("nvdiv", like.get()->ops->nvdiv != nullptr, "GMRES calls it");
   const int dimension = static_cast<int>(std::min<sunindextype>(N_VGetLength(like.get()), 30));
   owned_solver made(
       SUNLinSol_SPGMR(like.get(), preconditioned ? SUN_PREC_BOTH : SUN_PREC_NONE, dimension, of.context));

@@ -171,6 +171,7 @@ int apsis_sundials_set_tolerances(apsis_sundials* integrator, sunrealtype relati
     require_relative(relative);
     apsis::c::require(absolute, "the vector of absolute tolerances");
     require_length(s, absolute);
+    require_operation("nvmin", absolute->ops->nvmin != nullptr, "tolerances of unknowns call it");
     nvector all(absolute);
     if (!is_finite(all.get()) || !(N_VMin(all.get()) > 0.0))
       throw input_error(
@@ -188,7 +189,10 @@ int apsis_sundials_set_controller(apsis_sundials* integrator, const char* name) 
 
 int apsis_sundials_set_constraints(apsis_sundials* integrator, N_Vector constraints) {
   return set(integrator, [=](auto& s) {
-    if (constraints != nullptr) require_length(s, constraints);
+    if (constraints != nullptr) {
+      require_length(s, constraints);
+      require_operation("nvconstrmask", constraints->ops->nvconstrmask != nullptr, "constraints call it");
+    }
     nvector all(constraints);
     if (all && !(N_VMaxNorm(all.get()) <= 2.0))
       throw input_error("a constraint is not -2, -1, 0, 1 or 2 (ARKODE defines them so); give one of these");

@@ -9,6 +9,9 @@
 
 namespace apsis::sundials {
 
+/// Throws input_error unless the operation `name` of the vectors is `there`. `use` states who calls it.
+void require_operation(const char* name, bool there, const char* use);
+
 /// A state: an N_Vector of any kind, copied by its operations. Its sums do not depend on its division among
 /// threads or processes. Throws std::bad_alloc if a vector cannot be cloned.
 class nvector {

@@ -205,6 +205,7 @@ long long apsis_sundials_count(const apsis_sundials* integrator, int counter);
 /// Sets *stepper to a SUNStepper that evolves, steps, resets and stops the integrator, and evaluates T + Q,
 /// as other integrators of SUNDIALS combine them. It does not integrate backward, and has no forcing.
 /// SUNStepper_Destroy() releases it, before the integrator. Its last flag is an apsis_status.
+/// SUNStepper_Reset() does not reset its number of steps, SUNStepper_ReInit() does.
 int apsis_sundials_make_stepper(apsis_sundials* integrator, SUNStepper* stepper);
 #endif
 

@@ -199,7 +199,7 @@ int apsis_sundials_reset(apsis_sundials* integrator, sunrealtype t, N_Vector y) 
     s.running.reset();
     s.t = t;
     s.u.swap(u);
-    s.steps = s.rejected = 0;
+    s.steps = s.rejected = s.steps_before_reset = 0;
     s.found.clear();
     s.of.counts.fill(0);
     return APSIS_OK;

@@ -44,8 +44,17 @@ SUNErrCode full_rate(SUNStepper stepper, sunrealtype t, N_Vector y, N_Vector f, 
                  }));
 }
 
-SUNErrCode reset(SUNStepper stepper, sunrealtype t, N_Vector y) {
+SUNErrCode reinitialize(SUNStepper stepper, sunrealtype t, N_Vector y) {
   return outcome(stepper, apsis_sundials_reset(content_of(stepper), t, y));
+}
+
+/// Unlike reinitialize(), does not set the number of steps to 0.
+SUNErrCode reset(SUNStepper stepper, sunrealtype t, N_Vector y) {
+  apsis_sundials* s = content_of(stepper);
+  const long long before = s->steps_before_reset + apsis_sundials_count(s, APSIS_SUNDIALS_STEPS);
+  const int status = apsis_sundials_reset(s, t, y);
+  if (status == APSIS_OK) s->steps_before_reset = before;
+  return outcome(stepper, status);
 }
 
 SUNErrCode set_stop_time(SUNStepper stepper, sunrealtype t) {
@@ -53,7 +62,8 @@ SUNErrCode set_stop_time(SUNStepper stepper, sunrealtype t) {
 }
 
 SUNErrCode get_steps(SUNStepper stepper, suncountertype* steps) {
-  *steps = static_cast<suncountertype>(apsis_sundials_count(content_of(stepper), APSIS_SUNDIALS_STEPS));
+  const apsis_sundials* s = content_of(stepper);
+  *steps = static_cast<suncountertype>(s->steps_before_reset + apsis_sundials_count(s, APSIS_SUNDIALS_STEPS));
   return SUN_SUCCESS;
 }
 
@@ -91,7 +101,7 @@ int apsis_sundials_make_stepper(apsis_sundials* integrator, SUNStepper* stepper)
     for (const SUNErrCode returned :
          {SUNStepper_SetContent(made, integrator), SUNStepper_SetEvolveFn(made, evolve),
           SUNStepper_SetOneStepFn(made, one_step), SUNStepper_SetFullRhsFn(made, full_rate),
-          SUNStepper_SetReInitFn(made, reset), SUNStepper_SetResetFn(made, reset),
+          SUNStepper_SetReInitFn(made, reinitialize), SUNStepper_SetResetFn(made, reset),
           SUNStepper_SetStopTimeFn(made, set_stop_time), SUNStepper_SetGetNumStepsFn(made, get_steps)})
       require_success(returned);
     *stepper = owned.release();

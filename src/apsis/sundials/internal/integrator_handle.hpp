@@ -65,6 +65,7 @@ struct apsis_sundials {
   apsis::sundials::step_limits limits{};
   apsis::sundials::event_settings events{};
   long long steps = 0, rejected = 0;
+  long long steps_before_reset = 0;  ///< of a SUNStepper, since it was last reinitialized
   std::vector<apsis::found_event<double>> found{};
   std::unique_ptr<apsis::sundials::run> running{};  ///< of the present settings; made at the next integration
   std::atomic<bool> busy{false};                    ///< whether an integration is in progress

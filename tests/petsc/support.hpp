@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdio>
+#include <cstdlib>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -146,6 +148,21 @@ class run {
   TS ts_ = nullptr;
   Vec u_ = nullptr;
 };
+
+/// Returns the text of -ts_view on this process.
+inline std::string view_of(TS ts) {
+  char* text = nullptr;
+  std::size_t size = 0;
+  std::FILE* file = open_memstream(&text, &size);
+  PetscViewer viewer = nullptr;
+  require(PetscViewerASCIIOpenWithFILE(PetscObjectComm(reinterpret_cast<PetscObject>(ts)), file, &viewer));
+  require(TSView(ts, viewer));
+  require(PetscViewerDestroy(&viewer));
+  std::fclose(file);
+  const std::string out(text, size);
+  std::free(text);  // allocated by the C library
+  return out;
+}
 
 /// Returns the communicator of new runs.
 inline MPI_Comm& processes() {

@@ -88,7 +88,8 @@ class PlugIn(unittest.TestCase):
 
     def test_a_view_names_the_method(self):
         text = output_of(1, ALONE, "-dll_append", LIBRARY, "-ts_type", "apsis", "-ts_view", "-ts_apsis_method", "md-imex-6-3")
-        for line in ("method md-imex-6-3: ", "order 3, 6 stages, kind imex, RHSFunction explicit", "SSP coefficient"):
+        for line in ("method md-imex-6-3: ", "order 3, 6 stages, kind imex, RHSFunction explicit", "SSP coefficient",
+                     "preconditioners of stages set up: "):
             self.assertIn(line, text)
 
     def test_help_lists_the_options(self):

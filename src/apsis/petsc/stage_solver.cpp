@@ -6,29 +6,9 @@
 
 #include <petsc/private/snesimpl.h>
 #include <petsc/private/tsimpl.h>
-#include <petscdm.h>
 
 namespace apsis::petsc {
 namespace {
-
-PetscErrorCode form_jacobian(SNES snes, Vec v, Mat, Mat, void* context) {
-  return guarded(comm_of(snes), [&] { static_cast<stage_solver*>(context)->linearize(v); });
-}
-
-PetscErrorCode apply_operator(Mat of, Vec x, Vec y) {
-  return guarded(comm_of(of), [&] {
-    void* context = nullptr;
-    check(MatShellGetContext(of, static_cast<void*>(&context)));
-    static_cast<stage_solver*>(context)->product(x, y);
-  });
-}
-
-PetscErrorCode test_convergence(SNES snes, PetscInt iteration, PetscReal of_v, PetscReal of_correction,
-                                PetscReal of_residual, SNESConvergedReason* reason, void* context) {
-  return guarded(comm_of(snes), [&] {
-    *reason = static_cast<stage_solver*>(context)->test(iteration, of_v, of_correction, of_residual);
-  });
-}
 
 PetscErrorCode begin(KSP ksp, Vec rhs, Vec, void* context) {
   return guarded(comm_of(ksp), [&] { static_cast<stage_solver*>(context)->begin_linear_solve(ksp, rhs); });
@@ -38,101 +18,13 @@ PetscErrorCode finish(KSP ksp, Vec, Vec x, void* context) {
   return guarded(comm_of(ksp), [&] { static_cast<stage_solver*>(context)->finish_linear_solve(ksp, x); });
 }
 
+/// Ratio of two corrections beyond which matrices of an earlier J are renewed.
+constexpr double slow = 0.3;
+
 /// γ‖J‖ beyond which stages begin with an implicit Euler step.
 constexpr double most_without_start = 3e6;
 
-mat make_operator(Vec like, stage_solver* context) {
-  PetscInt local = 0, global = 0;
-  check(VecGetLocalSize(like, &local));
-  check(VecGetSize(like, &global));
-  mat made;
-  check(MatCreateShell(comm_of(like), local, local, global, global, context, made.receive()));
-  const auto function = reinterpret_cast<void (*)()>(apply_operator);
-  check(MatShellSetOperation(made.get(), MATOP_MULT, function));
-  return made;
-}
-
-/// Removes a preconditioner that needs a matrix, as PETSc does for matrix-free operators. Preconditioners
-/// that the program defines remain.
-void use_no_preconditioner(KSP ksp) {
-  PC pc = nullptr;
-  PetscBool own = PETSC_FALSE;
-  check(KSPGetPC(ksp, &pc));
-  check(PetscObjectTypeCompareAny(reinterpret_cast<PetscObject>(pc), &own, PCSHELL, PCKSP, PCMAT, ""));
-  if (own == PETSC_FALSE) check(PCSetType(pc, PCNONE));
-}
-
 }  // namespace
-
-void stage_solver::attach(Vec like) {
-  SNES snes = nullptr;
-  check(TSGetSNES(of_.ts(), &snes));
-  Mat a = nullptr;
-  check(SNESGetJacobian(snes, &a, nullptr, nullptr, nullptr));
-  if (snes_ == snes && operator_ && a == operator_.get()) {
-    if (!preconditioner_ || preconditioner_->in_place()) return;
-  }
-  detach();
-  owner_ = nonlinear_solver::share(snes);
-  snes_ = snes;
-  const jacobian_choice chosen = choose_jacobian(of_, snes);
-  Mat own_a = nullptr, own_p = nullptr;
-  PetscBool p_only = PETSC_FALSE, matrix_free = PETSC_FALSE;
-  DM dm = nullptr;
-  check(SNESGetDM(snes, &dm));
-  check(DMSNESGetJacobian(dm, &own_jacobian_, &own_context_));
-  check(SNESGetJacobian(snes, &own_a, &own_p, nullptr, nullptr));
-  check(SNESGetUseMatrixFree(snes, &p_only, &matrix_free));
-  own_a_ = mat::share(own_a);
-  own_p_ = mat::share(own_p);
-  own_p_only_ = p_only == PETSC_TRUE;
-  own_matrix_free_ = matrix_free == PETSC_TRUE;
-  jacobian_.emplace(of_, chosen, settings_.constant_jacobian || of_.has_constant_jacobian());
-  operator_ = make_operator(like, this);
-  check(SNESSetUseMatrixFree(snes, PETSC_FALSE, PETSC_FALSE));
-  // Until the first stage is linearized, the operator also serves as a matrix of the right size.
-  check(SNESSetJacobian(snes, operator_.get(), operator_.get(), form_jacobian, this));
-  own_test_ = snes->ops->converged == SNESConvergedDefault;
-  if (own_test_) check(SNESSetConvergenceTest(snes, test_convergence, this, nullptr));
-  KSP ksp = nullptr;
-  check(SNESGetKSP(snes, &ksp));
-  if (jacobian_->entries() == nullptr) return use_no_preconditioner(ksp);
-  preconditioner_ = std::make_unique<stage_preconditioner>(ksp, settings_.form);
-}
-
-void stage_solver::detach() {
-  if (snes_ == nullptr) return;
-  preconditioner_.reset();
-  matrix_ = nullptr;
-  // Destructors cannot report errors; PETSc has printed them. The next solve sets up its matrices again.
-  snes_->setupcalled = PETSC_FALSE;
-  if (snes_->ksp != nullptr) {
-    static_cast<void>(KSPSetPreSolve(snes_->ksp, nullptr, nullptr));
-    static_cast<void>(KSPSetPostSolve(snes_->ksp, nullptr, nullptr));
-  }
-  const auto flag = [](bool on) { return on ? PETSC_TRUE : PETSC_FALSE; };
-  static_cast<void>(SNESSetUseMatrixFree(snes_, flag(own_p_only_), flag(own_matrix_free_)));
-  if (snes_->jacobian == operator_.get()) {
-    static_cast<void>(MatDestroy(&snes_->jacobian));
-    static_cast<void>(MatDestroy(&snes_->jacobian_pre));
-    DM dm = nullptr;
-    static_cast<void>(SNESGetDM(snes_, &dm));
-    static_cast<void>(SNESSetJacobian(snes_, own_a_.get(), own_p_.get(), nullptr, nullptr));
-    static_cast<void>(DMSNESSetJacobian(dm, own_jacobian_, own_context_));
-  }
-  if (own_test_) static_cast<void>(SNESSetConvergenceTest(snes_, SNESConvergedDefault, nullptr, nullptr));
-  jacobian_.reset();
-  operator_.reset();
-  own_a_.reset();
-  own_p_.reset();
-  snes_ = nullptr;
-  owner_.reset();
-}
-
-void stage_solver::reset() {
-  detach();
-  for (vector* one : {&explicit_part_, &rate_, &product_, &middle_, &moved_, &base_, &right_}) one->reset();
-}
 
 bool stage_solver::solve(const stage& now, Vec u) {
   attach(u);
@@ -141,6 +33,7 @@ bool stage_solver::solve(const stage& now, Vec u) {
   jacobian_->evaluate(now.t, u);
   const double gamma = std::max(now.a, std::sqrt(-now.b));
   stiffness_ = gamma * jacobian_->size(u);
+  if (preconditioner_) preconditioner_->begin_stage(*jacobian_, now.dt);
   // Far from equilibrium, residuals of (Δt/ε)² Q leave no digits to slow modes, and the equation has other
   // roots than the one that short steps lead to. An implicit Euler step gives a start near equilibrium.
   if (now.b != 0.0 && ((preconditioner_ && stiffness_ > most_without_start) || is_far_from_equilibrium(u))) {
@@ -153,12 +46,17 @@ bool stage_solver::solve(const stage& now, Vec u) {
   return iterate(u);
 }
 
-/// Returns whether Q changes an unknown by more than its size in the time √−b of the second derivative. The
-/// equations of a solver for linear problems have one root.
-bool stage_solver::is_far_from_equilibrium(Vec u) {
+/// Returns whether the SNES solves linear equations, without iterations.
+bool stage_solver::is_linear() const {
   PetscBool linear = PETSC_FALSE;
   check(PetscObjectTypeCompare(reinterpret_cast<PetscObject>(snes_), SNESKSPONLY, &linear));
-  if (linear == PETSC_TRUE) return false;
+  return linear == PETSC_TRUE;
+}
+
+/// Returns whether Q changes an unknown by more than its size in the time √−b of the second derivative.
+/// Linear equations have one root.
+bool stage_solver::is_far_from_equilibrium(Vec u) {
+  if (is_linear()) return false;
   const Vec rate = rate_.like(u);
   of_.minus_collision(now_.t, u, rate);
   PetscReal largest = 0.0;
@@ -166,12 +64,27 @@ bool stage_solver::is_far_from_equilibrium(Vec u) {
   return std::sqrt(-now_.b) * largest > 1.0;
 }
 
+/// Solves the stage from the start u, if necessary with a new preconditioner in each iteration.
 bool stage_solver::iterate(Vec u) {
+  snes_lags_ = has_lag(snes_);
+  renewal_ = snes_lags_ ? renewal::all : is_linear() ? renewal::changed : renewal::distant;
+  if (!preconditioner_ || snes_lags_) return try_iterate(u);
+  start_.assign(u);
+  if (try_iterate(u)) return true;
+  if (!has_kept_) return false;
+  renewal_ = renewal::all;
+  check(VecCopy(start_.get(), u));
+  return try_iterate(u);
+}
+
+bool stage_solver::try_iterate(Vec u) {
   last_correction_ = 0.0;
-  // During Newton's method the entries of its matrix may change, but not the matrix object.
-  linearize(u);
+  has_kept_ = false;
+  // During Newton's method the entries of its matrix may change, but not the matrix object. If the program
+  // chose when SNES evaluates matrices, SNES decides on the first one, too.
+  linearize(u, snes_lags_ ? renewal::none : renewal_);
   const Mat p = matrix_ != nullptr ? matrix_ : operator_.get();
-  if (p != snes_->jacobian_pre) check(SNESSetJacobian(snes_, operator_.get(), p, form_jacobian, this));
+  if (p != snes_->jacobian_pre) check(SNESSetJacobian(snes_, operator_.get(), p, nullptr, nullptr));
   check(SNESSetUp(snes_));
   KSP ksp = nullptr;
   check(SNESGetKSP(snes_, &ksp));
@@ -207,12 +120,19 @@ void stage_solver::residual(Vec v, Vec r) {
 }
 
 void stage_solver::linearize(Vec v) {
+  linearize(v, renewal_);
+}
+
+void stage_solver::linearize(Vec v, renewal which) {
   jacobian_->evaluate(now_.t, v);
   if (settings_.curvature && now_.b != 0.0) {
     base_.assign(v);
     of_.minus_collision(now_.t, v, rate_.like(v));
   }
-  if (preconditioner_) matrix_ = preconditioner_->prepare(*jacobian_, now_.a, now_.b, stiffness_);
+  if (preconditioner_) {
+    matrix_ = preconditioner_->prepare(*jacobian_, now_.a, now_.b, stiffness_, which);
+    has_kept_ = has_kept_ || preconditioner_->is_kept();
+  }
   check(MatAssemblyBegin(operator_.get(), MAT_FINAL_ASSEMBLY));
   check(MatAssemblyEnd(operator_.get(), MAT_FINAL_ASSEMBLY));
 }
@@ -251,6 +171,9 @@ void stage_solver::begin_linear_solve(KSP ksp, Vec rhs) {
 }
 
 void stage_solver::finish_linear_solve(KSP ksp, Vec x) {
+  PetscInt iterations = 0;
+  check(KSPGetIterationNumber(ksp, &iterations));
+  if (preconditioner_) preconditioner_->finish_solve(iterations);
   if (!tolerances_) return;
   check(KSPSetTolerances(ksp, tolerances_->relative, tolerances_->absolute, tolerances_->divergence,
                          tolerances_->iterations));
@@ -296,6 +219,7 @@ SNESConvergedReason stage_solver::test(PetscInt iteration, double of_v, double o
   // loses. A correction much smaller than the last may therefore be followed by one that is not.
   constexpr double epsilon = std::numeric_limits<double>::epsilon();
   const double ratio = of_correction / before;
+  if (ratio > slow && preconditioner_) preconditioner_->renew_next();
   const double contraction = std::max(ratio, std::min(0.1, std::sqrt(epsilon) * stiffness_));
   if (contraction < 1.0 && contraction / (1.0 - contraction) * of_correction <= wanted)
     return SNES_CONVERGED_SNORM_RELATIVE;

@@ -158,6 +158,7 @@ bool ts_apsis::try_step() {
 
 void ts_apsis::step() {
   prepare();
+  if (ts_->steps == 0) stages_.reset_counter();  // as TSSolve() resets the counters of iterations
   start_.assign(ts_->vec_sol);
   PetscInt rejections = 0;
   while (ts_->reason == TS_CONVERGED_ITERATING) {

@@ -17,6 +17,7 @@ void ts_apsis::view(PetscViewer viewer) const {
     check(PetscViewerASCIIPrintf(viewer, "  SSP coefficient %g\n", coefficients.r));
   else
     check(PetscViewerASCIIPrintf(viewer, "  no SSP coefficient\n"));
+  check(PetscViewerASCIIPrintf(viewer, "  preconditioners of stages set up: %ld\n", stages_.set_ups()));
 }
 
 }  // namespace apsis::petsc

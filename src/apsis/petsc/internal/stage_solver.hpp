@@ -47,6 +47,10 @@ class stage_solver {
   /// Returns why the last solve ended.
   SNESConvergedReason reason() const { return reason_; }
 
+  /// Returns how often preconditioners were set up since reset_counter().
+  long set_ups() const { return set_ups_; }
+  void reset_counter() { set_ups_ = 0; }
+
   /// r ← v − u_e − aQ − bJQ, as the function of the SNES.
   void residual(Vec v, Vec r);
   /// Evaluates the matrices at v, as the function of the SNES for its Jacobian.
@@ -66,8 +70,11 @@ class stage_solver {
 
  private:
   void attach(Vec like);
+  bool is_linear() const;
   bool is_far_from_equilibrium(Vec u);
   bool iterate(Vec u);
+  bool try_iterate(Vec u);
+  void linearize(Vec v, renewal which);
   void add_curvature(Vec x, Vec y);
   void count_iterations();
 
@@ -82,8 +89,12 @@ class stage_solver {
   std::optional<collision_jacobian> jacobian_;
   std::unique_ptr<stage_preconditioner> preconditioner_;
   Mat matrix_ = nullptr;  ///< owned by preconditioner_
+  renewal renewal_ = renewal::distant;
+  bool snes_lags_ = false;  ///< whether the program chose when SNES computes matrices and preconditioners
+  bool has_kept_ = false;   ///< whether the present iteration used a matrix of an earlier J
+  long set_ups_ = 0;
   stage now_;
-  vector explicit_part_, rate_, product_, middle_, moved_, base_, right_;
+  vector explicit_part_, start_, rate_, product_, middle_, moved_, base_, right_;
   std::optional<krylov_tolerances> tolerances_;  ///< of the program, during a linear solve with two inverses
   SNESConvergedReason reason_ = SNES_CONVERGED_ITERATING;
   double last_correction_ = 0.0, stiffness_ = 0.0;  ///< stiffness_: γ‖J‖

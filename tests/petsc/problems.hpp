@@ -122,6 +122,49 @@ struct exchange {
   }
 };
 
+/// The exchange with diffusion: u_t + u_x = Du_xx + q/ε, v_t = Dv_xx − q/ε. Diffusion belongs to the
+/// IFunction.
+struct diffusive_exchange : exchange {
+  static constexpr double diffusion = 0.05;
+
+  static double factor(const own_points& own) {
+    return diffusion * static_cast<double>(own.all) * static_cast<double>(own.all);
+  }
+  static PetscErrorCode collision(TS ts, PetscReal t, Vec u, Vec rate, Vec out, void* context) {
+    require(exchange::collision(ts, t, u, rate, out, context));
+    with_ghosts(ts, u, [out](DM dm, Vec local) {
+      const own_points own(dm);
+      const points<2> from(dm, local), to(dm, out);
+      for (PetscInt i = own.begin; i < own.end; ++i)
+        for (int c = 0; c < 2; ++c)
+          to[i][c] -= factor(own) * (from[i - 1][c] - 2 * from[i][c] + from[i + 1][c]);
+    });
+    return 0;
+  }
+  static PetscErrorCode jacobian(TS ts, PetscReal t, Vec u, Vec rate, PetscReal shift, Mat a, Mat p,
+                                 void* context) {
+    DM dm = nullptr;
+    require(TSGetDM(ts, &dm));
+    const own_points own(dm);
+    // The exchange sets its blocks, and the diagonal gets 2D/h² by the shift.
+    require(exchange::jacobian(ts, t, u, rate, shift + 2 * factor(own), a, p, context));
+    for (PetscInt i = own.begin; i < own.end; ++i)
+      for (int c = 0; c < 2; ++c) {
+        const MatStencil row = {0, 0, i, c}, columns[] = {{0, 0, i - 1, c}, {0, 0, i + 1, c}};
+        const PetscScalar values[] = {-factor(own), -factor(own)};
+        require(MatSetValuesStencil(p, 1, &row, 2, columns, values, INSERT_VALUES));
+      }
+    require(MatAssemblyBegin(p, MAT_FINAL_ASSEMBLY));
+    require(MatAssemblyEnd(p, MAT_FINAL_ASSEMBLY));
+    return 0;
+  }
+  void enter(run& to) {
+    exchange::enter(to, true, false);
+    require(TSSetIFunction(to.ts(), nullptr, collision, static_cast<exchange*>(this)));
+    require(TSSetIJacobian(to.ts(), nullptr, nullptr, jacobian, static_cast<exchange*>(this)));
+  }
+};
+
 /// The Brusselator u_t = 1 − 4u + u²v + αu_xx, v_t = 3u − u²v + αv_xx with u = 1 and v = 3 at both ends. The
 /// reaction is the RHSFunction, the diffusion the IFunction.
 struct brusselator {

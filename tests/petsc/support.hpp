@@ -87,6 +87,17 @@ inline std::vector<double> gathered(Vec u) {
   return out;
 }
 
+/// Returns all entries of a Vec of a DMDA in the natural order, on every process.
+inline std::vector<double> gathered_in_natural_order(DM dm, Vec u) {
+  Vec natural = nullptr;
+  require(DMDACreateNaturalVector(dm, &natural));
+  require(DMDAGlobalToNaturalBegin(dm, u, INSERT_VALUES, natural));
+  require(DMDAGlobalToNaturalEnd(dm, u, INSERT_VALUES, natural));
+  auto out = gathered(natural);
+  require(VecDestroy(&natural));
+  return out;
+}
+
 /// Returns the largest difference of two solutions.
 inline double distance(const std::vector<double>& a, const std::vector<double>& b) {
   EXPECT_EQ(a.size(), b.size());
@@ -135,7 +146,7 @@ class run {
     require(TSGetKSPIterations(ts_, &krylov));
     require(TSGetSolveTime(ts_, &out.t));
     require(TSGetConvergedReason(ts_, &out.reason));
-    out.u = gathered(u_);
+    out.u = gathered_in_natural_order(dm_, u_);
     out.steps = static_cast<int>(steps);
     out.rejected = static_cast<int>(rejected);
     out.newton = static_cast<int>(newton);

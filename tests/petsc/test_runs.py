@@ -15,7 +15,7 @@ from processes import ENVIRONMENT, LIMIT, slow  # noqa: E402
 RUNS, ALONE = os.environ["APSIS_PETSC_RUNS"], os.environ["APSIS_PETSC_ALONE"]
 LIBRARY, LIBRARY_FILE = os.environ["APSIS_PETSC_LIBRARY"], os.environ["APSIS_PETSC_LIBRARY_FILE"]
 
-OF_SEVERAL_PROCESSES = "ranks.*:refusals.*:errors_of_the_program.*:other_types.*"
+OF_SEVERAL_PROCESSES = "ranks.*:ranks/*:refusals.*:errors_of_the_program.*:other_types.*"
 
 LEFT = r"objects were never freed|\[ *\d+\] *\d+ bytes"
 

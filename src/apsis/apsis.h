@@ -155,8 +155,8 @@ typedef int apsis_curvature_function(size_t block, size_t n, const double* u, co
 /// approximate matrix. M is the mass matrix, or 1.
 typedef int apsis_prepare_function(double t, double gamma, size_t block, size_t n, const double* u,
                                    void* data);
-/// x ← an approximate solution of (M − γ Q'(t, u)) x = r for one block. t, γ, the block and u are those of the
-/// last call of apsis_prepare_function.
+/// x ← an approximate solution of (M − γ Q'(t, u)) x = r for one block. t, γ, the block and u are those of
+/// the last call of apsis_prepare_function.
 typedef int apsis_precondition_function(double t, double gamma, size_t block, size_t n, const double* u,
                                         const double* r, double* x, void* data);
 /// *result ← a positive time: Δt_FE, or the smallest relaxation time ε/C of the state.
@@ -235,11 +235,12 @@ int apsis_set_dense_limit(apsis_integrator* integrator, size_t unknowns);
 /// has n × n entries; products or differences suit a large block. Set the pattern after the block size; count
 /// = 0 removes it. Error: APSIS_INPUT_ERROR for a place outside of the block.
 int apsis_set_sparsity(apsis_integrator* integrator, size_t count, const size_t* rows, const size_t* columns);
-/// Sets a preconditioner: GMRES then solves the linear systems of Newton's method, for any number of unknowns.
-/// Stages without Q̇ have γ = a. Those with Q̇ have γ = √−b, and apply the solver twice. `prepare` may be NULL.
-/// It is called before `solve` for each γ of a step and block, again after a solve for another γ or block,
-/// and where GMRES does not converge. A step of a method with one γ on one block thus takes one call. solve =
-/// NULL removes both. It cannot be combined with a sparsity pattern or a stage solver.
+/// Sets a preconditioner: GMRES then solves the linear systems of Newton's method, for any number of
+/// unknowns. Stages without Q̇ have γ = a. Those with Q̇ have γ = √−b, and apply the solver twice. `prepare`
+/// may be NULL. It is called before `solve` for each γ of a step and block, again after a solve for another γ
+/// or block, and where GMRES does not converge. A step of a method with one γ on one block thus takes one
+/// call. Several blocks without a tolerance take one in each stage. solve = NULL removes both. It cannot be
+/// combined with a sparsity pattern or a stage solver.
 int apsis_set_preconditioner(apsis_integrator* integrator, apsis_prepare_function* prepare,
                              apsis_precondition_function* solve);
 /// Makes the system M u' = T(t, u) + Q(t, u), where the constant, invertible matrix M couples the unknowns of

@@ -4,7 +4,9 @@
 
 #include <cmath>
 #include <cstddef>
+#include <set>
 #include <span>
+#include <string>
 #include <vector>
 
 #include <c/ode.hpp>
@@ -54,6 +56,7 @@ void eliminate(double gamma, view r, std::span<double> x) {
 struct record {
   double gamma = 0.0;
   std::size_t block = 0;
+  std::set<std::size_t> blocks;
   int prepared = 0, solved = 0, answer = 0;
 };
 
@@ -76,6 +79,7 @@ int prepare(double, double gamma, size_t block, size_t, const double*, void* dat
   auto& seen = *static_cast<record*>(data);
   seen.gamma = gamma;
   seen.block = block;
+  seen.blocks.insert(block);
   ++seen.prepared;
   return 0;
 }
@@ -150,7 +154,8 @@ TEST(c_preconditioner, follows_blocks_and_gammas) {
   record data;
   const auto s = of_heat("md-imex-3-2", data, 3);  // solve() compares γ and block with the preparation
   ASSERT_EQ(apsis_integrate(s.get(), 0.5), APSIS_OK) << apsis_error_message();
-  EXPECT_GE(data.prepared, 4 * 3);
+  EXPECT_GE(data.prepared, 4 * 3);  // steps and blocks
+  EXPECT_EQ(data.blocks, (std::set<std::size_t>{0, 1, 2}));
 }
 
 TEST(c_preconditioner, may_have_no_preparation) {
@@ -172,7 +177,8 @@ TEST(c_preconditioner, ends_the_run_if_it_fails) {
   data.answer = -7;
   const auto s = of_heat("ark-548-2", data);
   EXPECT_EQ(apsis_integrate(s.get(), 1), APSIS_CALLBACK_ERROR);
-  EXPECT_NE(std::string(apsis_error_message()).find("'solve' returned -7"), std::string::npos)
+  EXPECT_NE(std::string(apsis_error_message()).find("the callback 'solve' failed (it returned -7)"),
+            std::string::npos)
       << apsis_error_message();
 }
 

@@ -131,7 +131,8 @@ TEST(preconditioner, iterations_do_not_grow_with_stiffness) {
       const int systems = problem.report().iterations;
       EXPECT_LE(*inverse.solved, (b == 0.0 ? 12 : 24) * systems) << spread;
       EXPECT_LE(systems, 12) << spread;
-      EXPECT_EQ(*inverse.prepared, 1) << spread;
+      // Far from equilibrium a stage with b < 0 begins with an implicit Euler step, which has another γ.
+      EXPECT_EQ(*inverse.prepared, b == 0.0 ? 1 : 2) << spread;
     }
 }
 

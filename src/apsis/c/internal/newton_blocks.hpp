@@ -74,10 +74,10 @@ class newton_blocks {
     });
   }
   void solve_collision(double t, double a, double b, state& u) {
-    solve(a, b, u, [&](auto& local, state& one) { local.solve_collision(t, a, b, one); });
+    solve(t, a, b, u, [&](auto& local, state& one) { local.solve_collision(t, a, b, one); });
   }
   void solve_timed_collision(double t, double a, double b, state& u) {
-    solve(a, b, u, [&](auto& local, state& one) { local.solve_timed_collision(t, a, b, one); });
+    solve(t, a, b, u, [&](auto& local, state& one) { local.solve_timed_collision(t, a, b, one); });
   }
   void begin_step(double t, const state& u) {
     // One solver for several blocks has no tolerances.
@@ -126,7 +126,7 @@ class newton_blocks {
 
   /// Solves a stage block by block; solve_one(local, u) solves that of one block.
   template <class Solve>
-  void solve(double a, double b, state& u, const Solve& solve_one) {
+  void solve(double t, double a, double b, state& u, const Solve& solve_one) {
     const std::size_t size = of_.block_size;
     solved_ = u;
     for (std::size_t block = 0; block * size < u.size(); ++block) {
@@ -136,6 +136,8 @@ class newton_blocks {
       ++now.solve;
       const auto begin = solved_.begin() + static_cast<std::ptrdiff_t>(block * size);
       one_.assign(begin, begin + static_cast<std::ptrdiff_t>(size));
+      if (solvers_.size() == 1 && size < u.size())
+        local.begin_step(t, one_);  // nothing of another block serves
       try {
         solve_one(local, one_);
       } catch (const numerical_error& failure) {

@@ -43,6 +43,17 @@ class Headers(unittest.TestCase):
                                        "-Xclang a/cmake_pch.hxx -I b -o x.o -c x.cpp")
         self.assertEqual(flags, ["clang++", "-Wall", "-I", "b"])
 
+    def test_headers_of_parts_that_are_not_built_are_left_out(self):
+        library = SOURCE / "src/apsis"
+        sources = [library / "core/version.cpp", library / "exec/parallel.cpp", library / "exec/without_mpi/processes.cpp"]
+        for header, built in (("core/version.hpp", True), ("petsc/internal/vector.hpp", False), ("exec/parallel.hpp", True),
+                              ("exec/internal/with_mpi/failure_notice.hpp", False)):
+            self.assertTrue((library / header).is_file(), header)
+            self.assertEqual(check_headers.is_built(library / header, sources), built, header)
+        self.assertTrue(check_headers.is_built(library / "exec/internal/with_mpi/failure_notice.hpp",
+                                               [library / "exec/with_mpi/processes.cpp"]))
+        self.assertTrue(check_headers.is_built(SOURCE / "app/threads_option.hpp", sources))
+
     def test_a_folder_without_headers_is_an_error(self):
         arguments, sys.argv = sys.argv, ["check_headers.py", str(BUILD), str(SOURCE / "methods")]
         try:

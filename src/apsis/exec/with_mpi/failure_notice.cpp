@@ -1,4 +1,4 @@
-#include <apsis/exec/internal/failure_notice.hpp>
+#include <apsis/exec/internal/with_mpi/failure_notice.hpp>
 
 #include <algorithm>
 #include <stdexcept>

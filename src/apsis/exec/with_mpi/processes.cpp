@@ -1,7 +1,7 @@
 #include <apsis/exec/processes.hpp>
 
 #include <apsis/core/errors.hpp>
-#include <apsis/exec/internal/failure_notice.hpp>
+#include <apsis/exec/internal/with_mpi/failure_notice.hpp>
 #include <apsis/exec/launcher.hpp>
 
 #include <algorithm>

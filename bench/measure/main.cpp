@@ -8,6 +8,7 @@
 #include <apsis/exec/memory.hpp>
 #include <apsis/exec/processes.hpp>
 
+#include <algorithm>
 #include <cstdio>
 #include <exception>
 #include <filesystem>
@@ -44,9 +45,14 @@ std::vector<entry> chosen(const std::vector<std::string>& names, bool several) {
       if (one.on_several_processes == several) some.push_back(one);
     return some;
   }
-  std::vector<std::string> known;
+  const auto lacking = apsis::bench::left_out();
+  std::vector<std::string> known = lacking;
   for (const auto& one : all) known.push_back(one.name);
   for (const auto& name : names) {
+    if (std::find(lacking.begin(), lacking.end(), name) != lacking.end())
+      throw apsis::input_error("'" + name +
+                               "' is not part of this program (it was built without SUNDIALS); install "
+                               "libsundials-dev and build it again");
     bool found = false;
     for (const auto& one : all)
       if (one.name == name) {
@@ -112,6 +118,8 @@ int main(int argc, char** argv) {
     if (!options.processes->is_root()) apsis::log::set_level(apsis::log::level::quiet);
     if (list) {
       for (const auto& one : apsis::bench::entries()) fmt::print("{:<14} {}\n", one.name, one.description);
+      for (const auto& name : apsis::bench::left_out())
+        fmt::print("{:<14} (not part of this program: built without SUNDIALS)\n", name);
       return 0;
     }
     return measure(names, path, options);

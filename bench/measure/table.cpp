@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <chrono>
+#include <iterator>
+#include <sstream>
 #include <thread>
 
 #include <fmt/chrono.h>
@@ -37,6 +39,11 @@ std::vector<entry> entries() {
   auto list = all();
   std::sort(list.begin(), list.end(), [](const entry& a, const entry& b) { return a.name < b.name; });
   return list;
+}
+
+std::vector<std::string> left_out() {
+  std::istringstream names(APSIS_BENCH_LEFT_OUT);
+  return {std::istream_iterator<std::string>(names), {}};
 }
 
 std::string markdown(const result_table& what) {

@@ -27,8 +27,10 @@ struct result_table {
   nlohmann::json data = nlohmann::json::object();  ///< additional data for pictures
 };
 
-/// A measurement of `apsis_measure`. To add one, add a file to bench/measure/tables with
+/// A measurement of `apsis_measure`. To add one, add a file to bench/measure/tables, or to its folder
+/// with_sundials/ if the measurement calls SUNDIALS, with
 ///   const registered here({"name", "what it answers", measure});
+/// The file has the name of the measurement, with _ for -.
 struct entry {
   std::string name, description;
   result_table (*measure)(const settings&);
@@ -43,6 +45,10 @@ class registered {
 
 /// Returns all entries, sorted by name.
 std::vector<entry> entries();
+
+/// Returns the names of the measurements that this program lacks because it was built without SUNDIALS,
+/// sorted.
+std::vector<std::string> left_out();
 
 /// Formats a table as Markdown.
 std::string markdown(const result_table& what);

@@ -6,8 +6,6 @@
 #include <memory>
 #include <vector>
 
-#include <sundials/sundials_linearsolver.h>
-
 namespace apsis::bench::peers {
 
 /// The inverse of I − γJ, where J is the Jacobian of the collision Q(f)/ε at a state, cell by cell.
@@ -36,9 +34,5 @@ std::unique_ptr<collision_inverse> make_bgk_inverse(const relaxation_model& equa
 /// f₊f₋. With g = ∇q = (−f₋, 2f₀, −f₊), J = d gᵀ/ε has rank one, gᵀd = −ρ, and
 ///   (I − γJ)⁻¹ r = r + d gᵀr λ/(1 + λρ),    λ = γ/ε.
 std::unique_ptr<collision_inverse> make_broadwell_inverse(std::vector<double> rates);
-
-/// Returns a linear solver for SUNDIALS that uses the preconditioner as the inverse, without Krylov
-/// iterations and Jacobian products. The result is a modified Newton method with an approximate Jacobian.
-SUNLinearSolver make_preconditioner_solver(SUNContext context);
 
 }  // namespace apsis::bench::peers

@@ -1,6 +1,7 @@
 """bench/report.py keeps earlier measurements: a new file replaces only the tables that it has."""
 import copy
 import importlib.util
+import re
 import sys
 import tempfile
 import unittest
@@ -80,6 +81,36 @@ class SpeedReport(unittest.TestCase):
         self.assertIn("(data/speed/long.csv)", text)
         text = module.section("short", result(rows[:module.SCREEN]))
         self.assertEqual(sum(line.startswith("| method ") for line in text.splitlines()), module.SCREEN - 2 + 1)  # the head is counted, too
+
+    def test_a_table_has_the_name_of_its_file(self):
+        # bench/CMakeLists.txt takes the names of tables that are not built from their files.
+        files = sorted(ROOT.glob("bench/measure/tables/**/*.cpp"))
+        self.assertGreater(len(files), 20)
+        for file in files:
+            text = file.read_text(encoding="utf-8")
+            self.assertEqual(re.findall(r'registered here\(\s*\{(?:\.name = )?"([^"]+)"', text), [file.stem.replace("_", "-")], file)
+
+    def test_only_tables_in_a_folder_of_their_own_need_sundials(self):
+        def includes(file):
+            """Returns the headers of bench that a file includes, directly or not, and the names of all others."""
+            own, other, waiting = set(), set(), [file]
+            while waiting:
+                current = waiting.pop()
+                for sign, name in re.findall(r'^#include ([<"])([^>"]+)', current.read_text(encoding="utf-8"), re.M):
+                    found = next((path for path in (current.parent / name, ROOT / "bench" / name) if path.is_file()), None)
+                    if found is None:
+                        self.assertEqual(sign, "<", f"{current} includes {name}")
+                        other.add(name)
+                    elif found.resolve() not in own:
+                        own.add(found.resolve())
+                        waiting.append(found.resolve())
+            return own, other
+
+        for file in sorted(ROOT.glob("bench/**/*.cpp")):
+            if "with_sundials" not in file.parts:
+                own, other = includes(file)
+                self.assertEqual([name for name in other if re.match(r"(sundials|arkode|cvode|nvector|sun\w+)/", name)], [], file)
+                self.assertEqual([header for header in own if "with_sundials" in header.parts], [], file)
 
     def test_pages_have_the_tables_of_the_newest_measurements(self):
         module = report()

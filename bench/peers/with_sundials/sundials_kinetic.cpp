@@ -1,5 +1,6 @@
-#include "collision_inverse.hpp"
 #include "field_vector.hpp"
+#include "peers/collision_inverse.hpp"
+#include "preconditioner_solver.hpp"
 #include "sundials_kinetic.hpp"
 
 #include <apsis/core/errors.hpp>

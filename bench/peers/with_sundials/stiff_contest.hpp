@@ -1,7 +1,7 @@
 #pragma once
 
 #include "measure/table.hpp"
-#include "stiff_task.hpp"
+#include "peers/stiff_task.hpp"
 
 #include <memory>
 #include <string>

@@ -1,6 +1,6 @@
 // CVODE and ARKODE on the stiff problems of the literature.
 #include "field_vector.hpp"
-#include "stiff_set.hpp"
+#include "peers/stiff_set.hpp"
 
 #include <algorithm>
 #include <vector>

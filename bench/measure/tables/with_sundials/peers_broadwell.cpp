@@ -1,6 +1,6 @@
 // Work and precision on Broadwell's model on point values, with the same kernels for all contestants.
 #include "measure/table.hpp"
-#include "peers/kinetic_races.hpp"
+#include "peers/with_sundials/kinetic_races.hpp"
 
 namespace apsis::bench::peers_broadwell_table {
 namespace {

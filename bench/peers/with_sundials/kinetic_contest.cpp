@@ -1,6 +1,6 @@
-#include "integrators.hpp"
 #include "kinetic_contest.hpp"
-#include "radau_kinetic.hpp"
+#include "peers/integrators.hpp"
+#include "peers/radau_kinetic.hpp"
 #include "sundials_kinetic.hpp"
 
 #include <algorithm>

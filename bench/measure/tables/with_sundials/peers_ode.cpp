@@ -1,6 +1,6 @@
 // Work and precision on the ODE model of the paper.
 #include "measure/table.hpp"
-#include "peers/stiff_contest.hpp"
+#include "peers/with_sundials/stiff_contest.hpp"
 
 namespace apsis::bench::peers_ode_table {
 namespace {

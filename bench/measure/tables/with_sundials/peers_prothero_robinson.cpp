@@ -1,6 +1,6 @@
 // Work and precision on Prothero and Robinson's problem.
 #include "measure/table.hpp"
-#include "peers/stiff_contest.hpp"
+#include "peers/with_sundials/stiff_contest.hpp"
 
 namespace apsis::bench::peers_prothero_robinson_table {
 namespace {

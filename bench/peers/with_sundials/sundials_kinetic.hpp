@@ -1,6 +1,6 @@
 #pragma once
 
-#include "kinetic_task.hpp"
+#include "peers/kinetic_task.hpp"
 
 namespace apsis::bench::peers {
 

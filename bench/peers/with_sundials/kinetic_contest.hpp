@@ -1,7 +1,7 @@
 #pragma once
 
-#include "contest.hpp"
-#include "kinetic_task.hpp"
+#include "peers/contest.hpp"
+#include "peers/kinetic_task.hpp"
 
 #include <string>
 #include <vector>

@@ -1,7 +1,7 @@
 // Work and precision on the mixed-regime problem on cell averages that collide at centres, with the same
 // kernels for all contestants.
 #include "measure/table.hpp"
-#include "peers/kinetic_races.hpp"
+#include "peers/with_sundials/kinetic_races.hpp"
 
 namespace apsis::bench::peers_mixed_centres_table {
 namespace {

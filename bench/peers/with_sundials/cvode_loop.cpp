@@ -1,6 +1,6 @@
 // CVODE for one small system after the other, as a program without ensembles would call it.
-#include "ensembles.hpp"
 #include "field_vector.hpp"
+#include "peers/ensembles.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "stiff_task.hpp"
+#include "peers/stiff_task.hpp"
 
 namespace apsis::bench::peers {
 

@@ -1,5 +1,5 @@
-#include "integrators.hpp"
-#include "radau_ode.hpp"
+#include "peers/integrators.hpp"
+#include "peers/radau_ode.hpp"
 #include "stiff_contest.hpp"
 #include "sundials_ode.hpp"
 

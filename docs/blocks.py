@@ -9,6 +9,7 @@ A comment directly before a block determines its treatment; GitHub does not show
                                 … for any text up to the following one
     <!-- exit: 2 -->            the block ends with this exit code; its output is what it prints and its messages
     <!-- elsewhere: FILE -->    this test of the repository runs the block; it names the page
+    <!-- needs: design -->      the block is left out, with its output, where this component is not built
 
 The engine is the project's own: extensions of Sphinx neither compare numbers by a tolerance nor run C++ and case files
 (docs/measured.md).
@@ -18,7 +19,11 @@ import textwrap
 from dataclasses import dataclass, field
 from pathlib import Path
 
-MARKS = {"file", "from", "output", "exit", "elsewhere"}
+MARKS = {"file", "from", "output", "exit", "elsewhere", "needs"}
+# Components whose libraries may be absent, with words of the blocks that need them.
+OPTIONAL = {"design": re.compile(r"\bapsis design\b|COMPONENTS [^)]*\bdesign\b"),
+            "sundials": re.compile(r"COMPONENTS [^)]*\bsundials\b"),
+            "petsc": re.compile(r"\blibapsis_petsc\b|COMPONENTS [^)]*\bpetsc\b")}
 COMMENT = re.compile(r"\s*<!--\s*([a-z-]+)(?::\s*(.*?))?\s*-->\s*$")
 FENCE = re.compile(r"(\s*(?:(?:[-*+]|[0-9]+[.)])\s+)?)(`{3,}|~{3,})\s*([^\s`]*)[^`]*$")
 COMMAND = re.compile(r"\s*(\$ |>>> |#include\b|(sudo|apsis|make|cmake|ctest|cpack|python3?|pip3?|git|apt|apt-get|g\+\+|bash|"
@@ -96,14 +101,20 @@ def check_rules(text: str, blocks: list[Block]) -> list[Problem]:
         elif block.language == "cpp" and block.runs and not re.search(r"\bint main\b", block.text):
             found.append(Problem(block.line, "the program has no main (nothing can run it); say <!-- from: PATH --> or "
                                  "<!-- file: NAME -->"))
-        elif not block.runs and not block.marks.keys() - {"exit"}:
+        elif not block.runs and not block.marks.keys() - {"exit", "needs"}:
             found.append(Problem(block.line, f"nothing checks this block (language '{block.language}'); put one of "
-                                 f"{', '.join(f'<!-- {mark} -->' for mark in sorted(MARKS))} before it"))
+                                 f"{', '.join(f'<!-- {mark} -->' for mark in sorted(MARKS - {'exit', 'needs'}))} before it"))
         for mark, kind in (("output", float), ("exit", int)):
             if block.marks.get(mark) and not is_number(block.marks[mark], kind):
                 found.append(Problem(block.line, f"<!-- {mark}: {block.marks[mark]} --> (not a number); give a number or omit it"))
         if "exit" in block.marks and not (block.runs and block.language in ("sh", "cpp")):
             found.append(Problem(block.line, "an exit code belongs to a program (```sh or ```cpp that is run here); take it away"))
+        if "needs" in block.marks and (block.marks["needs"] not in OPTIONAL or not (block.runs or "elsewhere" in block.marks)):
+            found.append(Problem(block.line, f"<!-- needs: {block.marks['needs']} --> leaves nothing out (a program needs an optional "
+                                 f"component); name one of {', '.join(OPTIONAL)} before a block that is run"))
+        for component in missing_needs(block, blocks):
+            found.append(Problem(block.line, f"the block needs the component {component} (which may be absent); say <!-- needs: {component} --> "
+                                 "before the blocks that are run"))
         if "file" in block.marks and not is_used(block, blocks):
             found.append(Problem(block.line, f"{block.marks['file']} is written and not used (no other block names it); run or "
                                  "compile it in an ```sh block"))
@@ -112,6 +123,18 @@ def check_rules(text: str, blocks: list[Block]) -> list[Problem]:
         if number not in inside and line.startswith("    ") and COMMAND.match(line):
             found.append(Problem(number, f"'{line.strip()}' is indented text (nothing runs it); write an ```sh block"))
     return found
+
+
+def missing_needs(block: Block, blocks: list[Block]) -> list[str]:
+    """Returns the optional components that a program needs and that no instruction names: one before it, or before any block that may
+    compile it if it is a file."""
+    if "file" in block.marks:
+        named = {other.marks.get("needs") for other in blocks}
+    elif block.runs or "elsewhere" in block.marks:
+        named = {block.marks.get("needs")}
+    else:
+        return []
+    return [component for component, words in OPTIONAL.items() if words.search(block.text) and component not in named]
 
 
 def is_number(text: str, kind: type) -> bool:

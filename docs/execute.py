@@ -5,7 +5,8 @@
 
 The blocks of a page are executed in order in a fresh folder WORK/run/PAGE: sh by bash, with `apsis` and `python3`
 as installed; python in one interpreter; cpp compiled against the installed library. blocks.py explains the comments before
-blocks. --update writes the outputs into the pages, and the pictures into docs/images.
+blocks. Blocks that need a component that BUILD lacks are left out, and listed. --update writes the outputs into the pages, and the
+pictures into docs/images.
 """
 import argparse
 import concurrent.futures
@@ -21,7 +22,7 @@ import sys
 import time
 from pathlib import Path
 
-from blocks import Block, Problem, check_rules, is_excerpt, is_same_output, read_blocks
+from blocks import OPTIONAL, Block, Problem, check_rules, is_excerpt, is_same_output, read_blocks
 
 ROOT = Path(__file__).resolve().parents[1]
 PAGES = ("README.md", "CONTRIBUTING.md", "src/apsis/*/README.md", "docs/**/*.md")
@@ -69,6 +70,7 @@ class Tools:
             "CMAKE_PREFIX_PATH": str(installed), "CC": cache["CMAKE_C_COMPILER"], "CXX": cache["CMAKE_CXX_COMPILER"],
             "PYTHONDONTWRITEBYTECODE": "1", "MPLBACKEND": "Agg", "LC_ALL": "C.UTF-8"}
         self.commands = ""
+        self.lacking = lacking_components(build)
 
     def prepare_compiler(self):
         """Obtains, once, the build commands of a CMake project that uses the installed library."""
@@ -84,6 +86,12 @@ class Tools:
         lines = self.commands.replace(str(self.work / "consumer" / "block.cpp"), shlex.quote(str(source)))
         lines = re.sub(r"CMakeFiles/block.dir/block.cpp.o(\.d)?", lambda m: shlex.quote(f"{program}.o{m[1] or ''}"), lines)
         return ["bash", "-ec", re.sub(r"-o block ", f"-o {shlex.quote(str(program))} ", lines)]
+
+
+def lacking_components(build: Path) -> set[str]:
+    """Returns the optional components that a build does not have."""
+    package = (build / "apsisConfig.cmake").read_text(encoding="utf-8")
+    return set(OPTIONAL) - set(re.search(r"^set\(apsis_built (.*)\)$", package, re.M)[1].split(";"))
 
 
 def quietly(*command, **options) -> str:
@@ -102,6 +110,7 @@ class Page:
         self.folder = tools.work / "run" / self.name.removesuffix(".md").replace("/", "-")
         self.text = path.read_text(encoding="utf-8")
         self.problems, self.outputs, self.session, self.printed = [], {}, None, None
+        self.left_out, self.follows_one_left_out = [], False
 
     def run(self):
         start = time.monotonic()
@@ -123,7 +132,10 @@ class Page:
     def treat(self, block: Block):
         if "from" in block.marks:
             self.compare_excerpt(block)
-        if "elsewhere" in block.marks:
+        if block.marks.get("needs") in self.tools.lacking:
+            self.left_out.append(block)
+            self.follows_one_left_out = True
+        elif "elsewhere" in block.marks:
             test = self.root / block.marks["elsewhere"]
             if not test.is_file() or self.name not in test.read_text(encoding="utf-8"):
                 raise Problem(block.line, f"{block.marks['elsewhere']} does not run this block (no such file, or it does not "
@@ -131,8 +143,10 @@ class Page:
         elif "file" in block.marks:
             self.write(block)
         elif "output" in block.marks:
-            self.compare_output(block)
+            if not self.follows_one_left_out:
+                self.compare_output(block)
         elif block.runs:
+            self.follows_one_left_out = False
             out = self.folder / f".block-{block.line}.out"
             {"sh": self.run_shell, "python": self.run_python, "cpp": self.run_cpp}[block.language](block, out)
             self.printed = out.read_text(encoding="utf-8", errors="replace")
@@ -209,12 +223,13 @@ class Page:
             told = out.read_text(encoding="utf-8", errors="replace")[-1500:] + error[-4000:]
             raise Problem(block.line, f"the block fails (exit code {process.returncode}, not {wanted[0]})\n{indented(told)}")
 
-    def check_pictures(self, reports: list[str]):
-        """Checks that a picture is in docs/images, for GitHub, and drawn by a block of some page or by a report."""
+    def check_pictures(self, reports: list[str], complete: bool):
+        """Checks that a picture is in docs/images, for GitHub, and, if no block was left out, drawn by a block of some page or by a
+        report."""
         for name, line in self.pictures().items():
             if not (self.root / "docs" / "images" / name).is_file():
                 self.problems.append(Problem(line, f"docs/images has no {name} (nothing is shown); docs/execute.py --update"))
-            elif not any(self.folder.parent.glob(f"*/images/{name}")) and not any(re.fullmatch(one, name) for one in reports):
+            elif complete and not any(self.folder.parent.glob(f"*/images/{name}")) and not any(re.fullmatch(one, name) for one in reports):
                 self.problems.append(Problem(line, f"nothing draws {name} (no block into images/, no report); draw it here"))
 
     def pictures(self) -> dict[str, int]:
@@ -256,9 +271,9 @@ def run_pages(paths: list[Path], root: Path, tools: Tools, jobs: int) -> list[Pa
         tools.prepare_compiler()
     with concurrent.futures.ThreadPoolExecutor(jobs) as pool:
         list(pool.map(Page.run, pages))
-    reports = reported_pictures(root)
+    reports, complete = reported_pictures(root), not any(page.left_out for page in pages)
     for page in pages:
-        page.check_pictures(reports)
+        page.check_pictures(reports, complete)
     return pages
 
 
@@ -285,6 +300,8 @@ def main(arguments=None) -> int:
             page.update()
         if page.problems or page.seconds > 1:
             print(f"{page.name}: {page.seconds:.1f} s")
+        for block in page.left_out:
+            print(f"{page.name}:{block.line}: left out (needs the component {block.marks['needs']})")
         for problem in sorted(page.problems, key=lambda p: p.line):
             print(f"{page.name}:{problem.line}: {problem}", file=sys.stderr)
     failed = sum(bool(page.problems) for page in pages)

@@ -198,6 +198,52 @@ class Outputs(Pages):
         self.assertEqual([str(p) for p in again.problems], [])
 
 
+class OptionalComponents(Pages):
+    def lacking(self, *components):
+        self.addCleanup(setattr, self.tools, "lacking", self.tools.lacking)
+        self.tools.lacking = set(components)
+
+    def test_only_blocks_that_need_an_absent_component_are_left_out_with_their_outputs(self):
+        self.lacking("petsc")
+        page = (block("sh", "false", "needs: petsc"), block("text", "one", "output"), block("sh", "echo two", "needs: sundials"),
+                block("text", "2", "output"))
+        self.assert_refused(19, "+two", *page)
+        self.assertEqual([b.line for b in self.run_page(*page).left_out], [4])
+        self.lacking()
+        self.assert_refused(4, "exit code 1", *page)
+
+    def test_a_program_that_is_not_compiled_is_still_written(self):
+        self.lacking("petsc")
+        self.assert_accepted(block("cmake", "find_package(apsis COMPONENTS petsc)", "file: CMakeLists.txt"),
+                             block("sh", "cmake -B build", "needs: petsc"), block("sh", "grep petsc CMakeLists.txt"))
+
+    def test_a_picture_may_be_drawn_by_a_block_that_is_left_out(self):
+        (self.root / "docs" / "images").mkdir(parents=True)
+        (self.root / "docs" / "images" / "a.png").touch()
+        page = ("![a](images/a.png)", block("sh", "true", "needs: design"))
+        self.lacking("design")
+        self.assert_accepted(*page)
+        self.lacking()
+        self.assert_refused(3, "nothing draws a.png", *page)
+
+    def test_a_need_has_the_name_of_an_optional_component_and_stands_before_a_program(self):
+        self.assert_refused(4, "name one of design, sundials, petsc", block("sh", "true", "needs: kinetic"))
+        self.assert_refused(9, "leaves nothing out", block("sh", "echo x"), block("text", "x", "needs: design", "output"))
+
+    def test_programs_that_need_an_optional_component_say_so(self):
+        self.assert_refused(3, "needs the component design", block("sh", "apsis design --order 2"))
+        for component in ("design", "sundials", "petsc"):
+            self.assert_refused(4, f"needs the component {component}",
+                                block("cmake", f"find_package(apsis COMPONENTS c {component})", "file: CMakeLists.txt"),
+                                block("sh", "cmake -B build"))
+
+    def test_components_are_those_of_the_build(self):
+        with tempfile.TemporaryDirectory() as folder:
+            (Path(folder) / "apsisConfig.cmake").write_text("set(apsis_known integrate design petsc)\nset(apsis_built integrate;c;sundials)\n",
+                                                            encoding="utf-8")
+            self.assertEqual(execute.lacking_components(Path(folder)), {"design", "petsc"})
+
+
 class Rules(Pages):
     def test_an_unchecked_block_is_rejected(self):
         for language in ("toml", "cmake", "bash", "json", "c++"):

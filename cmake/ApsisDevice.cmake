@@ -57,6 +57,12 @@ file(CONFIGURE OUTPUT ${generated}/device_kernels.cu.cpp @ONLY CONTENT
   }
 @kernel_entries@")
 
+# Kernels belong to the component kinetic.
+if("kinetic" IN_LIST apsis_components AND NOT APSIS_DEVICE_COMPILER)
+  message(STATUS "Kernels for graphics processors are not built (clang++-19 was not found)")
+elseif("kinetic" IN_LIST apsis_components AND NOT APSIS_DEVICE_LINKER)
+  message(STATUS "Kernels for graphics processors of AMD are not built (ld.lld-19 was not found)")
+endif()
 set(code_objects "")
 set(code_symbols "")
 set(code_rows "")

@@ -1,5 +1,5 @@
-# PETSc::PETSc, by pkg-config, with the MPI that its headers include. PETSc with complex numbers, or with another precision than
-# double, is not found, and PETSC_WHY_NOT is the reason.
+# PETSc::PETSc, by pkg-config, with the MPI that its headers include. Without MPI, PETSc is not found. Neither is PETSc with complex
+# numbers or with another precision than double. PETSC_WHY_NOT is the reason.
 find_package(PkgConfig QUIET)
 set(PETSC_WHY_NOT "")
 if(PkgConfig_FOUND)
@@ -18,6 +18,9 @@ if(PETSC_CONFIGURATION)
   else()
     set(PETSC_WHY_NOT "PETSc does not compute with real numbers in double precision (another build of it is needed)")
   endif()
+endif()
+if(PETSC_PKG_FOUND AND NOT MPI_C_FOUND AND NOT PETSC_WHY_NOT)
+  set(PETSC_WHY_NOT "PETSc needs MPI, which was not found")
 endif()
 include(FindPackageHandleStandardArgs)
 find_package_handle_standard_args(PETSc REQUIRED_VARS PETSC_PKG_LINK_LIBRARIES PETSC_INCLUDE_DIR MPI_C_FOUND petsc_numbers

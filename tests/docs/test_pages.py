@@ -36,6 +36,17 @@ class Pages(unittest.TestCase):
         self.assertLessEqual(sum(len(page.read_text(encoding="utf-8").split()) for page in guide), 25000)
         self.assertLess({"first-steps", "initial-data", "boundaries", "dimensions", "scales", "bodies", "results"}, {page.stem for page in guide})
 
+    def test_linking_names_every_optional_library_and_its_component(self):
+        test = (ROOT / "tests/install/without_libraries.cmake").read_text(encoding="utf-8")
+        libraries = re.search(r"^set\(libraries (.*)\)$", test, re.M)[1].split()
+        components = dict(re.findall(r"^set\(component_(\w+) (\w+)\)$", test, re.M))
+        section = PAGES[ROOT / "docs/linking.md"].partition("## Without optional libraries\n")[2].partition("\n## ")[0]
+        rows = re.findall(r"^\| (\w+)[^|]* \| ([^|]*) \|", section, re.M)[1:]  # without the head
+        self.assertEqual({name for name, _ in rows}, set(libraries))
+        for name, left_out in rows:
+            named = re.search(r"component `(\w+)`", left_out)
+            self.assertEqual(named and named[1], components.get(name), name)
+
 
 def read_shelves():
     """Returns the pages that each section of docs/index.md lists."""

@@ -1,0 +1,20 @@
+# PETSc of another version, whose private headers differ, and PETSc with complex numbers or without MPI are not found.
+#   cmake -DSOURCE=… -DWORK=… -DCC=… -DCXX=… -P find_petsc.cmake
+include(${CMAKE_CURRENT_LIST_DIR}/support.cmake)
+file(REMOVE_RECURSE ${WORK})
+file(WRITE ${WORK}/project/CMakeLists.txt "cmake_minimum_required(VERSION 3.25)\nproject(found LANGUAGES C)
+  list(APPEND CMAKE_MODULE_PATH ${SOURCE}/cmake)\nfind_package(PETSc 3.18...<3.19 REQUIRED)\n")
+set(other ${WORK}/petsc)
+set(ENV{PKG_CONFIG_PATH} ${other}/lib/pkgconfig)
+function(refuses_petsc expected version scalars)
+  file(REMOVE_RECURSE ${other} ${WORK}/project/build)
+  file(WRITE ${other}/include/petsc/private/tsimpl.h "")
+  file(WRITE ${other}/include/petscconf.h "#define PETSC_USE_REAL_DOUBLE 1\n${scalars}\n")
+  file(WRITE ${other}/lib/libpetsc.so "")
+  file(WRITE ${other}/lib/pkgconfig/petsc.pc "Name: PETSc\nDescription: PETSc\nVersion: ${version}\n"
+    "Cflags: -I${other}/include\nLibs: -L${other}/lib -lpetsc\n")
+  configure_fails("${expected}" ${WORK}/project ${WORK}/project/build ${ARGN})
+endfunction()
+refuses_petsc("Found unsuitable version \"3.24.0\"" 3.24.0 "")
+refuses_petsc("PETSc does not compute with real numbers in double precision" 3.18.5 "#define PETSC_USE_COMPLEX 1")
+refuses_petsc("PETSc needs MPI, which was not found" 3.18.5 "" -DCMAKE_DISABLE_FIND_PACKAGE_MPI=TRUE)

@@ -1,0 +1,26 @@
+# SUNDIALS whose headers include that of MPI is not found without MPI. Other SUNDIALS is, with its version.
+#   cmake -DSOURCE=… -DWORK=… -DCC=… -DCXX=… -P find_sundials.cmake
+include(${CMAKE_CURRENT_LIST_DIR}/support.cmake)
+file(REMOVE_RECURSE ${WORK})
+file(WRITE ${WORK}/project/CMakeLists.txt "cmake_minimum_required(VERSION 3.25)\nproject(found LANGUAGES NONE)
+  list(APPEND CMAKE_MODULE_PATH ${SOURCE}/cmake)\nfind_package(SUNDIALS 6.4 REQUIRED COMPONENTS core)
+  message(STATUS \"SUNDIALS \${SUNDIALS_VERSION} is found.\")\n")
+set(without_mpi -DCMAKE_DISABLE_FIND_PACKAGE_MPI=TRUE -DSUNDIALS_INCLUDE_DIR=${WORK}/include
+    -DSUNDIALS_core_LIBRARY=${WORK}/lib/libsundials_core.so)
+function(write_sundials version more)
+  file(WRITE ${WORK}/include/sundials/sundials_config.h "#define SUNDIALS_VERSION \"${version}\"\n${more}\n")
+endfunction()
+
+write_sundials(7.1.0 "#define SUNDIALS_MPI_ENABLED 1")
+configure_fails("SUNDIALS was built with MPI, which was not found" ${WORK}/project ${WORK}/build ${without_mpi})
+write_sundials(6.3.0 "")
+configure_fails("Found unsuitable version \"6.3.0\"" ${WORK}/project ${WORK}/build ${without_mpi})
+foreach(case "7.1.0;#define SUNDIALS_MPI_ENABLED 0" "6.4.1;#define SUNDIALS_MPI_ENABLED 1")
+  list(GET case 0 version)
+  list(GET case 1 more)
+  write_sundials(${version} "${more}")
+  run(${CMAKE_COMMAND} -G Ninja -S ${WORK}/project -B ${WORK}/build ${without_mpi})
+  if(NOT output MATCHES "SUNDIALS ${version} is found\\.")
+    message(FATAL_ERROR "SUNDIALS ${version} with '${more}' is not found:\n${output}")
+  endif()
+endforeach()

@@ -1,6 +1,6 @@
 # The project without an optional library: SUNDIALS, PETSc, Ipopt, MPI, a Fortran compiler, clang++-19, and without all of them. It is
 # configured, states what is left out, and has all targets and tests of a build with the installed libraries except those that need
-# the library. The package does not look for it. One folder is configured again and again, which takes a third of the time.
+# the library. No command of the build uses it, and the package does not look for it. One folder is configured again and again, which takes a third of the time.
 cmake_policy(VERSION 3.25)
 include(${CMAKE_CURRENT_LIST_DIR}/support.cmake)
 set(work ${WORK}/without_libraries)
@@ -47,7 +47,8 @@ function(check_missing what library all names expected)
   endforeach()
 endfunction()
 
-# Configures without the libraries. `missing_X` and `untested_X` describe targets and tests that need X, `said_X` has the messages.
+# Configures without the libraries. `missing_X` and `untested_X` describe targets and tests that need X, `said_X` has the messages, and
+# `commands_X` describes commands that use X.
 function(check_without library)
   set(switches "")
   set(missing "")
@@ -71,6 +72,10 @@ function(check_without library)
         message(FATAL_ERROR "without ${library} the message '${text}' is missing:\n${messages}")
       endif()
     endforeach()
+    file(STRINGS ${work}/build.ninja uses REGEX "${commands_${one}}" LIMIT_COUNT 1)
+    if(uses)
+      message(FATAL_ERROR "without ${library} the build uses ${one}: ${uses}")
+    endif()
     if("${packages}" MATCHES "\"${one}" OR (component_${one} AND "${built}" MATCHES "[ ;]${component_${one}}[;)]"))
       message(FATAL_ERROR "the package that is built without ${library} has a part that needs ${one}:\n${built}\n${packages}")
     endif()
@@ -78,31 +83,37 @@ function(check_without library)
 endfunction()
 
 set(component_SUNDIALS sundials)
+set(commands_SUNDIALS "sundials/|libsundials_")
 set(missing_SUNDIALS apsis_sundials test_sundials apsis_sundials_in_c apsis_equal_bits)
 set(untested_SUNDIALS "tests/test_sundials_is_not_built" "sundials\\..+" "install\\.sundials" "docs\\.bad_input_sundials")
 set(said_SUNDIALS "The component sundials is not built (SUNDIALS was not found)"
     "CVODE is not a reference of the tests of integrate (SUNDIALS was not found)")
 
 set(component_PETSc petsc)
+set(commands_PETSc "petsc/|libpetsc")
 set(missing_PETSc apsis_petsc petsc_runs petsc_alone)
 set(untested_PETSc "petsc\\..+" "install\\.petsc")
 set(said_PETSc "The component petsc is not built (PETSc 3.18...<3.19 was not found)")
 
 set(component_Ipopt design)
+set(commands_Ipopt "libipopt|/coin")
 set(missing_Ipopt apsis_design test_design)
 set(untested_Ipopt "tests/test_design_is_not_built" "install\\.design")
 set(said_Ipopt "The component design is not built (Ipopt was not found)")
 
 # PETSc needs MPI.
 set(component_MPI petsc)
+set(commands_MPI "/libmpi|with_mpi/")
 set(missing_MPI apsis_collective ${missing_PETSc})
 set(untested_MPI "mpi\\..+" "bench\\.every_measurement_of_processes_runs" ${untested_PETSc})
 set(said_MPI "Runs on several processes are not built (MPI was not found)" "The component petsc is not built")
 
+set(commands_Fortran "\\.f90")
 set(missing_Fortran apsis_in_fortran)
 set(untested_Fortran "c\\.program_in_fortran")
 set(said_Fortran "The Fortran module of the C interface is not tested (no Fortran compiler was found)")
 
+set(commands_clang "--target=(nvptx64|amdgcn)")
 set(missing_clang fake_driver test_driver)
 set(untested_clang "tests/test_driver_is_not_built" "device\\.check" "formulas\\.compile_for_graphics_processors")
 set(said_clang "Kernels for graphics processors are not built (clang++-19 was not found)"

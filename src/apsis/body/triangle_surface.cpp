@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <iterator>
 #include <limits>
 #include <utility>
 
@@ -148,25 +147,14 @@ triangle_surface& triangle_surface::operator=(triangle_surface&&) noexcept = def
 
 double triangle_surface::signed_distance(const position& x) const {
   const triangle_mesh& mesh = parts_->mesh;
-  const std::size_t all = mesh.corners.size();
+  const triangle_tree& tree = parts_->tree;
   triangle_distance nearest;
-  std::vector<tree_entry> found;
-  // The nearest triangle need not have the nearest box. Boxes are requested until all others are
-  // farther away.
-  for (std::size_t requested = 16, seen = 0; seen < all; seen = requested, requested *= 4) {
-    found.clear();
-    parts_->tree.query(
-        boost::geometry::index::nearest(to_tree(x), static_cast<unsigned>(std::min(requested, all))),
-        std::back_inserter(found));
-    double farthest = 0.0;
-    for (const auto& [box, t] : found) {
-      const double bound = squared_distance_of(box, x);
-      farthest = std::max(farthest, bound);
-      if (bound > nearest.squared) continue;
-      const triangle_distance one = distance_of_triangle(mesh, parts_->normals[t], t, x);
-      if (one.squared < nearest.squared) nearest = one;
-    }
-    if (farthest > nearest.squared) break;
+  // The nearest triangle need not have the nearest box. Boxes come in the order of their distance.
+  const auto all = boost::geometry::index::nearest(to_tree(x), static_cast<unsigned>(mesh.corners.size()));
+  for (auto box = tree.qbegin(all); box != tree.qend(); ++box) {
+    if (squared_distance_of(box->first, x) > nearest.squared) break;
+    const triangle_distance one = distance_of_triangle(mesh, parts_->normals[box->second], box->second, x);
+    if (one.squared < nearest.squared) nearest = one;
   }
   return nearest.side > 0.0 ? std::sqrt(nearest.squared) : -std::sqrt(nearest.squared);
 }

@@ -1,6 +1,7 @@
 """Preconditioners of a user for the Krylov solver of stages, for the compiled part."""
 from __future__ import annotations
 
+from functools import partial
 from typing import Any, Callable
 
 import numpy as np
@@ -20,10 +21,11 @@ def of_solver(preconditioner: Any, solver: str) -> Function | None:
     if solver != "krylov":
         raise InputError(f"preconditioner has no meaning with solver={solver!r} (matrices are factorized, without iterations); give "
                          "solver=\"krylov\"")
-    return lambda *arguments: _solve_of(preconditioner(*arguments))
+    return partial(_prepare, preconditioner)  # unlike a lambda it can be pickled
 
 
-def _solve_of(made: Any) -> Function:
+def _prepare(preconditioner: Function, *arguments: Any) -> Function:
+    made = preconditioner(*arguments)
     solve: Function = getattr(made, "solve", made)
     if callable(solve):
         return solve

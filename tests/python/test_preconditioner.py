@@ -96,7 +96,9 @@ def test_general_problems_have_it_too(method):
     dense = apsis.integrate(apsis.GeneralProblem(collision), u0, [0, 0.05], method=method, dt=0.005)
     # Rounding errors of Q'Q, (Δt λ)² ≈ 5e3 times those of u, remain in both.
     np.testing.assert_allclose(krylov.u[-1], dense.u[-1], rtol=0, atol=1e-9)
-    assert len(calls) == 10 * len(set(calls))
+    # Ten steps with one or two γ. The estimate of the loss in small terms solves with other ones before the first step.
+    by_steps = [gamma for gamma in set(calls) if calls.count(gamma) == 10]
+    assert len(by_steps) == {"md-imex-3-2": 2, "ark-548-2": 1}[method] and len(calls) - 10 * len(by_steps) <= 2
 
 
 def test_dense_output_has_it_after_pickling():

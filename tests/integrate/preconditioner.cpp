@@ -132,7 +132,7 @@ TEST(preconditioner, iterations_do_not_grow_with_stiffness) {
       EXPECT_LE(*inverse.solved, (b == 0.0 ? 12 : 24) * systems) << spread;
       EXPECT_LE(systems, 12) << spread;
       // Far from equilibrium a stage with b < 0 begins with an implicit Euler step, which has another γ.
-      EXPECT_EQ(*inverse.prepared, b == 0.0 ? 1 : 2) << spread;
+      EXPECT_LE(*inverse.prepared, b == 0.0 ? 1 : 2) << spread;
     }
 }
 

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <concepts>
+#include <type_traits>
 #include <utility>
 
 #include <fmt/format.h>
@@ -33,9 +33,11 @@ struct refined_solution {
 /// Throws numerical_error if the error is not within the tolerances after `most_runs` runs or above the
 /// factor `least`: then results depend on the tolerances too much, as chaotic ones do. Throws what solve()
 /// throws.
-template <std::invocable<double> Solve, class Difference>
-auto refine_until_accurate(Solve&& solve, Difference&& difference, double least = 1e-9, int most_runs = 8)
-    -> refined_solution<decltype(solve(1.0))> {
+template <class Solve, class Difference>
+refined_solution<std::invoke_result_t<Solve&, double>> refine_until_accurate(Solve&& solve,
+                                                                             Difference&& difference,
+                                                                             double least = 1e-9,
+                                                                             int most_runs = 8) {
   constexpr double next = 0.1, longest = 1e-3;
   double factor = 1.0, error = 0.0;
   auto coarse = solve(factor);

@@ -84,15 +84,16 @@ endfunction()
 
 set(component_SUNDIALS sundials)
 set(commands_SUNDIALS "sundials/|libsundials_")
-set(missing_SUNDIALS apsis_sundials test_sundials apsis_sundials_in_c apsis_equal_bits)
-set(untested_SUNDIALS "tests/test_sundials_is_not_built" "sundials\\..+" "install\\.sundials" "docs\\.bad_input_sundials")
+set(missing_SUNDIALS apsis_sundials test_sundials test_steppers apsis_sundials_in_c apsis_equal_bits)
+set(untested_SUNDIALS "tests/test_sundials_is_not_built" "tests/sundials/steppers/test_steppers_is_not_built" "sundials\\..+"
+    "install\\.sundials" "exports\\.of_sundials" "docs\\.bad_input_sundials")
 set(said_SUNDIALS "The component sundials is not built (SUNDIALS was not found)"
     "CVODE is not a reference of the tests of integrate (SUNDIALS was not found)")
 
 set(component_PETSc petsc)
 set(commands_PETSc "petsc/|libpetsc")
 set(missing_PETSc apsis_petsc petsc_runs petsc_alone)
-set(untested_PETSc "petsc\\..+" "install\\.petsc")
+set(untested_PETSc "petsc\\..+" "install\\.petsc" "exports\\.of_petsc")
 set(said_PETSc "The component petsc is not built (PETSc 3.18...<3.19 was not found)")
 
 set(component_Ipopt design)
@@ -115,7 +116,7 @@ set(said_Fortran "The Fortran module of the C interface is not tested (no Fortra
 
 set(commands_clang "--target=(nvptx64|amdgcn)")
 set(missing_clang fake_driver test_driver)
-set(untested_clang "tests/test_driver_is_not_built" "device\\.check" "formulas\\.compile_for_graphics_processors")
+set(untested_clang "tests/test_driver_is_not_built" "device\\.(whole_)?check" "formulas\\.compile_for_graphics_processors")
 set(said_clang "Kernels for graphics processors are not built (clang++-19 was not found)"
     "Formulas are not compiled for graphics processors (clang++-19 was not found)")
 

@@ -127,7 +127,9 @@ def check_rules(text: str, blocks: list[Block]) -> list[Problem]:
 
 def missing_needs(block: Block, blocks: list[Block]) -> list[str]:
     """Returns the optional components that a program needs and that no instruction names: one before it, or before any block that may
-    compile it if it is a file."""
+    compile it if it is a file. Methods and cases may mention a component, but need none."""
+    if block.language == "toml":
+        return []
     if "file" in block.marks:
         named = {other.marks.get("needs") for other in blocks}
     elif block.runs or "elsewhere" in block.marks:

@@ -26,9 +26,10 @@ def of_solver(preconditioner: Any, solver: str) -> Function | None:
 
 def _prepare(preconditioner: Function, *arguments: Any) -> Function:
     made = preconditioner(*arguments)
-    solve: Function = getattr(made, "solve", made)
+    solve = getattr(made, "solve", made)
     if callable(solve):
-        return solve
+        function: Function = solve
+        return function
     if np.ndim(made) == 2 or hasattr(made, "tocsr"):
         return lambda r: made @ r
     raise InputError(f"preconditioner returned {type_of(made)} (a solver is needed: a function of r, an object with `solve` such as "

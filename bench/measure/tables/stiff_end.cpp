@@ -11,6 +11,7 @@
 #include <functional>
 #include <limits>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -49,8 +50,10 @@ result_table measure(const settings& options) {
   result_table result;
   result.title = "Tolerances of steps and of the end";
   result.note =
-      "The problems, tolerances and digits are those of the table above, with the method that `auto` "
-      "chooses. The first number has correct digits if the tolerances bound the error of each step. The "
+      "The problems, tolerances and digits are those of the first table on stiff systems, with the method "
+      "that "
+      "`auto` chooses. The first number has correct digits if the tolerances bound the error of each step. "
+      "The "
       "second is for the error at the end (`solve_ivp(…, end_error=True)`). Brackets contain the CPU time "
       "of the latter, all its runs included, relative to the former.";
   const auto tolerances = options.quick ? std::vector<double>{1e-4} : std::vector<double>{1e-4, 1e-6, 1e-8};

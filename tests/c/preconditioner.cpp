@@ -12,6 +12,7 @@
 #include <c/ode.hpp>
 #include <gtest/gtest.h>
 #include <support/bad_input.hpp>
+#include <support/tridiagonal.hpp>
 
 namespace c_preconditioner_test {
 namespace {
@@ -35,21 +36,9 @@ struct heat {
   }
 };
 
-/// Elimination in the matrix of 1 − γQ', without the derivative of the cubic term.
-void eliminate(double gamma, view r, std::span<double> x) {
-  const double other = -gamma * spread;
-  state diagonal(r.size(), 1.0 + 2.0 * gamma * spread);
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    x[i] = r[i];
-    if (i == 0) continue;
-    const double factor = other / diagonal[i - 1];
-    diagonal[i] -= factor * other;
-    x[i] -= factor * x[i - 1];
-  }
-  for (std::size_t i = x.size(); i-- > 0;) {
-    if (i + 1 < x.size()) x[i] -= other * x[i + 1];
-    x[i] /= diagonal[i];
-  }
+/// Solves with the matrix of 1 − γQ', without the derivative of the cubic term.
+void divide(double gamma, view r, std::span<double> x) {
+  eliminate(state(r.size(), 1.0 + 2.0 * gamma * spread), -gamma * spread, r, x);
 }
 
 /// The last preparation, and what the callbacks shall return.
@@ -90,7 +79,7 @@ int solve(double, double gamma, size_t block, size_t n, const double*, const dou
   EXPECT_EQ(block, seen.block);
   ++seen.solved;
   if (seen.answer != 0) return seen.answer;
-  eliminate(gamma, {r, n}, {x, n});
+  divide(gamma, {r, n}, {x, n});
   return 0;
 }
 
@@ -131,7 +120,7 @@ TEST(c_preconditioner, gives_the_bits_of_the_problem_in_cpp) {
     };
     apsis::newton_problem problem(apsis::no_transport{}, by_hand{});
     problem.with_preconditioner([](double, view, double gamma) {
-      return [gamma](view r, std::span<double> x) { eliminate(gamma, r, x); };
+      return [gamma](view r, std::span<double> x) { divide(gamma, r, x); };
     });
     apsis::evolution march(apsis::find_method(name), problem, apsis::step_rule<double>::fixed(0.125));
     march.start(0.0, start(length));
@@ -163,7 +152,7 @@ TEST(c_preconditioner, may_have_no_preparation) {
   const auto with = of_heat("ark-548-2", prepared), without = of_heat("ark-548-2", alone);
   const auto solve_alone = [](double, double gamma, size_t, size_t n, const double*, const double* r,
                               double* x, void*) {
-    eliminate(gamma, {r, n}, {x, n});
+    divide(gamma, {r, n}, {x, n});
     return 0;
   };
   apsis_set_preconditioner(without.get(), nullptr, solve_alone);

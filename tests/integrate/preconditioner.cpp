@@ -17,6 +17,7 @@
 #include <integrate/random.hpp>
 #include <support/bad_input.hpp>
 #include <support/property.hpp>
+#include <support/tridiagonal.hpp>
 
 namespace preconditioner_test {
 namespace {
@@ -57,20 +58,6 @@ mass_matrix<double> masses_of_elements(std::size_t n) {
     if (i + 1 < n) entries.push_back({i, i + 1, 1.0 / 6.0});
   }
   return {n, entries};
-}
-
-/// Elimination in the tridiagonal matrix with these diagonal and other entries.
-void eliminate(row diagonal, double other, view r, std::span<double> x) {
-  std::copy(r.begin(), r.end(), x.begin());
-  for (std::size_t i = 1; i < x.size(); ++i) {
-    const double factor = other / diagonal[i - 1];
-    diagonal[i] -= factor * other;
-    x[i] -= factor * x[i - 1];
-  }
-  for (std::size_t i = x.size(); i-- > 0;) {
-    if (i + 1 < x.size()) x[i] -= other * x[i + 1];
-    x[i] /= diagonal[i];
-  }
 }
 
 /// Solves M − γG' of `heat` exactly, and counts.

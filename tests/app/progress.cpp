@@ -99,7 +99,7 @@ TEST(progress, of_a_study_begins_with_the_number_of_its_runs) {
 }
 
 TEST(progress, is_erased_before_an_error_is_reported) {
-  if (!APSIS_HAS_DESIGN) GTEST_SKIP() << "Ipopt was not found";
+  if (!APSIS_HAS_DESIGN) GTEST_SKIP() << "built without the component design, which needs Ipopt";
   const work_folder folder;
   // No method of order 4 has two stages, so every start fails.
   const outcome run = run_on_terminal(

@@ -23,11 +23,6 @@ using namespace c_interface;
 using state = std::vector<double>;
 using rule = apsis::step_rule<double>;
 
-state state_of(const integrator& s, std::size_t n) {
-  const double* u = apsis_state(s.get());
-  return {u, u + n};
-}
-
 /// Q_i = 100 (u_{i−1} − 2u_i + u_{i+1} − bend u_i³), and the number of its calls.
 struct chain {
   double bend = 1.0;
@@ -100,7 +95,7 @@ TEST(c_differences, give_the_bits_and_the_calls_of_difference_derivatives) {
         march.advance(0.25);
         EXPECT_EQ(apsis_integrate(s.get(), 0.25), APSIS_OK) << apsis_error_message();
         const std::string of = name + std::string(sparse ? ", sparse" : "") + (adaptive ? ", adaptive" : "");
-        EXPECT_EQ(state_of(s, length), march.u()) << of;
+        EXPECT_EQ(unknowns_of(s, length), march.u()) << of;
         EXPECT_EQ(data.calls, counted.calls) << of;
         EXPECT_EQ(apsis_count(s.get(), APSIS_RATE_EVALUATIONS), data.calls) << of;
         EXPECT_EQ(apsis_count(s.get(), APSIS_JACOBIAN_EVALUATIONS), 0) << of;
@@ -163,7 +158,7 @@ solved solve_reaction(const char* name, bool differenced, double t1) {
   apsis_start(s.get(), 0, u0);
   EXPECT_EQ(apsis_integrate(s.get(), t1), APSIS_OK) << apsis_error_message();
   const auto count = [&s](apsis_counter which) { return apsis_count(s.get(), which); };
-  return {state_of(s, 3), count(APSIS_STEPS), count(APSIS_RATE_EVALUATIONS),
+  return {unknowns_of(s, 3), count(APSIS_STEPS), count(APSIS_RATE_EVALUATIONS),
           count(APSIS_JACOBIAN_EVALUATIONS)};
 }
 
@@ -236,7 +231,7 @@ TEST(c_differences, of_blocks_are_those_of_problems_of_their_own) {
     apsis_set_step(alone.get(), 1.0 / 64);
     apsis_set_stage(alone.get(), nullptr);
     ASSERT_EQ(apsis_integrate(alone.get(), 1), APSIS_OK) << apsis_error_message();
-    const state differenced = state_of(alone, 2);
+    const state differenced = unknowns_of(alone, 2);
     expected.insert(expected.end(), differenced.begin(), differenced.end());
     // By closed formulas. Differences have ten digits of Q', and their error in Q̇ moves the stage by less.
     const auto closed = of_ode("md-imex-6-3", data);
@@ -245,7 +240,7 @@ TEST(c_differences, of_blocks_are_those_of_problems_of_their_own) {
     for (std::size_t i = 0; i < 2; ++i)
       EXPECT_NEAR(differenced[i], apsis_state(closed.get())[i], 1e-8) << one;
   }
-  EXPECT_EQ(state_of(all, 4), expected);
+  EXPECT_EQ(unknowns_of(all, 4), expected);
 }
 
 TEST(c_differences, of_a_collision_of_time_agree_with_its_products) {

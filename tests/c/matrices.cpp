@@ -21,11 +21,6 @@ using namespace c_interface;
 using state = std::vector<double>;
 using rule = apsis::step_rule<double>;
 
-state state_of(const integrator& s, std::size_t n) {
-  const double* u = apsis_state(s.get());
-  return {u, u + n};
-}
-
 /// Q_i = k (u_{i−1} − 2u_i + u_{i+1} − u_i³), a band, with derivatives written by hand.
 struct chain {
   double k;
@@ -142,7 +137,7 @@ TEST(c_matrices, give_the_bits_of_the_cpp_interface) {
         march.start(0, u0);
         march.advance(1);
         EXPECT_EQ(apsis_integrate(s.get(), 1), APSIS_OK) << apsis_error_message();
-        EXPECT_EQ(state_of(s, length), march.u()) << name << sparse << adaptive;
+        EXPECT_EQ(unknowns_of(s, length), march.u()) << name << sparse << adaptive;
       }
 }
 
@@ -167,10 +162,10 @@ TEST(c_matrices, one_mass_matrix_is_that_of_every_block) {
     set_matrices(one, of, false);
     apsis_set_step(one.get(), 0.125);
     EXPECT_EQ(apsis_integrate(one.get(), 1), APSIS_OK) << apsis_error_message();
-    const state found = state_of(one, 4);
+    const state found = unknowns_of(one, 4);
     expected.insert(expected.end(), found.begin(), found.end());
   }
-  EXPECT_EQ(state_of(s, 8), expected);
+  EXPECT_EQ(unknowns_of(s, 8), expected);
 }
 
 TEST(c_matrices, explicit_methods_divide_by_the_mass) {

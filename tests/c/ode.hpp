@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <memory>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -31,6 +32,12 @@ inline integrator make(const char* name, std::size_t n) {
   apsis_integrator* made = nullptr;
   EXPECT_EQ(apsis_new_integrator(find(name).get(), n, &made), APSIS_OK) << apsis_error_message();
   return integrator(made);
+}
+
+/// Returns the n unknowns of an integrator.
+inline std::vector<double> unknowns_of(const integrator& s, std::size_t n) {
+  const double* u = apsis_state(s.get());
+  return {u, u + n};
 }
 
 /// Throws the error of a function of the C interface, as tables of bad input expect.

@@ -51,11 +51,9 @@ result_table measure(const settings& options) {
   result.title = "Tolerances of steps and of the end";
   result.note =
       "The problems, tolerances and digits are those of the first table on stiff systems, with the method "
-      "that "
-      "`auto` chooses. The first number has correct digits if the tolerances bound the error of each step. "
-      "The "
-      "second is for the error at the end (`solve_ivp(…, end_error=True)`). Brackets contain the CPU time "
-      "of the latter, all its runs included, relative to the former.";
+      "that `auto` chooses. The first number has correct digits if the tolerances bound the error of each "
+      "step. The second is for the error at the end (`solve_ivp(…, end_error=True)`). Brackets contain the "
+      "CPU time of the latter, all its runs included, relative to the former.";
   const auto tolerances = options.quick ? std::vector<double>{1e-4} : std::vector<double>{1e-4, 1e-6, 1e-8};
   result.columns = {"problem"};
   for (const double rtol : tolerances) result.columns.push_back(fmt::format("{:.0e}", rtol));

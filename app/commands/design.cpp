@@ -1,6 +1,4 @@
 #include "command_registry.hpp"
-#include "design_embedded.hpp"
-#include "design_options.hpp"
 #include "integrator_report.hpp"
 #include "interrupt.hpp"
 #include "method_report.hpp"
@@ -8,6 +6,8 @@
 #include "print.hpp"
 #include "progress_bar.hpp"
 #include "threads_option.hpp"
+#include "with_design/design_embedded.hpp"
+#include "with_design/design_options.hpp"
 
 #include <apsis/core/errors.hpp>
 #include <apsis/core/log.hpp>

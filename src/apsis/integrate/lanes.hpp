@@ -1,5 +1,7 @@
 #pragma once
 
+#include <apsis/integrate/lane_functions-inl.hpp>
+
 #include <cmath>
 #include <cstddef>
 #include <cstring>
@@ -18,7 +20,7 @@ namespace apsis::lane_arithmetic {
 /// Comparisons do not exist: lanes would take different branches.
 class lanes {
  public:
-  static constexpr std::size_t count = 8;  ///< number of systems
+  static constexpr std::size_t count = vectors::count;  ///< number of systems
 
   /// Undefined numbers.
   lanes() = default;
@@ -55,8 +57,7 @@ class lanes {
     friend class lanes;
     friend choice where_larger(const lanes& x, const lanes& y);
     friend void exchange(const choice& of, lanes& x, lanes& y);
-    using mask [[gnu::vector_size(8 * sizeof(double))]] = long long;
-    mask chosen_;
+    vectors::integers chosen_;
   };
   /// Returns the lanes in which |y| > |x|.
   friend choice where_larger(const lanes& x, const lanes& y) {
@@ -71,40 +72,47 @@ class lanes {
     y.all_ = of.chosen_ ? first : y.all_;
   }
 
-  /// f(x) in every lane, for a function of doubles.
-  template <class F>
-  friend lanes in_every_lane(const lanes& x, const F& f) {
-    lanes y;
-    for (std::size_t k = 0; k < count; ++k) y.all_[k] = f(x.all_[k]);
-    return y;
-  }
-  /// eˣ
-  friend lanes exp(const lanes& x) {
-    return in_every_lane(x, [](double y) { return std::exp(y); });
-  }
-  /// ln x
-  friend lanes log(const lanes& x) {
-    return in_every_lane(x, [](double y) { return std::log(y); });
-  }
   /// √x
   friend lanes sqrt(const lanes& x) {
-    return in_every_lane(x, [](double y) { return std::sqrt(y); });
-  }
-  /// sin x
-  friend lanes sin(const lanes& x) {
-    return in_every_lane(x, [](double y) { return std::sin(y); });
-  }
-  /// cos x
-  friend lanes cos(const lanes& x) {
-    return in_every_lane(x, [](double y) { return std::cos(y); });
+    return one_by_one(x, [](double z) { return std::sqrt(z); });
   }
   /// xⁿ
   friend lanes pow(const lanes& x, double n) {
-    return in_every_lane(x, [n](double y) { return std::pow(y, n); });
+    return one_by_one(x, [n](double z) { return std::pow(z, n); });
+  }
+  /// eˣ
+  friend lanes exp(const lanes& x) {
+    lanes y;
+    vectors::exp(x.all_, y.all_);
+    return y;
+  }
+  /// ln x
+  friend lanes log(const lanes& x) {
+    lanes y;
+    vectors::log(x.all_, y.all_);
+    return y;
+  }
+  /// sin x
+  friend lanes sin(const lanes& x) {
+    lanes y;
+    vectors::sin(x.all_, y.all_);
+    return y;
+  }
+  /// cos x
+  friend lanes cos(const lanes& x) {
+    lanes y;
+    vectors::cos(x.all_, y.all_);
+    return y;
   }
 
  private:
-  using vector [[gnu::vector_size(8 * sizeof(double))]] = double;
+  using vector = vectors::numbers;
+  template <class F>
+  static lanes one_by_one(const lanes& x, const F& f) {
+    lanes y;
+    vectors::one_by_one(x.all_, y.all_, f);
+    return y;
+  }
   explicit lanes(const vector& all) : all_(all) {}
 
   vector all_;

@@ -7,6 +7,9 @@
 
 namespace apsis::bench::peers {
 
+/// The name of extrapolated linearly implicit steps, beside those of methods.
+inline const std::string linear_steps = "linearly implicit";
+
 /// Many systems of one form with parameters of their own, from t = 0 to t1. Dimensionless.
 struct ensemble_task {
   std::string name;
@@ -16,7 +19,7 @@ struct ensemble_task {
   std::vector<double> sizes;  ///< sizes of the unknowns: atol_i = rtol · size_i
   /// Returns the parameters of system s, which vary over all systems by some tens of percent.
   std::vector<double> (*parameters_of)(std::size_t s, std::size_t systems);
-  /// Integrates all systems in the lanes of Apsis.
+  /// Integrates all systems in the lanes of Apsis, by a method or by linear_steps.
   void (*in_lanes)(const ensemble_task& task, const std::string& method, double rtol, std::span<double> u,
                    std::span<const double> parameters);
   /// Integrates all systems by CVODE, one after the other, with exact Jacobians and a dense solver. Memory is

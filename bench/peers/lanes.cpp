@@ -12,6 +12,17 @@ component_tolerances<double> tolerances_of(const ensemble_task& task, double rto
   return {{rtol}, absolute};
 }
 
+/// Integrates an ensemble by linearly implicit steps, or by a method of the catalogue.
+template <std::size_t N, std::size_t Parameters, class F, class G>
+void integrate_by(const ensemble_task& task, const std::string& method, double rtol, const F& f, const G& g,
+                  std::span<double> u, std::span<const double> parameters) {
+  const auto tolerances = tolerances_of(task, rtol);
+  if (method == linear_steps)
+    integrate_ensemble<N, Parameters>(linearly_implicit{}, f, g, u, parameters, 0.0, task.t1, tolerances);
+  else
+    integrate_ensemble<N, Parameters>(find_method(method), f, g, u, parameters, 0.0, task.t1, tolerances);
+}
+
 }  // namespace
 
 void robertson_in_lanes(const ensemble_task& task, const std::string& method, double rtol,
@@ -21,8 +32,7 @@ void robertson_in_lanes(const ensemble_task& task, const std::string& method, do
     f[2] = k[2] * y[1] * y[1];
     f[1] = -f[0] - f[2];
   };
-  integrate_ensemble<3, 3>(find_method(method), no_lane_transport{}, rate, u, parameters, 0.0, task.t1,
-                           tolerances_of(task, rtol));
+  integrate_by<3, 3>(task, method, rtol, no_lane_transport{}, rate, u, parameters);
 }
 
 void ode_model_in_lanes(const ensemble_task& task, const std::string& method, double rtol,
@@ -35,8 +45,7 @@ void ode_model_in_lanes(const ensemble_task& task, const std::string& method, do
     f[0] = 0.0;
     f[1] = (y[0] * y[0] + 1.0) * (sin(y[0]) - y[1]) / epsilon[0];
   };
-  integrate_ensemble<2, 1>(find_method(method), transport, rate, u, parameters, 0.0, task.t1,
-                           tolerances_of(task, rtol));
+  integrate_by<2, 1>(task, method, rtol, transport, rate, u, parameters);
 }
 
 }  // namespace apsis::bench::peers

@@ -15,6 +15,7 @@
 #include <Eigen/Dense>
 #include <gtest/gtest.h>
 #include <integrate/random.hpp>
+#include <integrate/robertson_ensemble.hpp>
 #include <support/bad_input.hpp>
 #include <support/property.hpp>
 
@@ -24,52 +25,6 @@ namespace {
 using apsis::jet;
 using apsis::lanes;
 using random_input::uniform;
-using numbers = std::vector<double>;
-using tolerances = apsis::component_tolerances<double>;
-
-/// Robertson's reaction, with its three rates as parameters.
-constexpr auto robertson = [](double, auto y, auto k, auto f) {
-  f[0] = k[1] * y[1] * y[2] - k[0] * y[0];
-  f[2] = k[2] * y[1] * y[1];
-  f[1] = -f[0] - f[2];
-};
-constexpr std::array<double, 3> rates = {0.04, 1e4, 3e7};
-
-/// Solves a single system, with automatic derivatives of another kind, and Newton's method up to rounding.
-numbers robertson_alone(const numbers& k, double t1, double tolerance) {
-  apsis::newton_problem problem(apsis::no_transport{}, [&k](const auto& y, auto& f) {
-    f[0] = k[1] * y[1] * y[2] - k[0] * y[0];
-    f[2] = k[2] * y[1] * y[1];
-    f[1] = -1.0 * f[0] - f[2];
-  });
-  const auto& m = apsis::find_method("imdrk-9-5-accurate");
-  apsis::stepper march(m, problem, apsis::solutions::result_and_embedded);
-  apsis::step_controller<double> control(1.0, apsis::estimate_of(m).order);
-  numbers u{1, 0, 0};
-  apsis::integrate_to_tolerance(
-      march, u, 0.0, t1, apsis::step_rule<double>::unlimited(), control,
-      tolerances({tolerance}, {tolerance * 1e-4, tolerance * 1e-8, tolerance * 1e-4}));
-  return u;
-}
-
-tolerances of_robertson(double tolerance) {
-  return tolerances({tolerance}, {tolerance * 1e-4, tolerance * 1e-8, tolerance * 1e-4});
-}
-
-struct robertson_ensemble {
-  explicit robertson_ensemble(std::size_t systems) {
-    for (std::size_t s = 0; s < systems; ++s) {
-      u.insert(u.end(), {1, 0, 0});
-      for (const double k : rates) parameters.push_back(k * (1 + 0.01 * static_cast<double>(s)));
-    }
-  }
-  apsis::ensemble_counts advance(double t1, double tolerance,
-                                 const std::string& method = "extrapolated-euler-5") {
-    return apsis::integrate_ensemble<3, 3>(apsis::find_method(method), apsis::no_lane_transport{}, robertson,
-                                           u, parameters, 0.0, t1, of_robertson(tolerance));
-  }
-  numbers u, parameters;
-};
 
 }  // namespace
 
@@ -166,7 +121,7 @@ TEST(ensemble, every_system_is_as_accurate_as_its_tolerance_asks) {
       // With the tolerance 1e-8, methods of order 3 would take some 10^4 steps.
       if (tolerance < 1e-7 && std::string(method) != "extrapolated-euler-5") continue;
       robertson_ensemble ensemble(21);
-      ensemble.advance(1e4, tolerance, method);
+      ensemble.advance(apsis::find_method(method), 1e4, tolerance);
       for (std::size_t c = 0; c < exact.size(); ++c) {
         const double* u = &ensemble.u[3 * compared[c]];
         // Errors of steps add up to at most ten times the tolerance of a step.
@@ -180,7 +135,7 @@ TEST(ensemble, every_system_is_as_accurate_as_its_tolerance_asks) {
 
 TEST(ensemble, reaches_late_times) {
   robertson_ensemble ensemble(8);
-  const auto counts = ensemble.advance(1e11, 1e-6);
+  const auto counts = ensemble.advance(apsis::find_method("extrapolated-euler-5"), 1e11, 1e-6);
   EXPECT_NEAR(ensemble.u[0] / 0.2083340149701255e-7, 1.0, 1e-4);
   EXPECT_NEAR(ensemble.u[1] / 0.8333360770334713e-13, 1.0, 1e-4);
   EXPECT_LT(counts.steps, 1000);
@@ -189,7 +144,7 @@ TEST(ensemble, reaches_late_times) {
 
 TEST(ensemble, parts_of_eight_have_the_bits_of_the_whole) {
   robertson_ensemble whole(24), parts(24);
-  whole.advance(1e3, 1e-5);
+  whole.advance(apsis::find_method("extrapolated-euler-5"), 1e3, 1e-5);
   for (const std::size_t first : {16u, 0u, 8u})
     apsis::integrate_ensemble<3, 3>(apsis::find_method("extrapolated-euler-5"), apsis::no_lane_transport{},
                                     robertson, std::span(parts.u).subspan(3 * first, 24),
@@ -200,12 +155,12 @@ TEST(ensemble, parts_of_eight_have_the_bits_of_the_whole) {
 
 TEST(ensemble, a_last_group_with_fewer_systems_is_complete) {
   robertson_ensemble one(1), nine(9);
-  one.advance(1e3, 1e-6);
-  nine.advance(1e3, 1e-6);
+  one.advance(apsis::find_method("extrapolated-euler-5"), 1e3, 1e-6);
+  nine.advance(apsis::find_method("extrapolated-euler-5"), 1e3, 1e-6);
   EXPECT_NEAR(one.u[0], nine.u[0], 1e-5 * one.u[0]);
   robertson_ensemble copies(8);
   for (std::size_t k = 0; k < 24; ++k) copies.parameters[k] = rates[k % 3];
-  copies.advance(1e3, 1e-6);
+  copies.advance(apsis::find_method("extrapolated-euler-5"), 1e3, 1e-6);
   for (std::size_t k = 0; k < 24; ++k) EXPECT_EQ(copies.u[k], one.u[k % 3]);  // lanes are alike
   numbers nothing;
   const auto counts = apsis::integrate_ensemble<3>(apsis::find_method("ark-436"), apsis::no_lane_transport{},

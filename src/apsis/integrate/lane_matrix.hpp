@@ -33,7 +33,16 @@ class lane_matrix {
     }
   }
 
-  /// r ← A⁻¹ r. Requires factorize().
+  /// Sets the matrix to the factors of I − a J.
+  void factorize_shifted(double a, const std::array<std::array<lanes, N>, N>& jacobian) {
+    for (std::size_t i = 0; i < N; ++i) {
+      for (std::size_t j = 0; j < N; ++j) of_[i][j] = lanes(-a) * jacobian[i][j];
+      of_[i][i] += 1.0;
+    }
+    factorize();
+  }
+
+  /// r ← A⁻¹ r. Requires factors.
   void solve(std::array<lanes, N>& r) const {
     std::size_t next = 0;
     for (std::size_t c = 0; c < N; ++c)

@@ -7,9 +7,18 @@
 #include <cmath>
 #include <limits>
 #include <utility>
-#include <vector>
 
 namespace apsis {
+
+/// Returns w_n = Π_{m≠n} n/(n − m), m = 1, …, columns. If the error of the result of n substeps has an
+/// expansion in powers of 1/n, the error of Σ_n w_n u_n has the order of the number of columns.
+template <class Real>
+Real extrapolation_weight(int n, int columns) {
+  Real product(1);
+  for (int m = 1; m <= columns; ++m)
+    if (m != n) product *= Real(n) / Real(n - m);
+  return product;
+}
 
 /// Options of extrapolate().
 template <class Real>
@@ -35,17 +44,6 @@ long extrapolate(P& p, typename P::state& u, typename P::real t0, typename P::re
                  extrapolation_options<typename P::real> options, const Distance& distance) {
   using real = typename P::real;
   using state = typename P::state;
-  const auto weights = [](int first, int last) {
-    std::vector<real> w;
-    for (int n = first; n <= last; ++n) {
-      real product(1);
-      for (int m = first; m <= last; ++m)
-        if (m != n) product *= real(n) / real(n - m);
-      w.push_back(product);
-    }
-    return w;
-  };
-  const auto high = weights(1, options.order), low = weights(1, options.order - 1);
   const auto add = [&](real alpha, const state& from, state& sum, bool fresh) {
     if (fresh)
       combine(p, {{alpha, &from}}, sum);
@@ -67,9 +65,8 @@ long extrapolate(P& p, typename P::state& u, typename P::real t0, typename P::re
         std::swap(v, next);
       }
       combine(p, {{real(1), &v}, {real(-1), &u}}, v);
-      const std::size_t i = static_cast<std::size_t>(n) - 1;
-      add(high[i], v, result, n == 1);
-      if (n < options.order) add(low[i], v, lower, n == 1);
+      add(extrapolation_weight<real>(n, options.order), v, result, n == 1);
+      if (n < options.order) add(extrapolation_weight<real>(n, options.order - 1), v, lower, n == 1);
     }
     add(real(1), u, result, false);
     add(real(1), u, lower, false);

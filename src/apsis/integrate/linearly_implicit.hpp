@@ -2,6 +2,7 @@
 
 #include <apsis/core/errors.hpp>
 #include <apsis/integrate/error_control.hpp>
+#include <apsis/integrate/extrapolation.hpp>
 #include <apsis/integrate/lane_matrix.hpp>
 #include <apsis/integrate/lane_system.hpp>
 
@@ -21,11 +22,11 @@ namespace apsis {
 ///   (I − h J)(u_{k+1} − u_k) = h F(t_k, u_k) + h G(t_{k+1}, u_k),  J = G'(t₀, u₀).
 /// Σ_n w_n u_n with w_n = Π_{m≠n} n/(n − m) has order K. The difference to the result without n = K, of order
 /// K − 1, estimates the error. A step has one Jacobian matrix, K factorizations and K(K + 1)/2 solves, and no
-/// iterations. (Deuflhard, Hairer, Zugck, Numer. Math. 51 (1987) 501; Hairer, Wanner, Solving Ordinary
-/// Differential Equations II, section IV.9.)
+/// iterations. Results may be negative: no step length preserves bounds. (Deuflhard, Hairer, Zugck, Numer.
+/// Math. 51 (1987) 501; Hairer, Wanner, Solving Ordinary Differential Equations II, section IV.9.)
 struct linearly_implicit {
-  /// K, from 2 to 8. Without it K is 4 + ½ log₁₀ 1/rtol, rounded up, with the smallest rtol: 6 for 1e-4, 7
-  /// for 1e-6, 8 for 1e-8.
+  /// K, from 2 to 8. Without it K follows from the smallest rtol: it is 4 + ½ log₁₀ 1/rtol, rounded up. That
+  /// is 6 for 1e-4, 7 for 1e-6, and 8 for 1e-8.
   std::optional<int> order = std::nullopt;
 };
 
@@ -54,8 +55,9 @@ class linear_steps {
 
   explicit linear_steps(int order) : order_(order) {
     for (int n = 1; n <= order; ++n) {
-      of_result_[index(n)] = weight(n, order);
-      of_error_[index(n)] = weight(n, order) - (n < order ? weight(n, order - 1) : 0.0);
+      of_result_[index(n)] = extrapolation_weight<double>(n, order);
+      const double lower = n < order ? extrapolation_weight<double>(n, order - 1) : 0.0;
+      of_error_[index(n)] = of_result_[index(n)] - lower;
     }
   }
 
@@ -84,12 +86,6 @@ class linear_steps {
  private:
   static constexpr std::size_t size = std::tuple_size_v<unknowns>;
   static std::size_t index(int n) { return static_cast<std::size_t>(n) - 1; }
-  static double weight(int n, int last) {
-    double product = 1.0;
-    for (int m = 1; m <= last; ++m)
-      if (m != n) product *= static_cast<double>(n) / static_cast<double>(n - m);
-    return product;
-  }
 
   /// The step in which u changes by tol^{1/K}, relative to u (first_step_length).
   double first_step(const System& system, const unknowns& u, double longest) const {

@@ -15,7 +15,7 @@ WHOLE := -DAPSIS_PCH=ON -DCMAKE_UNITY_BUILD=ON
 FORMATTED = $(shell find src app paper validation tests bench examples python -name '*.[ch]pp' -o -name '*.[ch]' 2>/dev/null)
 
 .DEFAULT_GOAL := help
-.PHONY: help run validate reproduce study program figures test test-all test-slow device-check clang asan tsan bench packages format format-check tidy docs docs-links clean
+.PHONY: help run validate reproduce study program figures test test-all test-slow device-check clang asan tsan bench packages format format-check tidy changed docs docs-links clean
 
 help: ## this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-13s %s\n", $$1, $$2 }' Makefile
@@ -87,10 +87,11 @@ tsan: ## run the tests of threads and of their users under the thread sanitizer
 # Lists of compile commands and one generated file suffice. Checks of the syntax visit every
 # included header again for each file, and therefore run over a file that includes all sources of a room. Two of them do not expect
 # that. The analyzer follows only functions of the file itself: it gets the text of all sources.
+CONFIGURE_TIDY = cmake --preset clang -B build/tidy -DAPSIS_PYTHON_PACKAGE=ON -DPython3_EXECUTABLE=$(PYTHON) \
+	  -DCMAKE_UNITY_BUILD=ON -DCMAKE_UNITY_BUILD_BATCH_SIZE=1000 >/dev/null && cmake --build build/tidy --target apsis_commit
+
 tidy: ## run clang-tidy over the library, the program and the Python package
-	cmake --preset clang -B build/tidy -DAPSIS_PYTHON_PACKAGE=ON -DPython3_EXECUTABLE=$(PYTHON) \
-	  -DCMAKE_UNITY_BUILD=ON -DCMAKE_UNITY_BUILD_BATCH_SIZE=1000 >/dev/null
-	cmake --build build/tidy --target apsis_commit
+	$(CONFIGURE_TIDY)
 	run-clang-tidy-19 -quiet -p build/tidy -j $(CORES) \
 	  -checks='-clang-analyzer-*,-bugprone-suspicious-include,-readability-redundant-declaration' \
 	  '$(CURDIR)/(build/tidy/)?(src|app|paper|validation|python)/.*[.]c(pp|xx)$$'
@@ -98,6 +99,11 @@ tidy: ## run clang-tidy over the library, the program and the Python package
 	run-clang-tidy-19 -quiet -p build/tidy/joined -j $(CORES) \
 	  -checks='-bugprone-*,-misc-*,-modernize-*,-performance-*,-readability-*' \
 	  '$(CURDIR)/(build/tidy/joined/)?(src|app|paper|validation|python)/.*[.]cpp$$'
+
+changed: ## clang-format, clang and clang-tidy for changed files alone (SINCE=COMMIT, LIMIT=SECONDS)
+	@scripts/install-packages.sh ci
+	$(CONFIGURE_TIDY)
+	scripts/check_changed.py build/tidy $(if $(SINCE),--since $(SINCE)) $(if $(LIMIT),--seconds $(LIMIT))
 
 bench: ## measure every table of docs/speed.md into results/bench/speed.json (two hours, on an idle machine)
 	@scripts/install-packages.sh test

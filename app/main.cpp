@@ -55,7 +55,7 @@ int run_program(int argc, char** argv) {
   check_option_values(program);
   const std::vector<std::string> names = command_names(program);
   if (argc < 2) throw input_error("command line: no command (one of them is needed); " + suggest("", names));
-  check_command(argv[1], names);
+  check_first_argument(argv[1], names);
   try {
     program.parse(argc, argv);
   } catch (const CLI::ParseError& problem) {

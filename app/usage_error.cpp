@@ -70,7 +70,7 @@ const CLI::Option* missing_argument(const CLI::App& command) {
 
 }  // namespace
 
-void check_command(const std::string& first, const std::vector<std::string>& names) {
+void check_first_argument(const std::string& first, const std::vector<std::string>& names) {
   if (first[0] == '-' || std::find(names.begin(), names.end(), first) != names.end()) return;
   std::string advice = suggest(first, names);
   if (first == "help" || first == "version") advice = fmt::format("write apsis --{}", first);

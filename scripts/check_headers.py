@@ -32,7 +32,7 @@ def flags_of(command: str) -> list[str]:
             skip = 1
         elif word == "-Xclang" and any("pch" in w for w in words[k + 1:k + 4]):
             skip = 1
-        elif word not in ("-c", "-MD", "-MMD", "-Winvalid-pch") and not word.endswith(".cpp") and not word.startswith("-O"):
+        elif word not in ("-c", "-MD", "-MMD", "-Winvalid-pch") and not word.endswith((".cpp", ".cxx")) and not word.startswith("-O"):
             flags.append(word)
     return flags
 

@@ -20,7 +20,7 @@ installed() { [ "$(dpkg-query -W -f '${db:Status-Status}' "$1" 2>/dev/null)" = i
 group=${1:-run}
 mapfile -t packages < <(packages_of "$group")
 if [ ${#packages[@]} -eq 0 ]; then
-  echo "install-packages.sh: no group '$group' (packages.txt does not name it); valid: run, python, deb, docs, mpi, test, dev" >&2
+  echo "install-packages.sh: no group '$group' (packages.txt does not name it); valid: run, python, deb, docs, mpi, test, ci, dev" >&2
   exit 2
 fi
 if ! command -v dpkg-query >/dev/null; then

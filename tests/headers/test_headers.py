@@ -43,6 +43,10 @@ class Headers(unittest.TestCase):
                                        "-Xclang a/cmake_pch.hxx -I b -o x.o -c x.cpp")
         self.assertEqual(flags, ["clang++", "-Wall", "-I", "b"])
 
+    def test_the_source_of_a_unity_build_is_left_out(self):
+        flags = check_headers.flags_of("g++ -Wall -O2 -o unity_0_cxx.o -c room.dir/Unity/unity_0_cxx.cxx")
+        self.assertEqual(flags, ["g++", "-Wall"])
+
     def test_headers_of_parts_that_are_not_built_are_left_out(self):
         library = SOURCE / "src/apsis"
         sources = [library / "core/version.cpp", library / "exec/parallel.cpp", library / "exec/without_mpi/processes.cpp"]

@@ -20,7 +20,8 @@ namespace apsis::lane_arithmetic {
 /// Comparisons do not exist: lanes would take different branches.
 class lanes {
  public:
-  static constexpr std::size_t count = vectors::count;  ///< number of systems
+  static constexpr std::size_t count = 8;  ///< number of systems
+  static_assert(count == vectors::count);
 
   /// Undefined numbers.
   lanes() = default;

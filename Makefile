@@ -113,10 +113,11 @@ bench: ## measure every table of docs/speed.md into results/bench/speed.json (tw
 	if command -v mpirun >/dev/null; then OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 \
 	  mpirun -n 2 build/release/bench/apsis_measure --out results/bench/speed.json; fi
 
-packages: program ## build Debian packages in build/release and test them in a bare Debian 12 (as root, with a network)
+packages: program ## build Debian packages and the image, and test both in a bare Debian 12 (as root, with a network)
 	@scripts/install-packages.sh dev
 	cd build/release && cpack
 	tests/install/on_a_bare_system.sh build/release
+	tests/install/image.sh
 
 format: ## run clang-format over all sources
 	clang-format-19 -i $(FORMATTED)

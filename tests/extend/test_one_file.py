@@ -24,7 +24,7 @@ PARTS = ("CMakeLists.txt", "CMakePresets.json", "LICENSE", "README.md", "app", "
 ENTRY = ("src/apsis/integrate/any_stepper.hpp",
          (("#include <apsis/integrate/kinds/runge_kutta.hpp>\n",
            "#include <apsis/integrate/kinds/planted_halves.hpp>\n#include <apsis/integrate/kinds/runge_kutta.hpp>\n"),
-          ("using stepper_kinds = std::tuple<", "using stepper_kinds = std::tuple<planted_halves_steps, ")))
+          ("    std::tuple<runge_kutta_steps,", "    std::tuple<planted_halves_steps, runge_kutta_steps,")))
 # A method file for each kind that has files. It is a copy from the catalogue, under another name.
 COPIES = {"planted-explicit": "ssprk-3-3", "planted-implicit": "dirk-2-2", "planted-exponential": "exponential-2",
           "planted-two-step": "two-step-8-3-narrow"}

@@ -49,7 +49,9 @@ def commands_of(build: Path) -> dict[Path, str]:
 
 
 def nearest(header: Path, sources: list[Path]) -> Path:
-    return max(sources, key=lambda source: len(os.path.commonpath([header, source])))
+    """Returns a source of the same folder or room, with MPI for a header with MPI: other sources may lack its include path."""
+    return max(sources, key=lambda source: (len(os.path.commonpath([header, source])),
+                                            ("with_mpi" in source.parts) == ("with_mpi" in header.parts)))
 
 
 def is_built(header: Path, sources: list[Path]) -> bool:

@@ -47,6 +47,12 @@ class Headers(unittest.TestCase):
         flags = check_headers.flags_of("g++ -Wall -O2 -o unity_0_cxx.o -c room.dir/Unity/unity_0_cxx.cxx")
         self.assertEqual(flags, ["g++", "-Wall"])
 
+    def test_headers_with_mpi_get_the_flags_of_sources_with_mpi(self):
+        room = SOURCE / "src/apsis/exec"
+        sources = [room / "parallel.cpp", room / "with_mpi/processes.cpp", room / "threads.cpp"]
+        self.assertEqual(check_headers.nearest(room / "internal/with_mpi/failure_notice.hpp", sources), sources[1])
+        self.assertEqual(check_headers.nearest(room / "internal/team.hpp", sources), sources[0])
+
     def test_headers_of_parts_that_are_not_built_are_left_out(self):
         library = SOURCE / "src/apsis"
         sources = [library / "core/version.cpp", library / "exec/parallel.cpp", library / "exec/without_mpi/processes.cpp"]

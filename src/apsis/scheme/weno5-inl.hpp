@@ -7,6 +7,7 @@
 #endif
 
 #include <apsis/exec/counted.hpp>
+#include <apsis/exec/simd-inl.hpp>
 #include <apsis/scheme/formulas/weno5.hpp>
 #include <apsis/scheme/walk-inl.hpp>
 

@@ -25,9 +25,10 @@ def tests_of(program):
 
 
 def entry_of(name):
-    """Returns the entry of the lists to which a name belongs. All instances of a parameterised test have one entry (discover.cmake)."""
+    """Returns the filter that runs a test. All instances of a parameterised test have one, which ends in /* (discover.cmake)."""
     suite, _, test = name.partition(".")
-    return suite + "." + test.split("/")[0]
+    name, slash, _ = test.partition("/")
+    return f"{suite}.{name}{slash and '/*'}"
 
 
 def is_slow(name):
@@ -36,14 +37,14 @@ def is_slow(name):
 
 
 def registered(ctest, build):
-    """Returns the labels of each entry of every registered test, by (program, name)."""
+    """Returns the labels of each entry of every registered test, by (program, filter)."""
     found = collections.defaultdict(list)
     for test in json.loads(output_of(ctest, "--test-dir", build, "--show-only=json-v1"))["tests"]:
         program, *arguments = test.get("command") or [""]
         labels = next((one["value"] for one in test.get("properties", []) if one["name"] == "LABELS"), [])
         for argument in arguments:
-            name = argument.removeprefix("--gtest_filter=").removesuffix("/*")
-            if name != argument and "*" not in name:
+            name = argument.removeprefix("--gtest_filter=")
+            if name != argument and "*" not in name.removesuffix("/*"):
                 found[Path(program).resolve(), name].append(labels)
     return found
 

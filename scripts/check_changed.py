@@ -30,6 +30,10 @@ FORMATTED = (*SOURCES, "tests", "bench", "examples")  # in which `make format` l
 TOOLS = ("clang-format-19", "clang-tidy-19", "clang++-19")
 
 
+def missing_tools() -> list[str]:
+    return [tool for tool in TOOLS if not shutil.which(tool)]
+
+
 def git(*words: str) -> str:
     """Returns the output of git, empty if it fails."""
     return subprocess.run(["git", "-C", ROOT, *words], text=True, capture_output=True).stdout.strip()
@@ -56,7 +60,8 @@ class Jobs:
 
     def __init__(self, build: Path, seconds: float, jobs: int):
         self.build, self.end, self.jobs, self.problems = build, time.monotonic() + seconds, jobs, []
-        self.commands = check_headers.commands_of(build) if (build / "compile_commands.json").is_file() else {}
+        self.commands = check_headers.commands_of(build)
+        self.sources = check_headers.own_sources(self.commands, build)
 
     def output_of(self, command: list, text: str = "") -> str | None:
         """Returns what a command prints, empty if it finds nothing, or None if the time is over."""
@@ -79,8 +84,8 @@ class Jobs:
         return self.output_of(["clang-format-19", "--dry-run", "--Werror", file])
 
     def header(self, file: Path) -> str | None:
-        flags = check_headers.flags_of(self.commands[check_headers.nearest(file, list(self.commands))])
-        return self.output_of([*flags, "-fsyntax-only", "-x", "c++", "-"], f'#include "{file}"\n' * 2)
+        source = check_headers.nearest(file, self.sources)
+        return self.output_of(*check_headers.compilation(file, check_headers.flags_of(self.commands[source])))
 
     def clang(self, file: Path) -> str | None:
         return self.output_of([*check_headers.flags_of(self.commands[file]), "-fsyntax-only", file])
@@ -92,8 +97,7 @@ class Jobs:
 
 def check(jobs: Jobs, files: list[Path]) -> None:
     sources = [file for file in within(files, SOURCES, ".cpp") if file in jobs.commands]
-    built = [file for file in jobs.commands if file.is_relative_to(ROOT) and not file.is_relative_to(jobs.build)]
-    headers = [file for file in within(files, SOURCES, ".hpp") if check_headers.is_built(file, built)]
+    headers = [file for file in within(files, SOURCES, ".hpp") if check_headers.is_built(file, jobs.sources)]
     jobs.run("format", within(files, FORMATTED, ".cpp", ".hpp", ".c", ".h"), jobs.format)
     jobs.run("headers", headers, jobs.header)
     jobs.run("clang", sources, jobs.clang)
@@ -107,7 +111,7 @@ def main() -> int:
     parser.add_argument("--seconds", type=float, default=86400.0)
     parser.add_argument("--jobs", type=int, default=len(os.sched_getaffinity(0)))
     given = parser.parse_args()
-    if missing := [tool for tool in TOOLS if not shutil.which(tool)]:
+    if missing := missing_tools():
         print(f"check_changed.py: {', '.join(missing)} missing (not installed); run scripts/install-packages.sh ci", file=sys.stderr)
         return 2
     if not (given.build / "compile_commands.json").is_file():

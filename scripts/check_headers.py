@@ -64,16 +64,26 @@ def is_built(header: Path, sources: list[Path]) -> bool:
     return bool(of_room) and ("with_mpi" not in header.parts or any("with_mpi" in source.parts for source in of_room))
 
 
-def problem_of(header: Path, command: list[str]) -> str:
-    text = f'#include "{header}"\n' * 2
-    done = subprocess.run([*command, "-fsyntax-only", "-x", "c++", "-"], input=text, capture_output=True, text=True)
+def own_sources(commands: dict[Path, str], build: Path) -> list[Path]:
+    """Returns the sources that the build did not generate."""
+    return [file for file in commands if file.is_relative_to(ROOT) and not file.is_relative_to(build)]
+
+
+def compilation(header: Path, flags: list[str]) -> tuple[list[str], str]:
+    """Returns the command that compiles a header alone, twice, and its standard input."""
+    return [*flags, "-fsyntax-only", "-x", "c++", "-"], f'#include "{header}"\n' * 2
+
+
+def problem_of(header: Path, flags: list[str]) -> str:
+    command, text = compilation(header, flags)
+    done = subprocess.run(command, input=text, capture_output=True, text=True)
     return "" if done.returncode == 0 else f"{header}: does not compile alone (see below); include what it uses\n{done.stderr}"
 
 
 def problems(build: Path, folders: list[Path], jobs: int) -> tuple[int, list[str]]:
     """Returns the number of headers and their problems."""
     commands = commands_of(build)
-    sources = [file for file in commands if file.is_relative_to(ROOT) and not file.is_relative_to(build)]
+    sources = own_sources(commands, build)
     headers = sorted(header for folder in folders for header in folder.rglob("*.hpp") if is_built(header, sources))
     with concurrent.futures.ThreadPoolExecutor(jobs) as pool:
         found = pool.map(lambda header: problem_of(header, flags_of(commands[nearest(header, sources)])), headers)

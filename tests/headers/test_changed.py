@@ -17,7 +17,7 @@ import check_headers  # noqa: E402
 GOOD = "#pragma once\n\ninline int one() {\n  return 1;\n}\n"
 
 
-@unittest.skipUnless(all(map(shutil.which, check_changed.TOOLS)), "clang-19, clang-format-19 or clang-tidy-19 is not installed")
+@unittest.skipIf(check_changed.missing_tools(), f"not installed: {', '.join(check_changed.missing_tools())}")
 class Changed(unittest.TestCase):
     """A repository with a header, a source and the commands of a build."""
 

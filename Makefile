@@ -100,10 +100,10 @@ tidy: ## run clang-tidy over the library, the program and the Python package
 	  -checks='-bugprone-*,-misc-*,-modernize-*,-performance-*,-readability-*' \
 	  '$(CURDIR)/(build/tidy/joined/)?(src|app|paper|validation|python)/.*[.]cpp$$'
 
-changed: ## clang-format, clang and clang-tidy for changed files alone (SINCE=COMMIT, LIMIT=SECONDS)
+changed: ## clang-format, clang and clang-tidy for changed files alone (SINCE=COMMIT, UNTIL=SECONDS as date +%s)
 	@scripts/install-packages.sh ci
 	$(CONFIGURE_TIDY)
-	scripts/check_changed.py build/tidy $(if $(SINCE),--since $(SINCE)) $(if $(LIMIT),--seconds $(LIMIT))
+	scripts/check_changed.py build/tidy $(if $(SINCE),--since $(SINCE)) $(if $(UNTIL),--until $(UNTIL))
 
 bench: ## measure every table of docs/speed.md into results/bench/speed.json (two hours, on an idle machine)
 	@scripts/install-packages.sh test

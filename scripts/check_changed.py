@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""check_changed.py BUILD [--since COMMIT] [--seconds N] [--jobs N]: the checks of clang for the files that changed.
+"""check_changed.py BUILD [--since COMMIT] [--until TIME] [--jobs N]: the checks of clang for the files that changed.
 
 Four jobs look at the files that differ from COMMIT:
 
@@ -10,7 +10,7 @@ Four jobs look at the files that differ from COMMIT:
 
 BUILD is a folder that clang-19 configured and whose generated files exist (`make changed` makes one). It is needed by the last three
 jobs. Without COMMIT it is the newest commit that HEAD shares with origin/main, or the one before HEAD if that is HEAD itself. After
-N seconds no further file is checked, and the jobs state how many are left. Exit code 1 if there is a problem, 2 if a tool or a folder
+TIME, in seconds of `date +%s`, no further file is checked, and the jobs state how many are left. Exit code 1 if there is a problem, 2 if a tool or a folder
 is missing.
 """
 import argparse
@@ -58,15 +58,15 @@ def within(files: list[Path], folders: tuple[str, ...], *suffixes: str) -> list[
 class Jobs:
     """Runs jobs until a time. `problems` has the output of those that failed."""
 
-    def __init__(self, build: Path, seconds: float, jobs: int):
-        self.build, self.end, self.jobs, self.problems = build, time.monotonic() + seconds, jobs, []
+    def __init__(self, build: Path, end: float, jobs: int):
+        self.build, self.end, self.jobs, self.problems = build, end, jobs, []
         self.commands = check_headers.commands_of(build)
         self.sources = check_headers.own_sources(self.commands, build)
 
     def output_of(self, command: list, text: str = "") -> str | None:
         """Returns what a command prints, empty if it finds nothing, or None if the time is over."""
         try:
-            done = subprocess.run(command, input=text, text=True, capture_output=True, timeout=max(1.0, self.end - time.monotonic()))
+            done = subprocess.run(command, input=text, text=True, capture_output=True, timeout=max(1.0, self.end - time.time()))
         except subprocess.TimeoutExpired:
             return None
         return "" if done.returncode == 0 else done.stdout + done.stderr
@@ -74,7 +74,7 @@ class Jobs:
     def run(self, name: str, files: list[Path], check) -> None:
         """Applies a check, which returns as output_of does, to every file until the end."""
         with concurrent.futures.ThreadPoolExecutor(self.jobs) as pool:
-            found = list(pool.map(lambda file: check(file) if time.monotonic() < self.end else None, files))
+            found = list(pool.map(lambda file: check(file) if time.time() < self.end else None, files))
         checked = [text for text in found if text is not None]
         self.problems += [text for text in checked if text]
         late = f"; the time was over for {len(files) - len(checked)}" if len(checked) < len(files) else ""
@@ -108,7 +108,7 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("build", type=Path)
     parser.add_argument("--since", default="", metavar="COMMIT")
-    parser.add_argument("--seconds", type=float, default=86400.0)
+    parser.add_argument("--until", type=float, default=time.time() + 86400.0, metavar="TIME")
     parser.add_argument("--jobs", type=int, default=len(os.sched_getaffinity(0)))
     given = parser.parse_args()
     if missing := missing_tools():
@@ -124,7 +124,7 @@ def main() -> int:
     if not base:
         print("no earlier commit: no file has changed")
         return 0
-    jobs = Jobs(given.build.resolve(), given.seconds, given.jobs)
+    jobs = Jobs(given.build.resolve(), given.until, given.jobs)
     print(f"files that differ from {base[:12]}:")
     check(jobs, changed(base))
     print(*jobs.problems, sep="\n")

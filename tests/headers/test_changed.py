@@ -90,7 +90,7 @@ class Changed(unittest.TestCase):
 
     def test_files_after_the_end_of_the_time_are_counted(self):
         self.write("app/new.cpp", "int  three() { return 3; }\n")
-        code, output = self.check("--since", "HEAD", "--seconds", "0")
+        code, output = self.check("--since", "HEAD", "--until", "0")
         self.assertEqual(code, 0, output)
         self.assertIn("format: 0 of 1 files, 0 with problems; the time was over for 1", output)
 

@@ -68,7 +68,7 @@ def tables(measured, network=Network()):
     cores = [128, 1024, 10_000, 100_000]
     sides = {2: (200, 60, 20), 3: (40, 20, 10)}
     totals = {2: 6_000, 3: 300}  # cells in each direction of strong scaling
-    lines = ["Weak scaling, blocks of so many cells for each process of 8 threads:", "",
+    lines = ["Weak scaling with one block of cells for each process of 8 threads:", "",
              "| space × velocity | cells of a block | MB of a field | " + " | ".join(f"{c:,} cores" for c in cores) + " | 100,000, compact |",
              "|---|---|---|" + "---|" * (len(cores) + 1)]
     gases = [gas_of(entry) for entry in measured["data"]["gases"] if entry["dimensions"] > 1]

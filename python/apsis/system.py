@@ -76,7 +76,7 @@ class System:
         return self.by != before
 
     def __reduce__(self) -> tuple[Callable[..., System], tuple[Any, ...]]:
-        """Copies the functions without events, and the derivatives, to be prepared again."""
+        """Copies the functions without events. The copy prepares its derivatives again."""
         return _copy, (self._functions, self._args, self._vectorized, self._preconditioner, self._prepared,
                        None if self._derivatives is None else self._derivatives.kinds)
 

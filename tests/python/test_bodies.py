@@ -1,5 +1,6 @@
 """Bodies in Python: loads, outlines in pictures, and the files for ParaView, which a parser of this file reads."""
 import base64
+import re
 import xml.etree.ElementTree as xml
 from collections import Counter
 
@@ -10,6 +11,8 @@ from apsis.plot import read_result
 from apsis.plot.results import figures
 from apsis.plot.surfaces import angle_profiles
 from apsis.plot.walls import behind, cut_of, solid_cells, solid_parts
+from apsis.report import make_report
+from apsis.report.page import number
 
 REFERENCE = {"density": 1, "velocity": [1.2, 0], "temperature": 1, "length": 1.6}
 PLANE = {
@@ -61,6 +64,15 @@ def read_vtp(path):
     data = {one.get("Name"): numbers(one) for one in piece.find("CellData")}
     assert all(len(values) == len(cells) for values in data.values())
     return points, cells, data
+
+
+def test_the_report_has_every_body_its_loads_and_pictures(computed):
+    case, folder, result = computed
+    page = make_report(folder).read_text(encoding="utf-8")
+    for name, loads in result.summary["bodies"].items():
+        assert f"surface-{name}.png" in {file.name for file in (folder / "pictures").iterdir()}
+        assert re.search(rf"<td>{name}</td>.*<td>{number(loads['drag'])}</td>.*<td>{number(loads['C_D'])}</td>", page)
+    assert page.count("<b>Fluxes to a wall.</b>") == len(result.surfaces)
 
 
 def vector_area(corners):

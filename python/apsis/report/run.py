@@ -14,10 +14,11 @@ from .page import Html, number, table, text, verdict
 
 CAPTIONS = {
     "fields": ("Macroscopic fields", "At the end, and at earlier snapshots in grey."),
-    "maps": ("Macroscopic fields", "At the end, with contours, and streamlines over the speed; solid boxes are grey."),
+    "maps": ("Macroscopic fields", "At the end, with contours, and streamlines over the speed; solid boxes and bodies are grey."),
     "distribution": ("Distribution function", "{f} at the end, and the Knudsen number ε(x) where it is not 0."),
     "history": ("History", "Checks after every step. A conservation defect is relative to the size of the quantity."),
     "probe": ("Profiles along a line", "Over the distance s from the first point, at the end and at earlier snapshots in grey."),
+    "surface": ("Fluxes to a wall", "Received by each piece of the wall at the end."),
 }
 PROMISES = {
     "positivity": ("every unknown stays nonnegative", "min_value", "smallest value"),
@@ -118,8 +119,8 @@ def promises(manifest: dict[str, Any]) -> str:
 
 
 def balances(result: RunResult) -> str:
-    """Returns a table of the rates at which the gas receives quantities from faces and solid boxes at the end, flux_FACE_QUANTITY of the
-    history."""
+    """Returns a table of the rates at which the gas receives quantities from faces, solid boxes and bodies at the end: flux_FACE_QUANTITY
+    of the history."""
     quantities = [name.removeprefix("total_") for name in result.history if name.startswith("total_")]
     faces = dict.fromkeys(name.removeprefix("flux_").removesuffix(f"_{quantities[0]}") for name in result.history
                           if quantities and name.startswith("flux_") and name.endswith(f"_{quantities[0]}"))
@@ -130,6 +131,23 @@ def balances(result: RunResult) -> str:
                          for name, unit in zip(quantities, units))]
     rows = [[face, *(number(float(result.history[f"flux_{face}_{name}"][-1])) for name in quantities)] for face in faces]
     return "<h2>Balances</h2>\n" + table(columns, rows, "Received by the gas per unit of time at the end")
+
+
+def loads(result: RunResult) -> str:
+    """Returns a table of the loads on each body at the end, and of their coefficients if the case has reference values."""
+    bodies = result.manifest["result"].get("bodies", {})
+    if not bodies:
+        return ""
+    names = [name for name, value in next(iter(bodies.values())).items() if not isinstance(value, list)]
+    units = [result.unit(f"{name}_{next(iter(bodies))}") for name in names]
+    columns = ["body", *(name if unit == "dimensionless" else f"{name} ({unit})" for name, unit in zip(names, units))]
+    rows = [[body, *(number(values[name]) for name in names)] for body, values in bodies.items()]
+    return "<h2>Bodies</h2>\n" + table(columns, rows, "Loads on the bodies at the end")
+
+
+def warnings(manifest: dict[str, Any]) -> str:
+    found = manifest.get("warnings", [])
+    return "<h2>Warnings</h2>\n<ul>" + "".join(f"<li>{text(one)}</li>\n" for one in found) + "</ul>\n" if found else ""
 
 
 def case_text(result: RunResult) -> str:
@@ -150,7 +168,8 @@ def report(folder: Path) -> str:
     pictures = "".join(page.embedded(figure, name, *caption(name, result), pictures_in(folder))
                        for name, figure in figures(result).items())
     rest = {key: value for key, value in manifest.items() if key not in ("case", "message")}
-    body = (summary(result) + "<h2>Promises</h2>\n" + promises(manifest) + balances(result) + velocities(manifest)
+    body = (summary(result) + warnings(manifest) + "<h2>Promises</h2>\n" + promises(manifest) + loads(result) + balances(result)
+            + velocities(manifest)
             + ("<h2>Pictures</h2>\n" + pictures if pictures else "")
             + "<h2>Case</h2>\n" + case_text(result)
             + "<h2>Manifest</h2>\n" + table([], [[Html(f"<code>{text(name)}</code>"), value] for name, value in flattened(rest)])

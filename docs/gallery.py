@@ -75,7 +75,8 @@ class Gallery:
             raise GalleryError(f"apsis run {name} fails: {probe.stderr.strip()[-400:]}")
         result = json.loads(probe.stdout)
         case, fields = result["case"], next((fields for fields in FIELDS if set(fields) <= result["fields"].keys()), [])
-        chosen = [f"output.fields={json.dumps(fields, separators=(',', ':'))}"] if fields else []
+        given = case.get("output", {}).get("fields")  # the case selects its own
+        chosen = [f"output.fields={json.dumps(fields, separators=(',', ':'))}"] if fields and not given else []
         if case.get("time", {}).get("steady"):
             return [["steady.tolerance=1e-6", *chosen]]
         if (cost := expected_cost(probe.stderr)) <= BUDGET:

@@ -16,7 +16,7 @@ from pathlib import Path
 
 from reference import Program, plain
 
-BUDGET = 6e8  # evaluations of unknowns in stages: some seconds of one core
+BUDGET = 8e9  # evaluations of unknowns in stages: a minute of one core, or two
 STAGES = 10  # of a step, at most
 LIMIT = 900  # seconds of a run, with a margin for loaded machines
 FEWEST = 12  # cells of a direction that small versions have at least, where the case has as many

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace apsis {
 namespace {
@@ -97,6 +98,31 @@ double required(const case_text& text, const case_config& config, const std::opt
   return parse_quantity(*value, {}).value;
 }
 
+const model_parameter* find_parameter(const model_entry& model, const std::string& name) {
+  for (const model_parameter& one : model.parameters)
+    if (one.name == name) return &one;
+  return nullptr;
+}
+
+/// Returns "3" or "3 to 5".
+std::string range_of(const model_parameter& parameter) {
+  return parameter.lowest == parameter.highest
+             ? fmt::format("{:g}", parameter.lowest)
+             : fmt::format("{:g} to {:g}", parameter.lowest, parameter.highest);
+}
+
+/// Returns a suggestion with the models that take the value of a gas.
+std::string suggest_models(const std::string& key, double number) {
+  std::vector<std::string> names;
+  for (const model_entry* one : model_entries()) {
+    const model_parameter* parameter = find_parameter(*one, key);
+    if (parameter != nullptr && number >= parameter->lowest && number <= parameter->highest)
+      names.push_back(fmt::format("\"{}\"", one->name));
+  }
+  return names.empty() ? "choose another gas"
+                       : fmt::format("choose model.name = {}, or another gas", fmt::join(names, " or "));
+}
+
 }  // namespace
 
 std::optional<gas_scales> read_gas_scales(const case_text& text, const model_entry& model,
@@ -149,14 +175,12 @@ void set_gas_of_model(case_text& text, const model_entry& model, const case_conf
         {"degrees_of_freedom", static_cast<double>(gas.degrees_of_freedom)}}) {
     const std::string key = name;
     const double number = value;
-    const auto known = std::find_if(model.parameters.begin(), model.parameters.end(),
-                                    [&key](const model_parameter& p) { return p.name == key; });
-    if (known == model.parameters.end()) continue;
+    const model_parameter* known = find_parameter(model, key);
+    if (known == nullptr) continue;
     if (number < known->lowest || number > known->highest)
       throw input_error(table,
-                        fmt::format("the table [gas] has {} = {:g} (model '{}' takes {:g} to {:g}); choose "
-                                    "another model or gas",
-                                    key, number, model.name, known->lowest, known->highest));
+                        fmt::format("the table [gas] has {} = {:g} (model '{}' takes {}); {}", key, number,
+                                    model.name, range_of(*known), suggest_models(key, number)));
     if (const raw_value* raw = find(text, "model." + key)) {
       const double own = finite_number(*raw, "model." + key, type_text(key_type::number));
       if (!(std::abs(own - number) <= rounding * std::abs(number)))

@@ -20,19 +20,28 @@ namespace {
 
 constexpr int least_angles = 12;  // for fifth order: with 8 angles, waves between walls grow
 
-/// Returns the sine of the angle of an edge 0 … M/2. Symmetry gives all other sines and cosines, so that
-/// symmetric rows stay symmetric to the last bit.
-double sine(int edge, int angles) {
-  return std::sin(std::min(edge, angles / 2 - edge) * (2.0 * std::numbers::pi / angles));
+/// Returns the rings of the velocities. Throws input_error if there are none, or too few angles.
+polar_layout checked_layout(const model& equation, const limited_reconstruction& edges) {
+  polar_layout layout = equation.polar();
+  if (layout.empty())
+    throw input_error(
+        "the flow cannot be axisymmetric (the velocities of the model have no rings around the axis); choose "
+        "polar velocities");
+  if (const int least = edges.scheme->order() > 1 ? least_angles : 4;
+      layout.angles < least || layout.angles % 4 != 0)
+    throw input_error(fmt::format(
+        "{} angles of velocities (images at the axis need a multiple of 4, and differences in the "
+        "angle are stable from {} on); give {} or more",
+        layout.angles, least, least));
+  return layout;
 }
 
 }  // namespace
 
 /// Buffers of one thread.
 struct ring_rotation::workspace {
-  std::array<aligned_vector<double>, 4> places;  ///< memory of rotation_rows::places
-  aligned_vector<double> values;                 ///< a ring with its halo
-  aligned_vector<double> change;                 ///< change of the row of a cell
+  ring_turn::workspace turn;
+  aligned_vector<double> change;  ///< change of the row of a cell
 };
 
 ring_rotation::~ring_rotation() = default;
@@ -42,23 +51,13 @@ ring_rotation::ring_rotation(const model& equation, std::shared_ptr<domain> spac
                              const limited_reconstruction& edges)
     : equation_(equation),
       space_(std::move(space)),
-      layout_(equation.polar()),
+      turn_(checked_layout(equation, edges), edges.scheme->order() > 1),
       radial_(radial),
       limited_(edges.keeps_sign()),
-      fifth_order_(edges.scheme->order() > 1),
       smallest_radius_(smallest_radius()),
       at_edge_(limited_ ? 1.0 + 0.5 * space_->mesh().spacing(radial) / smallest_radius_ : 1.0),
       invariants_(equation.invariants().size()),
       workspaces_(std::make_unique<per_thread<workspace>>()) {
-  if (layout_.empty())
-    throw input_error(
-        "the flow cannot be axisymmetric (the velocities of the model have no rings around the axis); choose "
-        "polar velocities");
-  if (const int least = fifth_order_ ? least_angles : 4; layout_.angles < least || layout_.angles % 4 != 0)
-    throw input_error(fmt::format(
-        "{} angles of velocities (images at the axis need a multiple of 4, and differences in the "
-        "angle are stable from {} on); give {} or more",
-        layout_.angles, least, least));
   if (!(smallest_radius_ > 0.0))
     throw input_error(fmt::format(
         "the centre of a cell has r = {:g} (the distance from the axis must be positive); begin the mesh at "
@@ -66,7 +65,7 @@ ring_rotation::ring_rotation(const model& equation, std::shared_ptr<domain> spac
         smallest_radius_));
   of_cells_.resize(static_cast<std::size_t>(space_->mesh().size()) * invariants_);
   given_.resize(invariants_);
-  find_speeds();
+  find_rates();
 }
 
 /// Returns the smallest radius of all processes, since all take the same steps.
@@ -79,24 +78,12 @@ double ring_rotation::smallest_radius() const {
   return smallest;
 }
 
-void ring_rotation::find_speeds() {
-  const int angles = layout_.angles;
-  const auto apart = static_cast<std::size_t>(layout_.apart);
-  const double width = 2.0 * std::numbers::pi / angles;
-  stretch_ = 0.5 * width / std::sin(0.5 * width);
-  for (int edge = 0; edge <= angles; ++edge) {
-    const int folded = edge % (angles / 2), cosine = (edge + angles / 4) % angles;
-    const double sign = cosine < angles / 2 ? 1.0 : -1.0;
-    speeds_.insert(speeds_.end(), apart, stretch_ * sine(folded, angles));
-    slopes_.insert(slopes_.end(), apart, sign * width * sine(cosine % (angles / 2), angles));
-  }
-  const std::size_t of_ring = size_of_ring();
+void ring_rotation::find_rates() {
   for (std::size_t k = 0; k < static_cast<std::size_t>(equation_.components()); ++k) {
-    const std::size_t number = k % of_ring;
-    const double below = speeds_[number], above = speeds_[number + apart];
-    per_speed_.push_back(width * smallest_radius_ / speed_of(k / of_ring));
-    rates_.push_back((2 * number < of_ring ? below : above) / per_speed_.back());
-    largest_.push_back(std::max(below, above) / per_speed_.back());
+    const double out = turn_.outflow(k);
+    per_speed_.push_back(turn_.width() * smallest_radius_ / turn_.speed_of(k / turn_.size_of_ring()));
+    rates_.push_back(out / per_speed_.back());
+    largest_.push_back(std::max(out, turn_.inflow(k)) / per_speed_.back());
   }
   inverse_.resize(rates_.size());
   left_.resize(rates_.size());
@@ -118,6 +105,7 @@ aligned_vector<double> ring_rotation::rates_with(const std::vector<line_speeds>&
 }
 
 void ring_rotation::limit_for_steps(double step, std::vector<line_speeds>& speeds) {
+  steady_ = false;
   const auto through_cells = rates_through_cells(speeds), all = rates_with(speeds);
   const double fastest = *std::max_element(all.begin(), all.end());
   for (auto& line : speeds) line.inverse_cfl.resize(all.size());
@@ -138,11 +126,20 @@ void ring_rotation::limit_for_steps(double step, std::vector<line_speeds>& speed
   }
 }
 
+void ring_rotation::limit_for_steady_states(double collisions, std::vector<line_speeds>& speeds) {
+  steady_ = true;
+  const auto all = rates_with(speeds);
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    const double inverse_cfl = limiter::steady_inverse_cfl(all[k], collisions);
+    for (std::size_t d = 0; d < speeds.size(); ++d)
+      speeds[d].inverse_cfl[k] = inverse_cfl * factor_of(speeds[d], d, k);
+    if (k < rates_.size()) inverse_[k] = inverse_cfl * largest_[k] * per_speed_[k];
+  }
+}
+
 void ring_rotation::prepare(const field& u) const {
-  const rotation_rows::ring ring{layout_.angles, layout_.apart};
   workspaces_->prepare([&](workspace& here) {
-    for (auto& places : here.places) places.resize(ring.places());
-    here.values.resize(ring.continued());
+    here.turn = turn_.make_workspace();
     here.change.resize(static_cast<std::size_t>(u.stride()));
   });
 }
@@ -157,24 +154,12 @@ void ring_rotation::add(const field& u, std::span<const target<field, double>> t
 void ring_rotation::add_cell(const field& u, std::span<const target<field, double>> targets, int cell,
                              workspace& here) const {
   const double r = space_->mesh().centre(cell)[static_cast<std::size_t>(radial_)];
-  const rotation_rows::ring ring{layout_.angles, layout_.apart};
-  const rotation_rows::places places{here.places[0].data(), here.places[1].data(), here.places[2].data(),
-                                     here.places[3].data()};
-  const double width = 2.0 * std::numbers::pi / layout_.angles;
-  rotation_rows::flux_rule rule{.fifth_order = fifth_order_,
-                                .limited = limited_,
-                                .speeds = speeds_.data(),
-                                .slopes = slopes_.data(),
-                                .first = 1.0 / 12.0 + 7.0 / 1440.0 * width * width,
-                                .third = -1.0 / 120.0,
-                                .second = -width * width / (180.0 * stretch_),
-                                .inverse = nullptr,
-                                .scale = r / smallest_radius_};
-  for (std::size_t first = 0; first < rates_.size(); first += size_of_ring()) {
-    rule.inverse = inverse_.data() + first;
-    rotation_rows::continue_ring(ring, u.row(cell) + first, here.values.data());
-    rotation_rows::turn(ring, rule, here.values.data(), speed_of(first / size_of_ring()) / (r * width),
-                        places, here.change.data() + first);
+  rotation_rows::flux_rule rule = turn_.rule();
+  rule.limited = limited_;
+  rule.scale = steady_ ? 1.0 : r / smallest_radius_;
+  for (std::size_t ring = 0; ring * turn_.size_of_ring() < rates_.size(); ++ring) {
+    rule.inverse = inverse_.data() + ring * turn_.size_of_ring();
+    turn_.apply_to_ring(u.row(cell), ring, r, rule, here.turn, here.change.data());
   }
   equation_.invariant_densities(here.change.data(),
                                 of_cells_.data() + static_cast<std::size_t>(cell) * invariants_);

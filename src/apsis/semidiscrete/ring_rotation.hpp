@@ -9,6 +9,7 @@
 #include <apsis/semidiscrete/block_sweep.hpp>
 #include <apsis/semidiscrete/global_integrals.hpp>
 #include <apsis/semidiscrete/limited_reconstruction.hpp>
+#include <apsis/semidiscrete/ring_turn.hpp>
 
 #include <array>
 #include <memory>
@@ -61,17 +62,15 @@ class ring_rotation {
   /// components that hardly rotate, because one C serves all cells. R is that of the faster edge if the
   /// largest rate permits this.
   void limit_for_steps(double step, std::vector<line_speeds>& speeds);
+  /// Limits steady states instead, as limiter::steady_inverse_cfl() does, with the slowest rate of
+  /// collisions. Outflow of uniform gas along r is not limited.
+  void limit_for_steady_states(double collisions, std::vector<line_speeds>& speeds);
   /// Returns the part of the values of each component that is left to transport.
   const aligned_vector<double>& left() const { return left_; }
 
  private:
   struct workspace;
-  void find_speeds();
-  std::size_t size_of_ring() const {
-    return static_cast<std::size_t>(layout_.angles) * static_cast<std::size_t>(layout_.apart);
-  }
-  /// Returns v_⊥ of a ring. Rings of a second set of components repeat those of the first.
-  double speed_of(std::size_t ring) const { return layout_.speeds[ring % layout_.speeds.size()]; }
+  void find_rates();
   std::size_t stride() const { return static_cast<std::size_t>(field(1, equation_.components()).stride()); }
   /// Returns q of component k along a direction.
   double factor_of(const line_speeds& line, std::size_t direction, std::size_t k) const {
@@ -84,14 +83,12 @@ class ring_rotation {
 
   const model& equation_;
   std::shared_ptr<domain> space_;
-  polar_layout layout_;
+  ring_turn turn_;
   int radial_;
-  bool limited_, fifth_order_;
+  bool limited_;
+  bool steady_ = false;               ///< whether limits are those of steady states, equal at every r
   double smallest_radius_, at_edge_;  ///< smallest r, and q there
-  double stretch_ = 1.0;              ///< s
-  aligned_vector<double> speeds_,     ///< s |sin ω| of the edges of a ring, `apart` numbers each
-      slopes_,                        ///< Δω cos ω of the edges
-      per_speed_,                     ///< r Δω/v_⊥ of every component with the smallest r
+  aligned_vector<double> per_speed_,  ///< r Δω/v_⊥ of every component with the smallest r
       rates_,                         ///< outflow rate of every component by rotation at the smallest r
       largest_,                       ///< the same with the larger speed of both edges
       inverse_, left_;                ///< 1/τ of the limiter there, and the part left to transport

@@ -43,19 +43,27 @@ TEST(formulas, implicit_upwind_equations_are_those_of_single_numbers) {
                   one[d].data(), two[d].data()};
       speeds[d] = lambda[d].data();
     }
-    // There are two strips. A component between them keeps its value.
-    const int first = width / 2;
-    const std::array<apsis::sweep_rows::strip, 2> strips = {
-        {{0, first}, {std::min(first + 1, width), width}}};
+    // There are two strips. A component between them keeps its value. The second one lies downstream of the
+    // first one in a rotation.
+    const int first = width / 2, second = std::min(first + 1, width);
+    const std::array<apsis::sweep_rows::strip, 2> strips = {{{0, first}, {second, width, -second}}};
+    const auto out = drawn(n, random, [](random_source& r) { return r.uniform(0.0, 10.0); }),
+               in = drawn(n, random, [](random_source& r) { return r.uniform(0.0, 10.0); });
+    apsis::sweep_rows::rotation turn;
+    if (*rc::gen::arbitrary<bool>()) turn = {out.data(), in.data(), random.uniform(0.1, 10.0)};
     for_each_number([&](auto number, int) {
       using N = decltype(number);
       auto solved = row;
-      apsis::sweep_rows::solve({terms.data(), directions}, speeds, 0.75, strips, solved.data());
+      apsis::sweep_rows::solve({terms.data(), directions}, speeds, 0.75, turn, strips, solved.data());
       for (std::size_t k = 0; k < n; ++k) {
         scalar::upwind_equation<N> of(N(row[k]), N(0.75));
         for (std::size_t d = 0; d < directions; ++d)
           of.add(N(lambda[d][k]), N(terms[d].here), N(terms[d].first), N(one[d][k]), N(terms[d].second),
                  N(two[d][k]));
+        const auto from = k < static_cast<std::size_t>(second) ? k : k - static_cast<std::size_t>(second);
+        if (turn.out != nullptr)
+          of.add_rotation(N(turn.per_radius) * N(out[k]), N(turn.per_radius) * N(in[k]),
+                          N(from == k ? row[k] : solved[from]));
         const bool between = k == static_cast<std::size_t>(first);
         RC_ASSERT(same_bits(solved[k], between ? row[k] : value_of(of.solution())));
       }

@@ -7,6 +7,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <numbers>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -75,6 +77,59 @@ TEST_P(sweeps, solve_the_implicit_step_exactly) {
       for (int k = 0; k < r.components(); ++k)
         RC_ASSERT(std::abs(back.row(cell)[k] - r.row(cell)[k]) < 1e-12);  // sums of some ten terms ≤ 1
     // Threads share the components of an octant. There may be more threads than components.
+    for (const int threads : {2, 3, 7, 64}) {
+      apsis::set_threads(threads);
+      field same = r;
+      sweep.solve(gas.at_rest(), rates, same);
+      apsis::set_threads(1);
+      for (int cell = 0; cell < r.cells(); ++cell)
+        RC_ASSERT(std::equal(d.row(cell), d.row(cell) + d.components(), same.row(cell)));
+    }
+  });
+}
+
+TEST(octant_sweep, turns_rings_about_an_axis) {
+  // Angles of a ring: ω = (a + ½) 2π/12. The rotation is towards ω = 0.
+  const int angles = 12;
+  const double width = 2.0 * std::numbers::pi / angles, stretch = 0.5 * width / std::sin(0.5 * width);
+  auto config = apsis::velocity_config{4.0, 6};
+  config.rings = 4;
+  config.angles = angles;
+  const auto equation = make_gas("bgk", 2, config, 3);
+  gas_problem gas = gas_between_walls(equation, 2, 5, 1.0);
+  gas.space->on({2, {5, 5, 1}, {0, 1, 0}, {1, 2, 1}});
+  for (int d = 0; d < 2; ++d)
+    for (const bool upper : {false, true})
+      gas.space->with_boundary({d, upper}, apsis::make_boundary("vacuum", *equation, {}));
+  const apsis::domain& space = gas.space->space();
+  const apsis::cell_links links(space);
+  const apsis::cut_links cut(space);
+  const apsis::polar_layout rings = equation->polar();
+  const apsis::ring_turn turn(rings, false);
+  apsis::octant_sweep sweep(*equation, space, links, cut, slope, &turn);
+  check_property("rounding", [&] {
+    field r(space.mesh().size(), equation->components());
+    std::vector<double> rates;
+    for (int cell = 0; cell < r.cells(); ++cell) {
+      rates.push_back(*rc::gen::element(1e-9, 1.0, 1e3));
+      for (int k = 0; k < r.components(); ++k) r.row(cell)[k] = *rc::gen::inRange(-1000, 1001) / 1000.0;
+    }
+    field d = r;
+    sweep.solve(gas.at_rest(), rates, d);
+    field back = apply(*equation, space.mesh(), links, rates, d);
+    for (int cell = 0; cell < r.cells(); ++cell)
+      for (int k = 0; k < r.components(); ++k) {
+        const int a = k / rings.apart % angles;
+        const double speed = rings.speeds[static_cast<std::size_t>(k / (rings.apart * angles) % rings.rings)],
+                     rate = speed * stretch / (space.mesh().centre(cell)[1] * width);
+        const bool first_half = a < angles / 2;
+        const int leaves = first_half ? a : a + 1, enters = first_half ? a + 1 : a,
+                  from = first_half ? k + rings.apart : k - rings.apart;
+        const auto sine = [&](int edge) { return std::abs(std::sin(edge * width)); };
+        back.row(cell)[k] += rate * (sine(leaves) * d.row(cell)[k] - sine(enters) * d.row(cell)[from]);
+        // Sums of some ten terms of size 1, times rates of rotation up to 6.
+        RC_ASSERT(std::abs(back.row(cell)[k] - r.row(cell)[k]) < 1e-11);
+      }
     for (const int threads : {2, 3, 7, 64}) {
       apsis::set_threads(threads);
       field same = r;

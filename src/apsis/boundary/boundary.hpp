@@ -48,6 +48,8 @@ class boundary {
   /// fill() computes the row. Cells are counted inwards and ghost rows outwards from the face. Repeated rows
   /// are not copied.
   virtual std::optional<int> cell_of_ghost(int ghost, int cells) const;
+  /// Whether the first ghost row is the row of the first cell, or a multiple of it.
+  virtual bool continues_cell(int cells) const { return cell_of_ghost(0, cells) == 0; }
   /// Fills the ghost rows of a pencil at time t. Called before every evaluation of T, and of Q if Q depends
   /// on neighbouring cells. Calls for different pencils are concurrent.
   virtual void fill(const face& where, double t, const pencil_end& rows) const = 0;

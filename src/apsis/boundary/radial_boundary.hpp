@@ -27,6 +27,7 @@ class radial_boundary final : public boundary {
   std::shared_ptr<const boundary> prepared(const face& where, const velocity_set& velocities) const override;
   std::shared_ptr<const boundary> on_surface(const std::function<double()>& area) const override;
   std::shared_ptr<const oblique_wall> oblique(const velocity_set& velocities) const override;
+  bool continues_cell(int cells) const override { return of_->continues_cell(cells); }
   std::optional<int> cell_of_ghost(int ghost, int cells) const override;
   void fill(const face& where, double t, const pencil_end& rows) const override;
   bool prescribes_incoming(int cells, int ghosts) const override {

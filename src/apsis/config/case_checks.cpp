@@ -177,10 +177,6 @@ void case_checks::check_axis() const {
     refuse(text_.find("space.domain") != nullptr ? *text_.find("space.domain") : geometry, "space.domain",
            fmt::format("it begins at the distance r = {:.6g} from the axis", lower),
            "begin at r = 0 or above");
-  if (config_.steady_state.tolerance)
-    refuse(geometry, "space.geometry",
-           "the iteration of the table [steady] has no rotation of velocities about an axis",
-           "march in time with a table [time] and time.steady");
   if (config_.force.acceleration)
     refuse(geometry, "space.geometry", "forces act along uniform lines of velocities, not on rings",
            "remove the table [force]");

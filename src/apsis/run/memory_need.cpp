@@ -112,8 +112,8 @@ memory_need::memory_need(const run_setup& setup, int copies)
   if (points > 0 && velocity_dimensions_ > 0) points_ = points.each();
   if (const relaxation_model* relaxes = setup.equation->as_relaxation();
       relaxes != nullptr && config.steady_state.tolerance && !shape_.empty())
-    bytes_of_moments_ =
-        macroscopic_system::bytes_of_cell(static_cast<int>(shape_.size()), relaxes->moment_count(), cells_);
+    bytes_of_moments_ = macroscopic_system::bytes_of_cell(
+        static_cast<int>(shape_.size()), relaxes->moment_count(), cells_, config.is_axisymmetric());
 }
 
 double memory_need::bytes(double cells, double components) const {

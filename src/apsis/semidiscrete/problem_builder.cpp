@@ -227,6 +227,11 @@ std::vector<double> problem_builder::epsilon_at_centres() const {
   return epsilon_at(point_values().points(), epsilon_);
 }
 
+std::vector<double> problem_builder::epsilon_of_unknowns() const {
+  return epsilon_at(point_values().points(),
+                    radial_ ? axisymmetric::epsilon_of(epsilon_, *equation_, *radial_) : epsilon_);
+}
+
 std::unique_ptr<semidiscrete_problem> problem_builder::build() const {
   if (has_space() && sides_.empty()) throw input_error("no mesh (the model has space); call on()");
   if (has_space() && !scheme_)

@@ -141,6 +141,9 @@ class problem_builder {
   /// Returns ε at the cell centres as it was set, even in axisymmetric flow. Throws input_error if a value is
   /// not a finite number ≥ 0.
   std::vector<double> epsilon_at_centres() const;
+  /// Returns ε at the cell centres for the unknowns of the problem, which are F = r f in axisymmetric flow.
+  /// Throws as epsilon_at_centres() does.
+  std::vector<double> epsilon_of_unknowns() const;
 
  private:
   void forget_spaces() { space_ = whole_ = nullptr; }

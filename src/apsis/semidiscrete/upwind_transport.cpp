@@ -125,9 +125,12 @@ void upwind_transport::limit_for_steps(double share) {
 
 void upwind_transport::limit_for_steady_states(double collisions) {
   limit_for_steps(1.0);
-  line_speeds::limit_for_steady_states(speeds_, collisions);
+  if (rotation_)
+    rotation_->limit_for_steady_states(collisions, speeds_);
+  else
+    line_speeds::limit_for_steady_states(speeds_, collisions);
   if (!cut_) return;
-  auto more = line_speeds::rates(speeds_);
+  auto more = rotation_ ? rotation_->rates_with(speeds_) : line_speeds::rates(speeds_);
   for (double& rate : more) rate = limiter::steady_inverse_cfl(rate, collisions) - 1.0;
   cut_->limit_for_steady_states(std::move(more));
 }

@@ -95,7 +95,7 @@ cell_jacobian::cell_jacobian(const relaxation_model& equation, const domain& spa
       cut_(cut),
       acts_(acts),
       layout_{links.directions(), equation.moment_count(),
-              equation.has_source() || (acts.source && acts.source->growth)} {}
+              equation.has_source() || (acts.source && acts.source->growth), acts.turn.has_value()} {}
 
 std::vector<double> cell_jacobian::compute(const std::vector<double>& omega,
                                            const std::vector<double>& rates) const {
@@ -113,22 +113,40 @@ std::vector<double> cell_jacobian::compute(const std::vector<double>& omega,
                               {.cell = space_.number_in_whole_mesh(cell), .value = here[0]});
       double* to = all.data() + at(cell) * at(layout_.numbers());
       if (layout_.source) differentiate_source(cell, own.tangents, to + layout_.of_source());
+      if (layout_.turns) differentiate_rotation(cell, rates[at(cell)], own.tangents, to);
       for (int d = 0; d < layout_.directions; ++d) {
-        own.tangents.moments_of_weighted(halves.up[at(d)], to + layout_.transport(d, true));
-        own.tangents.moments_of_weighted(halves.down[at(d)], to + layout_.transport(d, false));
+        own.tangents.moments_of({.factors = halves.up[at(d)]}, to + layout_.transport(d, true));
+        own.tangents.moments_of({.factors = halves.down[at(d)]}, to + layout_.transport(d, false));
         double* deviation = to + layout_.deviation(d);
-        own.tangents.moments_of_deviation(equation_.speeds(d), deviation);
+        const row_map moved{.factors = equation_.speeds(d)};
+        own.tangents.moments_of_deviation(moved, moved, deviation);
         for (std::size_t k = 0; k < layout_.square(); ++k) deviation[k] /= rates[at(cell)];
         for (const bool upper : {false, true})
-          if (const int number = links_.end_next_to(d, upper, cell); number >= 0)
+          if (const int number = links_.end_next_to(d, upper, cell);
+              number >= 0 && !links_.ends()[at(number)].side->is_axis())  // there F = 0
             differentiate_end(equation_, links_.ends()[at(number)], own, to + layout_.end({d, upper}));
       }
       if (const int group = cut_.group_of(cell); group >= 0)
         for (const way_out_of_cut& way : cut_.groups()[at(group)].ways)
-          if (way.is_end()) differentiate_way(equation_, way, layout_, own, to);
+          if (way.is_end() && !(way.end && way.end->side->is_axis()))
+            differentiate_way(equation_, way, layout_, own, to);
     }
   });
   return all;
+}
+
+void cell_jacobian::differentiate_rotation(int cell, double rate, tangent_rows& tangents,
+                                           double* blocks) const {
+  const int radial = layout_.radial();
+  const row_map turned{.turn = &*acts_.turn, .radius = space_.mesh().centre(cell)[at(radial)]},
+      moved{.factors = equation_.speeds(radial)};
+  tangents.moments_of(turned, blocks + layout_.turn());
+  tangents.moments_of_deviation(turned, turned, blocks + layout_.turned_twice());
+  tangents.moments_of_deviation(turned, moved, blocks + layout_.turned_then_moved());
+  tangents.moments_of_deviation(moved, turned, blocks + layout_.moved_then_turned());
+  for (const std::size_t one :
+       {layout_.turned_twice(), layout_.turned_then_moved(), layout_.moved_then_turned()})
+    for (std::size_t k = 0; k < layout_.square(); ++k) blocks[one + k] /= rate;
 }
 
 void cell_jacobian::differentiate_source(int cell, const tangent_rows& tangents, double* matrix) const {

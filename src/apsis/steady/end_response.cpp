@@ -20,7 +20,7 @@ void end_response::values_at(const gas_end_of_segment& end, const double* inside
   constexpr double t = 0.0;  // the conditions are those of a steady state
   end.side->fill(end.where, t, at_end);
   const double* enters = ghosts_[0].data();
-  if (end.side->prescribes_incoming(most_ghosts, most_ghosts)) {
+  if (!end.side->is_axis() && end.side->prescribes_incoming(most_ghosts, most_ghosts)) {
     for (std::size_t k = 0; k < speeds.size(); ++k) outgoing_[k] = sign * speeds[k] > 0.0 ? 0.0 : inside[k];
     const std::array<const double*, most_ghosts> filled = {ghosts_[0].data(), ghosts_[1].data()};
     std::fill(incoming_.begin(), incoming_.end(), 0.0);

@@ -18,7 +18,8 @@ class end_response {
   explicit end_response(const phase_space& space, int stride);
 
   /// row[k] ← the value from the boundary for components that enter, if all rows in front of it equal
-  /// `inside`. Other components are inside[k]. Throws what the boundary throws.
+  /// `inside`. Other components are inside[k]. At the axis it is the value that continues F = r f to r < 0.
+  /// Throws what the boundary throws.
   void values_at(const gas_end_of_segment& end, const double* inside, double* row);
 
  private:

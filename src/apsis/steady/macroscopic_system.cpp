@@ -4,6 +4,7 @@
 #include <apsis/exec/agreement.hpp>
 #include <apsis/exec/parallel.hpp>
 #include <apsis/exec/profile.hpp>
+#include <apsis/semidiscrete/axisymmetric.hpp>
 #include <apsis/semidiscrete/gathered_cells.hpp>
 #include <apsis/steady/internal/moment_assembly.hpp>
 #include <apsis/steady/internal/moment_solver.hpp>
@@ -19,6 +20,15 @@ namespace {
 /// Times the enclosing scope on all threads.
 profile::section timed(kernel which, std::size_t numbers) {
   return {which, static_cast<double>(numbers), {}, threads()};
+}
+
+/// Returns what acts inside the domain, on F = r f in axisymmetric flow.
+inside_domain inside_of(const relaxation_model& equation, const problem_builder& space) {
+  inside_domain found{space.force(), space.source(), {}};
+  if (!space.axis()) return found;
+  if (found.source) found.source = axisymmetric::source_of(std::move(*found.source), *space.axis());
+  found.turn = ring_turn(equation.polar(), !space.first_order());
+  return found;
 }
 
 }  // namespace
@@ -63,11 +73,11 @@ macroscopic_system::moments macroscopic_system::whole_system::solve(const moment
   return change;
 }
 
-double macroscopic_system::bytes_of_cell(int directions, int moments, double cells) {
+double macroscopic_system::bytes_of_cell(int directions, int moments, double cells, bool turns) {
   const double square = moments * moments, of_entry = sizeof(double) + sizeof(int),
                around = 4.0 * directions + 1.0;  // cells whose moments occur in an equation
   // Blocks of J by direction and their sum; the matrix by rows, the previous one, and the matrix by columns.
-  const double blocks = (5.0 * directions + 1.0 + around) * square * sizeof(double),
+  const double blocks = (5.0 * directions + 1.0 + (turns ? 4.0 : 0.0) + around) * square * sizeof(double),
                matrices = 3.0 * around * square * of_entry;
   return blocks + matrices + moment_solver::numbers_of_cell(directions, moments, cells) * sizeof(double);
 }
@@ -75,7 +85,7 @@ double macroscopic_system::bytes_of_cell(int directions, int moments, double cel
 macroscopic_system::macroscopic_system(const relaxation_model& equation, const problem_builder& space,
                                        const cell_links& links, bool first_order)
     : space_(space),
-      acts_{space.force(), space.source()},
+      acts_(inside_of(equation, space)),
       cut_(space.space()),
       jacobian_(equation, space.space(), links, cut_, acts_),
       count_(equation.moment_count()),

@@ -49,8 +49,9 @@ class macroscopic_system {
   /// Returns δω with J δω = r and, for moments that are conserved(), Σ δω_i = missing_i over all cells.
   moments solve(const moments& r, const std::vector<double>& missing) const;
 
-  /// Returns the bytes per cell that the root needs for J, for a mesh of this many directions and cells.
-  static double bytes_of_cell(int directions, int moments, double cells);
+  /// Returns the bytes per cell that the root needs for J, for a mesh of this many directions and cells, with
+  /// or without a rotation.
+  static double bytes_of_cell(int directions, int moments, double cells, bool turns);
 
  private:
   class whole_system;

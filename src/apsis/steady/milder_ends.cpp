@@ -22,9 +22,9 @@ double share_of(std::size_t number) {
 }
 
 /// Returns true if a boundary prescribes incoming components even if a pencil has enough cells
-/// for mirror images.
+/// for mirror images. The axis is no end of the gas.
 bool gives_what_enters(const boundary* side) {
-  return side != nullptr && side->prescribes_incoming(std::numeric_limits<int>::max(), 1);
+  return side != nullptr && !side->is_axis() && side->prescribes_incoming(std::numeric_limits<int>::max(), 1);
 }
 
 /// Returns the equilibrium of the mean moments of all cells.
@@ -63,16 +63,22 @@ milder_ends::milder_ends(const relaxation_model& equation, const problem_builder
 problem_builder milder_ends::problem(std::size_t number) const {
   const domain& whole = space_->whole_space();
   const double share = share_of(number);
+  // In axisymmetric flow the builder relates boundaries of f to F = r f.
+  const auto of_builder = [&](const boundary& side) -> const boundary& {
+    return space_->axis() ? side.undecorated() : side;
+  };
   problem_builder milder(*space_);
   for (std::size_t k = 0; k < whole.surfaces().size(); ++k) {
     const surface& one = whole.surfaces()[k];
     const boundary* side = whole.side(static_cast<int>(k));
     if (one.solid >= 0 || !gives_what_enters(side)) continue;
     // The builder owns the domain, and the domain owns its boundaries.
-    milder.with_boundary(one.where, milder_end({space_, side}, share, row_));
+    milder.with_boundary(one.where, milder_end({space_, &of_builder(*side)}, share, row_));
   }
-  for (int solid = 0; solid < whole.mesh().obstacles(); ++solid)
-    milder.with_solid(solid, milder_end(whole.solid_boundary(solid), share, row_));
+  for (int solid = 0; solid < whole.mesh().obstacles(); ++solid) {
+    const auto wall = whole.solid_boundary(solid);
+    milder.with_solid(solid, milder_end({wall, &of_builder(*wall)}, share, row_));
+  }
   return milder;
 }
 

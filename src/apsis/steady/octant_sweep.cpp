@@ -30,7 +30,7 @@ struct octant_sweep::scratch {
 };
 
 octant_sweep::octant_sweep(const relaxation_model& equation, const domain& space, const cell_links& links,
-                           const cut_links& cut, double slope)
+                           const cut_links& cut, double slope, const ring_turn* turn)
     : equation_(equation),
       space_(space),
       links_(links),
@@ -48,29 +48,48 @@ octant_sweep::octant_sweep(const relaxation_model& equation, const domain& space
   }
   entering_cut_ = field(static_cast<int>(cut_ends_.size()), equation.components());
   const int components = equation.components(), directions = links.directions();
-  std::map<std::array<bool, 3>, octant> found;
-  std::array<bool, 3> last{};
-  for (int k = 0; k < components; ++k) {
-    std::array<bool, 3> up{};
-    for (int d = 0; d < directions; ++d) up[at(d)] = equation.speeds(d)[at(k)] > 0.0;
-    octant& of = found[up];
-    of.up = up;
-    if (k > 0 && up == last)
-      of.strips.back().end = k + 1;
-    else
-      of.strips.push_back({k, k + 1});
-    last = up;
-  }
-  for (auto& [up, of] : found) {
-    set_order(of);
-    octants_.push_back(std::move(of));
-  }
+  std::vector<std::array<bool, 3>> signs(at(components));
+  for (int k = 0; k < components; ++k)
+    for (int d = 0; d < directions; ++d) signs[at(k)][at(d)] = equation.speeds(d)[at(k)] > 0.0;
+  add_strips(signs, turn);
+  for (octant& of : octants_) set_order(of);
   for (int d = 0; d < directions; ++d)
     for (const double v : equation.speeds(d))
       per_cell_[at(d)].push_back(std::abs(v) / space.mesh().spacing(d));
 }
 
 octant_sweep::~octant_sweep() = default;
+
+/// Divides the components into octants with strips of equal signs. A strip of a rotation has one angle.
+void octant_sweep::add_strips(const std::vector<std::array<bool, 3>>& signs, const ring_turn* turn) {
+  std::map<std::array<bool, 3>, octant> found;
+  const int apart = turn != nullptr ? turn->layout().apart : static_cast<int>(signs.size());
+  for (int k = 0; k < static_cast<int>(signs.size()); ++k) {
+    octant& of = found[signs[at(k)]];
+    of.up = signs[at(k)];
+    if (k % apart > 0 && signs[at(k)] == signs[at(k - 1)])
+      of.strips.back().end = k + 1;
+    else
+      of.strips.push_back({k, k + 1, turn != nullptr ? turn->upstream(at(k)) : 0});
+  }
+  for (auto& [up, of] : found) octants_.push_back(std::move(of));
+  if (turn == nullptr) return;
+  size_of_ring_ = turn->size_of_ring();
+  for (std::size_t k = 0; k < signs.size(); ++k) {
+    const double rate = turn->speed_of(k / size_of_ring_) / turn->width();
+    turns_out_.push_back(rate * turn->outflow(k));
+    turns_in_.push_back(rate * turn->inflow(k));
+  }
+  // Strips of a ring, from ω = π to 0 in each half.
+  const auto ring = [&](const sweep_rows::strip& one) { return at(one.begin) / size_of_ring_; };
+  const auto from_end = [&](const sweep_rows::strip& one) {
+    return one.upstream > 0 ? -one.begin : one.begin;
+  };
+  for (octant& of : octants_)
+    std::stable_sort(of.strips.begin(), of.strips.end(), [&](const auto& a, const auto& b) {
+      return ring(a) != ring(b) ? ring(a) < ring(b) : from_end(a) < from_end(b);
+    });
+}
 
 /// Sorts the cells by their numbers, but downwards along every direction with negative velocities.
 void octant_sweep::set_order(octant& of) const {
@@ -100,7 +119,7 @@ void octant_sweep::solve(const field& f, const std::vector<double>& rates, field
     respond(of, f, r);
     respond_at_walls(of, f, r);
     const int threads = threads_here();
-    parallel_for(threads, [&](int k) { pass(of, of.part(k, threads), rates, r); });
+    parallel_for(threads, [&](int k) { pass(of, part(of, k, threads), rates, r); });
   }
 }
 
@@ -192,6 +211,30 @@ std::vector<sweep_rows::strip> octant_sweep::octant::part(int number, int parts)
   return found;
 }
 
+/// Returns the strips of all rings from `first` on and before `end`.
+std::vector<sweep_rows::strip> octant_sweep::octant::rings(int first, int end,
+                                                           std::size_t size_of_ring) const {
+  std::vector<sweep_rows::strip> found;
+  for (const auto& some : strips) {
+    const int ring = some.begin / static_cast<int>(size_of_ring);
+    if (ring >= first && ring < end) found.push_back(some);
+  }
+  return found;
+}
+
+/// Returns the strips of part `number` of `parts`, which depend on no other part.
+std::vector<sweep_rows::strip> octant_sweep::part(const octant& of, int number, int parts) const {
+  if (size_of_ring_ == 0) return of.part(number, parts);
+  const int rings = equation_.components() / static_cast<int>(size_of_ring_);
+  return of.rings(share_of(rings, number, parts), share_of(rings, number + 1, parts), size_of_ring_);
+}
+
+sweep_rows::rotation octant_sweep::rotation_in(int cell) const {
+  if (size_of_ring_ == 0) return {};
+  const auto radial = at(links_.directions() - 1);
+  return {turns_out_.data(), turns_in_.data(), 1.0 / space_.mesh().centre(cell)[radial]};
+}
+
 void octant_sweep::pass(const octant& of, std::span<const sweep_rows::strip> strips,
                         const std::vector<double>& rates, field& r) const {
   const int directions = links_.directions();
@@ -205,8 +248,15 @@ void octant_sweep::pass(const octant& of, std::span<const sweep_rows::strip> str
       continue;
     }
     for (int d = 0; d < directions; ++d) terms[at(d)] = terms_of(of, cell, d, r);
-    sweep_rows::solve({terms.data(), at(directions)}, lambda, rates[at(cell)], strips, row);
+    sweep_rows::solve({terms.data(), at(directions)}, lambda, rates[at(cell)], rotation_in(cell), strips,
+                      row);
   }
+}
+
+/// Returns the number of the end at the axis next to a cell; −1 elsewhere.
+int octant_sweep::axis_next_to(int direction, bool upper, int cell) const {
+  const int end = links_.end_next_to(direction, upper, cell);
+  return end >= 0 && links_.ends()[at(end)].side->is_axis() ? end : -1;
 }
 
 /// Returns the upwind terms of a cell along one direction, for the signs of the velocities of the octant.
@@ -228,11 +278,13 @@ sweep_rows::upstream octant_sweep::terms_of(const octant& of, int cell, int dire
     return from;
   }
   const int two = one == cut ? -1 : links_.next(direction, !up, one);
+  const int axis = two < 0 && one != cut ? axis_next_to(direction, !up, one) : -1;
   from.here = 1.0 + slope_;
   from.one = r.row(one);
-  from.first = two < 0 ? 1.0 + slope_ : 1.0 + 2.0 * slope_;
-  from.two = two < 0 ? from.one : r.row(two);
-  from.second = two < 0 ? 0.0 : -slope_;
+  from.two = axis >= 0 ? entering_.row(axis) : two < 0 ? from.one : r.row(two);
+  const bool has_two = two >= 0 || axis >= 0;
+  from.first = has_two ? 1.0 + 2.0 * slope_ : 1.0 + slope_;
+  from.second = has_two ? -slope_ : 0.0;
   return from;
 }
 

@@ -79,9 +79,14 @@ void octant_sweep::pass_cut(const octant& of, int group, std::span<const sweep_r
                          ? r.row(way.other)
                          : nullptr);
   }
+  const sweep_rows::rotation turn = rotation_in(here.cell);
   for (const sweep_rows::strip& some : strips)
     for (int k = some.begin; k < some.end; ++k) {
       double sum = row[k], factor = rate;
+      if (turn.out != nullptr) {
+        sum += turn.in[k] * turn.per_radius * row[k + some.upstream];
+        factor += turn.out[k] * turn.per_radius;
+      }
       for (std::size_t w = 0; w < here.ways.size(); ++w) {
         const way_out_of_cut& way = here.ways[w];
         double outward = 0.0;

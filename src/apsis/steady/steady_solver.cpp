@@ -50,13 +50,9 @@ constexpr double rounding = 4.0 * std::numeric_limits<double>::epsilon();
 std::vector<double> checked_epsilon(const problem_builder& space) {
   if (!space.has_space())
     throw input_error("the model has no space, so that its steady state is an equilibrium; run it in time");
-  if (space.axis())
-    throw input_error(
-        "the steady state of axisymmetric flow (sweeps do not turn velocities around the axis); march in "
-        "time");
   std::vector<double> found;
   run_collectively(space.processes(), [&] {
-    found = space.epsilon_at_centres();
+    found = space.epsilon_of_unknowns();
     for (const double epsilon : found)
       if (!(epsilon > 0.0))
         throw input_error("epsilon is 0 in some cell (the steady solver divides by it); give a positive one");
@@ -107,7 +103,9 @@ struct steady_solver::impl {
         limits(problem, global_lowest(processes, lowest_of(state.rates, links.cells()))),
         is_thin(cells.largest_optical_width(state.omega, state.rates) <= widest_thin_cell),
         correction(equation, builder, links, cells, state, is_thin),
-        sweep(equation, builder.space(), links, cut, is_thin ? slope_in_thin_cells : usual_slope),
+        turn(space.axis() ? std::optional(ring_turn(of.polar(), false)) : std::nullopt),
+        sweep(equation, builder.space(), links, cut, is_thin ? slope_in_thin_cells : usual_slope,
+              turn ? &*turn : nullptr),
         update(builder, cells, state.omega, given.depth) {}
 
   bool begin_again() {
@@ -218,6 +216,7 @@ struct steady_solver::impl {
   steady_limits limits;
   bool is_thin;  ///< whether all cells are thin
   moment_correction correction;
+  std::optional<ring_turn> turn;  ///< in axisymmetric flow
   octant_sweep sweep;
   state_update update;
   double reference = std::numeric_limits<double>::quiet_NaN();

@@ -65,7 +65,7 @@ class steady_solver {
   /// determines the sums of the conserved moments of the solution. Its residual is the unit of residuals.
   /// `equation` and `problem` must outlive the solver. Until the solver is destroyed, the limiter of the
   /// problem is that of steady states (transport::limit_for_steady_states()). Throws input_error without
-  /// space, in axisymmetric flow, or if ε is 0 in a cell.
+  /// space, or if ε is 0 in a cell.
   steady_solver(const relaxation_model& equation, const problem_builder& space, semidiscrete_problem& problem,
                 const field& start, const steady_options& options = {});
   ~steady_solver();

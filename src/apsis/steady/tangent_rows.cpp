@@ -28,6 +28,7 @@ tangent_rows::tangent_rows(const relaxation_model& equation)
       tail_(equilibrium_.size()),
       target_(equilibrium_.size()),
       unchanged_(equilibrium_.size()),
+      turned_(equilibrium_.size()),
       changed_(at(count_), equilibrium_),
       column_(at(count_)),
       s_(at(relaxing_)),
@@ -63,27 +64,38 @@ bool tangent_rows::move_to(const double* omega) {
   return true;
 }
 
-/// row ← factors ∘ ∂E/∂ω_j.
-void tangent_rows::difference(int j, std::span<const double> factors) {
-  const double per_step = 1.0 / steps_[at(j)];
-  const auto& other = changed_[at(j)];
-  for (std::size_t k = 0; k < row_.size(); ++k)
-    row_[k] = factors[k] * ((other[k] - equilibrium_[k]) * per_step);
+/// row ← A row.
+void tangent_rows::apply(const row_map& map) {
+  if (map.turn == nullptr) {
+    for (std::size_t k = 0; k < row_.size(); ++k) row_[k] *= map.factors[k];
+    return;
+  }
+  if (turning_.values.empty()) turning_ = map.turn->make_workspace();
+  map.turn->apply(row_.data(), row_.size(), map.radius, turning_, turned_.data());
+  row_.swap(turned_);
 }
 
-void tangent_rows::moments_of_weighted(std::span<const double> factors, double* matrix) {
+/// row ← A ∂E/∂ω_j.
+void tangent_rows::difference(int j, const row_map& map) {
+  const double per_step = 1.0 / steps_[at(j)];
+  const auto& other = changed_[at(j)];
+  for (std::size_t k = 0; k < row_.size(); ++k) row_[k] = (other[k] - equilibrium_[k]) * per_step;
+  apply(map);
+}
+
+void tangent_rows::moments_of(const row_map& map, double* matrix) {
   for (int j = 0; j < count_; ++j) {
-    difference(j, factors);
+    difference(j, map);
     equation_.moments(row_.data(), column_.data());
     for (int i = 0; i < count_; ++i) matrix[i * count_ + j] = column_[at(i)];
   }
 }
 
-void tangent_rows::moments_of_deviation(std::span<const double> speeds, double* matrix) {
+void tangent_rows::moments_of_deviation(const row_map& cause, const row_map& effect, double* matrix) {
   for (int j = 0; j < count_; ++j) {
-    difference(j, speeds);
+    difference(j, cause);
     if (relaxing_ > 0) add_slow_part();
-    for (std::size_t k = 0; k < row_.size(); ++k) row_[k] *= speeds[k];
+    apply(effect);
     equation_.moments(row_.data(), column_.data());
     for (int i = 0; i < count_; ++i) matrix[i * count_ + j] = column_[at(i)];
   }
@@ -96,7 +108,7 @@ void tangent_rows::set_relaxation() {
   for (int d = 0; d < equation_.velocities().dimensions(); ++d) {
     const auto speeds = equation_.speeds(d);
     for (int j = 0; j < count_; ++j) {
-      difference(j, speeds);
+      difference(j, {.factors = speeds});
       for (std::size_t k = 0; k < row_.size(); ++k) row_[k] = equilibrium_[k] + steps_[at(j)] * row_[k];
       equation_.relaxing_moments(row_.data(), omega_.data(), s_of_row_.data());
       for (int i = 0; i < relaxing_; ++i)

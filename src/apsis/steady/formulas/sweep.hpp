@@ -21,6 +21,10 @@ struct upwind_equation {
     right = fma(speed, fma(first, one, second * two), right);
     factor = fma(speed, here, factor);
   }
+  APSIS_FORMULA void add_rotation(N out, N in, N one) {
+    right = fma(in, one, right);
+    factor = factor + out;
+  }
   APSIS_FORMULA N solution() const { return right / factor; }
 };
 

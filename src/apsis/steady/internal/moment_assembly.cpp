@@ -1,7 +1,9 @@
 #include <apsis/steady/internal/moment_assembly.hpp>
 
 #include <apsis/core/index.hpp>
+#include <apsis/mesh/cut_cells.hpp>
 #include <apsis/model/gas_model.hpp>
+#include <apsis/semidiscrete/cut_gradient.hpp>
 #include <apsis/steady/dissection.hpp>
 #include <apsis/steady/internal/flux_derivative.hpp>
 
@@ -65,6 +67,7 @@ moment_equations moment_assembly::assemble(std::span<const double> blocks, doubl
   for (int d = 0; d < layout_.directions; ++d) add_faces(blocks, d, all.along[at(d)]);
   add_cut_cells(blocks, all.inside);
   add_forces(all.inside);
+  if (layout_.turns) add_rotation(blocks, all.inside);
   for (const int cell : links_.cells())
     if (layout_.source)
       add_block(number_[at(cell)], number_[at(cell)], -1.0, block_of(blocks, cell, layout_.of_source()),
@@ -126,6 +129,8 @@ void moment_assembly::add_faces(std::span<const double> blocks, int direction, b
     for (const int of_spread : {cell, above}) {
       flux.add(above, -0.5 * per_length, block_of(blocks, of_spread, deviation));
       flux.add(cell, 0.5 * per_length, block_of(blocks, of_spread, deviation));
+      if (layout_.turns && direction == layout_.radial())
+        flux.add(of_spread, 0.5, block_of(blocks, of_spread, layout_.turned_then_moved()));
     }
     add_flux(cell, above);
   }
@@ -152,6 +157,41 @@ void moment_assembly::add_forces(block_matrix& to) const {
       to.entry(first + 1 + k, first) -= a[at(k)];
       to.entry(first + energy, first + 1 + k) -= a[at(k)];
     }
+  }
+}
+
+/// Returns the weights of the moments of cells in a difference along r; empty without neighbours.
+std::vector<std::pair<int, double>> moment_assembly::radial_gradient(int cell) const {
+  const int radial = layout_.radial();
+  std::vector<std::pair<int, double>> found;
+  if (const int group = cut_.group_of(cell); group >= 0) {
+    double sum = 0.0;
+    for (const auto& [one, weight] : gradient_weights(*space_.mesh().cut(), group)) {
+      found.emplace_back(one, weight[at(radial)]);
+      sum += weight[at(radial)];
+    }
+    if (!found.empty()) found.emplace_back(cell, -sum);
+    return found;
+  }
+  const int above = links_.next(radial, true, cell), below = links_.next(radial, false, cell);
+  if (above < 0 && below < 0) return found;
+  const double per_length = (above < 0 || below < 0 ? 1.0 : 0.5) / space_.mesh().spacing(radial);
+  found.emplace_back(above < 0 ? cell : above, per_length);
+  found.emplace_back(below < 0 ? cell : below, -per_length);
+  return found;
+}
+
+/// Adds the rotation A f of f = E + (A E − v_r ∂_r E)/σ. Its part with the deviation is left out where no
+/// neighbour gives a gradient: in uniform gas, which F = r f makes linear in r, both terms cancel.
+void moment_assembly::add_rotation(std::span<const double> blocks, block_matrix& to) const {
+  for (const int cell : links_.cells()) {
+    const int row = number_[at(cell)];
+    add_block(row, row, -1.0, block_of(blocks, cell, layout_.turn()), to);
+    const auto gradient = radial_gradient(cell);
+    if (gradient.empty()) continue;
+    add_block(row, row, -1.0, block_of(blocks, cell, layout_.turned_twice()), to);
+    for (const auto& [of, weight] : gradient)
+      add_block(row, number_[at(of)], weight, block_of(blocks, cell, layout_.moved_then_turned()), to);
   }
 }
 

@@ -40,6 +40,8 @@ class moment_assembly {
   void add_walls(std::span<const double> blocks, const group_of_cut& of, block_matrix& to) const;
   std::vector<std::pair<int, double>> line_of_cut(int group, const std::array<double, 3>& to) const;
   void add_forces(block_matrix& to) const;
+  void add_rotation(std::span<const double> blocks, block_matrix& to) const;
+  std::vector<std::pair<int, double>> radial_gradient(int cell) const;
   void find_conserved(moment_equations& all) const;
   void add_scales(std::span<const double> blocks, moment_equations& all) const;
   /// Sets number_, and returns the mesh with these numbers.

@@ -63,6 +63,8 @@ void moment_assembly::add_face_of_cut(std::span<const double> blocks, int number
   for (const int of_spread : {below.cell, above.cell}) {
     flux.add(above.cell, -0.5 / apart, block_of(blocks, of_spread, layout_.deviation(d)));
     flux.add(below.cell, 0.5 / apart, block_of(blocks, of_spread, layout_.deviation(d)));
+    if (layout_.turns && d == layout_.radial())
+      flux.add(of_spread, 0.5, block_of(blocks, of_spread, layout_.turned_then_moved()));
   }
   for (const auto& [of, block] : flux) {
     add_block(number_[at(below.cell)], number_[at(of)], below.per_length, block, to);

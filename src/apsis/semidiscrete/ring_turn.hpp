@@ -36,6 +36,7 @@ class ring_turn {
   /// Returns the distance from component k to the one upstream in its ring, ± the distance of angles.
   int upstream(std::size_t k) const;
 
+  /// Returns memory for one thread.
   workspace make_workspace() const;
   /// Returns the rule for fluxes, without limiter.
   rotation_rows::flux_rule rule() const;

@@ -60,8 +60,8 @@ result_table measure(const settings& options) {
   result.title = "Collision models of a gas";
   result.note =
       "The table shows point·stages per second of md-imex-6-3 with the limiter, 100 cells and one "
-      "thread. The row (g, h) has two points for each velocity. The ratio compares a model with the first "
-      "one of its group, in the same turns.";
+      "thread. A point is a number of the row of a cell, so that (g, h) has two for each velocity. The "
+      "ratio is that to the first model of its group, in the same turns.";
   result.columns = {"model", "d", "D", "row", "formulation", "point·stages/s", "ratio"};
   for (const char* discretization : {"finite-difference", "finite-volume"}) {
     add_rows(result, {{"bgk", 1, 1}, {"bgk", 1, 3}, {"shakhov", 1, 3}, {"es-bgk", 1, 3}}, discretization,

@@ -69,17 +69,17 @@ void case_checks::check_step_rule() const {
 std::string case_checks::example_of_step() const {
   if (!has_space(model_))
     return fmt::format("dt = {:g}", config_.time.end > 0.0 ? config_.time.end / 100.0 : 0.01);
+  const char* const without_limiter = "cfl = 0.5";
   try {
     case_config longest = config_;
     longest.time.safety = 1.0;
     const limiter_choice limiter = text_.find("space.limiter") != nullptr
                                        ? config_.space.limiter
                                        : default_limiter(with_chosen_method(std::move(longest)));
-    if (limiter == limiter_choice::positivity) return "safety = 1";
+    return limiter == limiter_choice::positivity ? "safety = 1" : without_limiter;
   } catch (const error&) {
-    // Another key is wrong. Its message follows when the step is given.
+    return without_limiter;  // another key is wrong; its message follows when the step is given
   }
-  return "cfl = 0.5";
 }
 
 void case_checks::check_mesh() const {

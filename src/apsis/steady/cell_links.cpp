@@ -22,7 +22,7 @@ void cell_links::add_cells(const domain& space) {
   }
   for (int cell = 0; cell < mesh.size(); ++cell) {
     if (mesh.solid(cell) >= 0) continue;
-    if (const int group = mesh.cut_group(cell); group >= 0) {
+    if (const int group = mesh.cut_group(cell); cut != nullptr && group >= 0) {
       const cut_group& of = cut->groups()[at(group)];
       if (space.number_in_block(of.cells.front()) != cell) continue;
       volumes_[at(cell)] = of.volume / mesh.cell_volume();

@@ -86,7 +86,7 @@ void octant_sweep::add_strips(const std::vector<std::array<bool, 3>>& signs, con
     return one.upstream > 0 ? -one.begin : one.begin;
   };
   for (octant& of : octants_)
-    std::stable_sort(of.strips.begin(), of.strips.end(), [&](const auto& a, const auto& b) {
+    std::sort(of.strips.begin(), of.strips.end(), [&](const auto& a, const auto& b) {
       return ring(a) != ring(b) ? ring(a) < ring(b) : from_end(a) < from_end(b);
     });
 }

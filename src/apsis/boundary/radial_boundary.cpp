@@ -96,15 +96,24 @@ std::optional<int> radial_boundary::cell_of_ghost(int ghost, int cells) const {
   return crosses_ ? std::nullopt : of_->cell_of_ghost(ghost, cells);
 }
 
+/// Returns r of a ghost row over r of a cell, 0 for a ghost row below the axis.
+double radial_boundary::ratio_of_radii(const face& where, const position& at, int ghost, int cell) const {
+  const double outward = where.upper ? spacing_ : -spacing_, r = radius(at);
+  return std::max(r + outward * (ghost + 0.5), 0.0) / (r - outward * (cell + 0.5));
+}
+
+double radial_boundary::multiple_of_cell(const face& where, const position& at, int cells) const {
+  const double of_f = of_->multiple_of_cell(where, at, cells);
+  return crosses_ ? of_f * ratio_of_radii(where, at, 0, 0) : of_f;
+}
+
 void radial_boundary::fill(const face& where, double t, const pencil_end& rows) const {
   const int cells = static_cast<int>(rows.inside.size());
   if (!crosses_ || !of_->cell_of_ghost(0, cells)) return of_->fill(where, t, rows);
-  const double outward = where.upper ? spacing_ : -spacing_, r = radius(rows.at);
   for (std::size_t g = 0; g < rows.ghosts.size(); ++g) {
-    const int cell = *of_->cell_of_ghost(static_cast<int>(g), cells);
-    const double there = std::max(r + outward * (static_cast<double>(g) + 0.5), 0.0),
-                 here = r - outward * (cell + 0.5);
-    multiply(rows.inside[static_cast<std::size_t>(cell)], there / here, rows.components, rows.ghosts[g]);
+    const int ghost = static_cast<int>(g), cell = *of_->cell_of_ghost(ghost, cells);
+    multiply(rows.inside[static_cast<std::size_t>(cell)], ratio_of_radii(where, rows.at, ghost, cell),
+             rows.components, rows.ghosts[g]);
   }
 }
 

@@ -27,7 +27,7 @@ class radial_boundary final : public boundary {
   std::shared_ptr<const boundary> prepared(const face& where, const velocity_set& velocities) const override;
   std::shared_ptr<const boundary> on_surface(const std::function<double()>& area) const override;
   std::shared_ptr<const oblique_wall> oblique(const velocity_set& velocities) const override;
-  bool continues_cell(int cells) const override { return of_->continues_cell(cells); }
+  double multiple_of_cell(const face& where, const position& at, int cells) const override;
   std::optional<int> cell_of_ghost(int ghost, int cells) const override;
   void fill(const face& where, double t, const pencil_end& rows) const override;
   bool prescribes_incoming(int cells, int ghosts) const override {
@@ -47,6 +47,7 @@ class radial_boundary final : public boundary {
 
  private:
   double radius(const position& at) const { return at[static_cast<std::size_t>(radial_)]; }
+  double ratio_of_radii(const face& where, const position& at, int ghost, int cell) const;
 
   std::shared_ptr<const boundary> of_;
   int radial_;

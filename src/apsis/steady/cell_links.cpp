@@ -75,7 +75,7 @@ void cell_links::add_end(const domain& space, int direction, const segment& one,
   const int apart = space.mesh().stride(direction), last = one.first + (upper ? (one.cells - 1) * apart : 0);
   for (int k = 0; k < 3; ++k)
     found.cells[at(k)] = last + (upper ? -1 : 1) * std::min(k, one.cells - 1) * apart;
-  found.copies = found.side->continues_cell(one.cells);
+  found.copied = found.side->multiple_of_cell(found.where, found.at, one.cells);
   end_at_[index(direction, upper)][at(last)] = static_cast<int>(ends_.size());
   ends_.push_back(found);
 }

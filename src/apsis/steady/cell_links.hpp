@@ -19,7 +19,7 @@ struct gas_end_of_segment {
   const boundary* side;        ///< boundary of the surface
   position at;                 ///< point at which the segment meets the surface
   std::array<int, 3> cells{};  ///< first cells inwards; a shorter segment repeats its last one
-  bool copies = false;         ///< whether the row of the first cell enters, or a multiple of it
+  double copied = 0.0;         ///< factor if a multiple of the row of the first cell enters; else 0
 };
 
 /// Neighbours of the cells of a domain along every direction, without cells of other processes. The first

@@ -45,7 +45,8 @@ way_out_of_cut way_through(const domain& space, int group, int number) {
   const face where{one.direction, is_below};
   const boundary* side = space.side(static_cast<int>(where.index()));
   const int cell = space.number_in_block(of.cells.front());
-  way.end = gas_end_of_segment{where, side, one.middle, {cell, cell, cell}, side->cell_of_ghost(0, 1) == 0};
+  way.end = gas_end_of_segment{
+      where, side, one.middle, {cell, cell, cell}, side->multiple_of_cell(where, one.middle, 1)};
   return way;
 }
 

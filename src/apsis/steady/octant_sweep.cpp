@@ -271,10 +271,11 @@ sweep_rows::upstream octant_sweep::terms_of(const octant& of, int cell, int dire
     const int end = links_.end_next_to(direction, !up, cell);
     // The entering row copies this row and changes with it, so that no difference enters. A change of 0 would
     // fix the row if few collisions change it.
-    const bool copies = end >= 0 && links_.ends()[at(end)].copies;
-    from.one = from.two = end < 0 || copies ? r.row(cell) : entering_.row(end);
-    from.here = copies ? 0.0 : 1.0;
-    from.first = end < 0 || copies ? 0.0 : 1.0;
+    const double copied = end >= 0 ? links_.ends()[at(end)].copied : 0.0;
+    const bool enters = end >= 0 && copied == 0.0;
+    from.one = from.two = enters ? entering_.row(end) : r.row(cell);
+    from.here = 1.0 - copied;
+    from.first = enters ? 1.0 : 0.0;
     return from;
   }
   const int two = one == cut ? -1 : links_.next(direction, !up, one);

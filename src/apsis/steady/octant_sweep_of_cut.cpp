@@ -91,8 +91,11 @@ void octant_sweep::pass_cut(const octant& of, int group, std::span<const sweep_r
         const way_out_of_cut& way = here.ways[w];
         double outward = 0.0;
         for (int d = 0; d < directions; ++d) outward += way.normal[at(d)] * speeds[at(d)][k];
-        if (outward > 0.0 || (way.end && way.end->copies))
-          factor += way.rate * outward;  // a copy changes with the row
+        const double copied = way.end ? way.end->copied : 0.0;
+        if (outward > 0.0)
+          factor += way.rate * outward;
+        else if (copied != 0.0)
+          factor += way.rate * outward * copied;  // it changes with the row
         else if (from[w] != nullptr)
           sum -= way.rate * outward * from[w][k];
       }

@@ -105,8 +105,10 @@ def test_streamlines_turn_as_the_gas_does(plane):
 
 
 def test_a_component_that_is_rounding_is_drawn_as_zero_and_has_no_streamlines():
-    fields = {"u_x": np.array([[0.2, 0.3]]), "u_y": np.array([[1e-17, -2e-17]]), "T": np.array([[1.0, 2.0]])}
+    fields = {"u_x": np.array([[0.2, 0.3]]), "u_y": np.array([[1e-17, -2e-17]]), "T": np.array([[1.0, 2.0]]),
+              "stress_xy": np.array([[3.0, 4.0]]), "stress_yz": np.array([[1e-16, -1e-17]])}
     colours = colours_of(fields)
+    assert colours["stress_yz"] == (-4.0, 4.0, "RdBu_r") and colours["stress_xy"] == (3.0, 4.0, "viridis")
     length = np.hypot(0.3, 2e-17)
     assert colours["u_y"] == (-length, length, "RdBu_r")
     assert colours["u_x"] == (0.2, 0.3, "viridis") and colours["T"] == (1.0, 2.0, "viridis")

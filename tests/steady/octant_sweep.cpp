@@ -47,6 +47,40 @@ field apply(const apsis::model& equation, const apsis::grid& mesh, const apsis::
   return sum;
 }
 
+/// Surrounds a gas by a vacuum.
+void with_vacuum(const gas_problem& gas, int dimensions) {
+  for (int d = 0; d < dimensions; ++d)
+    for (const bool upper : {false, true})
+      gas.space->with_boundary({d, upper}, apsis::make_boundary("vacuum", *gas.equation, {}));
+}
+
+/// A right side and rates of collisions, drawn for a property.
+struct drawn_step {
+  field r;
+  std::vector<double> rates;
+
+  drawn_step(int cells, int components) : r(cells, components) {
+    for (int cell = 0; cell < cells; ++cell) {
+      rates.push_back(*rc::gen::element(1e-9, 1.0, 1e3));
+      for (int k = 0; k < components; ++k) r.row(cell)[k] = *rc::gen::inRange(-1000, 1001) / 1000.0;
+    }
+  }
+};
+
+/// Checks that threads do not change the solution d. They share the components of an octant, and there may be
+/// more threads than components.
+void expect_equal_bits_on_threads(apsis::octant_sweep& sweep, const field& f, const drawn_step& step,
+                                  const field& d) {
+  for (const int threads : {2, 3, 7, 64}) {
+    apsis::set_threads(threads);
+    field same = step.r;
+    sweep.solve(f, step.rates, same);
+    apsis::set_threads(1);
+    for (int cell = 0; cell < d.cells(); ++cell)
+      RC_ASSERT(std::equal(d.row(cell), d.row(cell) + d.components(), same.row(cell)));
+  }
+}
+
 class sweeps : public testing::TestWithParam<int> {};
 
 }  // namespace
@@ -56,35 +90,21 @@ TEST_P(sweeps, solve_the_implicit_step_exactly) {
   const auto equation = make_gas("bgk", dimensions, {4.0, 6}, dimensions);
   gas_problem gas = gas_between_walls(equation, dimensions, 5, 1.0);
   // Beyond the ends there is a vacuum, so nothing enters.
-  for (int d = 0; d < dimensions; ++d)
-    for (const bool upper : {false, true})
-      gas.space->with_boundary({d, upper}, apsis::make_boundary("vacuum", *equation, {}));
+  with_vacuum(gas, dimensions);
   const apsis::domain& space = gas.space->space();
   const apsis::cell_links links(space);
   const apsis::cut_links cut(space);
   apsis::octant_sweep sweep(*equation, space, links, cut, slope);
   check_property("rounding", [&] {
-    field r(space.mesh().size(), equation->components());
-    std::vector<double> rates;
-    for (int cell = 0; cell < r.cells(); ++cell) {
-      rates.push_back(*rc::gen::element(1e-9, 1.0, 1e3));
-      for (int k = 0; k < r.components(); ++k) r.row(cell)[k] = *rc::gen::inRange(-1000, 1001) / 1000.0;
-    }
+    const drawn_step step(space.mesh().size(), equation->components());
+    const auto& [r, rates] = step;
     field d = r;
     sweep.solve(gas.at_rest(), rates, d);
     const field back = apply(*equation, space.mesh(), links, rates, d);
     for (int cell = 0; cell < r.cells(); ++cell)
       for (int k = 0; k < r.components(); ++k)
         RC_ASSERT(std::abs(back.row(cell)[k] - r.row(cell)[k]) < 1e-12);  // sums of some ten terms ≤ 1
-    // Threads share the components of an octant. There may be more threads than components.
-    for (const int threads : {2, 3, 7, 64}) {
-      apsis::set_threads(threads);
-      field same = r;
-      sweep.solve(gas.at_rest(), rates, same);
-      apsis::set_threads(1);
-      for (int cell = 0; cell < r.cells(); ++cell)
-        RC_ASSERT(std::equal(d.row(cell), d.row(cell) + d.components(), same.row(cell)));
-    }
+    expect_equal_bits_on_threads(sweep, gas.at_rest(), step, d);
   });
 }
 
@@ -98,9 +118,7 @@ TEST(octant_sweep, turns_rings_about_an_axis) {
   const auto equation = make_gas("bgk", 2, config, 3);
   gas_problem gas = gas_between_walls(equation, 2, 5, 1.0);
   gas.space->on({2, {5, 5, 1}, {0, 1, 0}, {1, 2, 1}});
-  for (int d = 0; d < 2; ++d)
-    for (const bool upper : {false, true})
-      gas.space->with_boundary({d, upper}, apsis::make_boundary("vacuum", *equation, {}));
+  with_vacuum(gas, 2);
   const apsis::domain& space = gas.space->space();
   const apsis::cell_links links(space);
   const apsis::cut_links cut(space);
@@ -108,12 +126,8 @@ TEST(octant_sweep, turns_rings_about_an_axis) {
   const apsis::ring_turn turn(rings, false);
   apsis::octant_sweep sweep(*equation, space, links, cut, slope, &turn);
   check_property("rounding", [&] {
-    field r(space.mesh().size(), equation->components());
-    std::vector<double> rates;
-    for (int cell = 0; cell < r.cells(); ++cell) {
-      rates.push_back(*rc::gen::element(1e-9, 1.0, 1e3));
-      for (int k = 0; k < r.components(); ++k) r.row(cell)[k] = *rc::gen::inRange(-1000, 1001) / 1000.0;
-    }
+    const drawn_step step(space.mesh().size(), equation->components());
+    const auto& [r, rates] = step;
     field d = r;
     sweep.solve(gas.at_rest(), rates, d);
     field back = apply(*equation, space.mesh(), links, rates, d);
@@ -130,14 +144,7 @@ TEST(octant_sweep, turns_rings_about_an_axis) {
         // Sums of some ten terms of size 1, times rates of rotation up to 6.
         RC_ASSERT(std::abs(back.row(cell)[k] - r.row(cell)[k]) < 1e-11);
       }
-    for (const int threads : {2, 3, 7, 64}) {
-      apsis::set_threads(threads);
-      field same = r;
-      sweep.solve(gas.at_rest(), rates, same);
-      apsis::set_threads(1);
-      for (int cell = 0; cell < r.cells(); ++cell)
-        RC_ASSERT(std::equal(d.row(cell), d.row(cell) + d.components(), same.row(cell)));
-    }
+    expect_equal_bits_on_threads(sweep, gas.at_rest(), step, d);
   });
 }
 

@@ -123,10 +123,18 @@ def with_length(fields: Mapping[str, Array], plane: Plane) -> dict[str, Array]:
     return dict(fields) if vector is None else {**fields, VECTORS[vector]: length_of(fields, vector)}
 
 
+def quantity_of(name: str) -> str:
+    """Returns the vector or tensor of a component, such as "stress" of "stress_xy"; "" for other fields."""
+    quantity, _, axes = name.rpartition("_")
+    return quantity if axes and set(axes) <= set(AXES) else ""
+
+
 def colours_of(fields: Mapping[str, Array]) -> dict[str, Colours]:
-    """Returns the colours of each field. Components of a vector are zero up to rounding relative to its length."""
-    lengths = {name: float(np.nanmax(length_of(fields, name), initial=0.0)) for name in VECTORS if f"{name}_x" in fields}
-    return {name: limits_of(values, lengths.get(name.rpartition("_")[0], 0.0)) for name, values in fields.items()}
+    """Returns the colours of each field. Components of a vector or tensor are zero up to rounding relative to its largest length."""
+    quantities = {quantity_of(name) for name in fields} - {""}
+    squares = {one: sum(values**2 for name, values in fields.items() if quantity_of(name) == one) for one in quantities}
+    lengths = {one: float(np.sqrt(np.nanmax(square, initial=0.0))) for one, square in squares.items()}
+    return {name: limits_of(values, lengths.get(quantity_of(name), 0.0)) for name, values in fields.items()}
 
 
 def without_solids(values: Array) -> Any:

@@ -48,8 +48,8 @@ class boundary {
   /// fill() computes the row. Cells are counted inwards and ghost rows outwards from the face. Repeated rows
   /// are not copied.
   virtual std::optional<int> cell_of_ghost(int ghost, int cells) const;
-  /// Returns x if the first ghost row of a pencil is x times the row of its first cell, for every row; else 0.
-  /// `at` is the end of the pencil.
+  /// Returns x if the first ghost row of a pencil is x times the row of its first cell, for every row; else
+  /// 0. `at` is the end of the pencil.
   virtual double multiple_of_cell(const face& /*where*/, const position& /*at*/, int cells) const {
     return cell_of_ghost(0, cells) == 0 ? 1.0 : 0.0;
   }

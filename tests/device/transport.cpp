@@ -60,24 +60,6 @@ device_case flow(int dimensions, const apsis::boundary_entry& kind, bool with_bo
   return made;
 }
 
-/// Counts the numbers and rates that differ between host and device in two evaluations with several targets.
-bit_differences differences(const device_case& of, const std::string& scheme, limits limited,
-                            apsis::device& on) {
-  const apsis::limited_reconstruction edges{apsis::find_reconstruction(scheme).make(), limited};
-  apsis::upwind_transport host(*of.equation, of.space(), edges, apsis::point_values());
-  apsis::device_transport there(on, *of.equation, of.space(), edges, apsis::point_values(),
-                                apsis::kernel_of_reconstruction(scheme));
-  const field u = varied_rows(of.mesh, *of.equation, of.label.starts_with("periodic"));
-  bit_differences different = differences_of_transport(of.mesh, u, host, there, on);
-  field sent(of.mesh.size(), u.components(), on.memory());
-  sent.copy_rows(u);
-  const auto seen = host.observe_surfaces(0.4, u), others = there.observe_surfaces(0.4, sent);
-  EXPECT_EQ(seen.size(), others.size());
-  for (std::size_t k = 0; k < std::min(seen.size(), others.size()); ++k)
-    different.compare(seen[k], others[k], [&] { return fmt::format("number {} seen at surfaces", k); });
-  return different;
-}
-
 TEST(device_transport, has_the_bits_of_the_host_with_every_scheme_and_order_of_lanes) {
   for (const auto* scheme : apsis::reconstruction_entries())
     for (const limits limited : {limits::nothing, limits::fluxes}) {

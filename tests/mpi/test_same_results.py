@@ -234,6 +234,8 @@ class SameResults(Folder):
     def test_bodies_in_the_plane_across_all_borders(self):
         self.write("bodies.toml", BODIES)
         self.expect_same("bodies.toml", counts=one_of((5, 3, 2), 0))
+        self.completed(2, "run", "bodies.toml", "--device", "teams", "--out", "on-devices")
+        self.assert_same_results("one", "on-devices")
         self.completed(3, "run", "bodies.toml", "time.end=0.01", "--out", "half")
         self.completed(2, "run", "bodies.toml", "--restart", "half/checkpoint.h5", "--out", "rest")
         for name in ("fields.csv", "history.csv", "surfaces/disc.csv", "surfaces/wedge.csv"):

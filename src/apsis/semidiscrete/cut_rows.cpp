@@ -164,8 +164,9 @@ void take(const double* outward, const double* values, int n, double* rate) {
 void add(const double* u, const double* rate, double alpha, double beta, bool fresh, int n, double* acc) {
   for_packs(n, [&](auto lanes, int k) APSIS_PACKED {
     using N = pack<decltype(lanes)>;
-    const N own = fma(N(beta), N::load(rate + k), N(alpha) * N::load(u + k));
-    (fresh ? own : N::load(acc + k) + own).store(acc + k);
+    with_rate(N::load(u + k), N::load(rate + k), N(alpha), N(beta), fresh, [&]() APSIS_PACKED {
+      return N::load(acc + k);
+    }).store(acc + k);
   });
 }
 

@@ -24,9 +24,22 @@ void cut_transport::limit_for_steps(double step, aligned_vector<double> kept) {
   steady_ = false;
 }
 
-void cut_transport::limit_for_steady_states(aligned_vector<double> more) {
-  kept_ = std::move(more);
+void cut_transport::limit_for_steady_states(double collisions, aligned_vector<double> rates) {
+  for (double& rate : rates) rate = limiter::steady_inverse_cfl(rate, collisions) - 1.0;
+  kept_ = std::move(rates);
   steady_ = true;
+}
+
+std::vector<int> cut_transport::cells_read() const {
+  std::vector<int> cells = here_.sent_cells();
+  const auto add = [&cells](int place) {
+    if (place >= 0) cells.push_back(place);
+  };
+  for (const group& one : groups_) {
+    add(one.place);
+    for (const neighbour& other : one.around) add(other.place);
+  }
+  return cells;
 }
 
 cut_rows::gradient cut_transport::slopes_of(int number) {
@@ -71,12 +84,17 @@ void cut_transport::fit_group(const field& u, int number, scratch& own) {
   cut_rows::fit(here, own.around, {own.outlets, step_, kept_.data(), steady_}, size(), slopes);
 }
 
-void cut_transport::complete(int surface, int place, const field& u,
-                             std::span<const target<field, double>> targets) {
+const double* cut_transport::entering(int surface, int place, const field& u) {
   const auto& [number, way_number] = ends_[at(surface)][at(place)];
   const way& one = groups_[at(number)].ways[at(way_number)];
   double* values = scratch_.here().rows.row(values_row);
   cut_rows::leave_alone(out_by(one), line_of(u, number, one.from_centre), size(), values);
+  return values;
+}
+
+void cut_transport::complete(int surface, int place, const field& u,
+                             std::span<const target<field, double>> targets) {
+  const double* values = entering(surface, place, u);
   const face where = space_->surfaces()[at(surface)].where;
   const int cell = space_->cell_at(surface, place);
   for (const auto& to : targets)
@@ -94,32 +112,50 @@ const double* cut_transport::recorded_at(int f) {
   return faces_.recorded(surface, places_.at({surface, cell}));
 }
 
-void cut_transport::add(double t, const field& u, std::span<const target<field, double>> targets,
-                        const cells_job& then) {
+void cut_transport::receive_values_at_faces() {
   make_scratch();
   here_.exchange_at_faces(equation_.components(), [&](int f) { return recorded_at(f); });
-  parallel_blocks(static_cast<int>(groups_.size()), groups_of_task, [&](int begin, int end) {
-    add_groups(t, u, targets, begin, end);
-    if (!then) return;
-    for (int number = begin; number < end; ++number)
-      for (const int cell : groups_[at(number)].cells) then(cell, cell + 1);
-  });
 }
 
-void cut_transport::add_groups(double t, const field& u, std::span<const target<field, double>> targets,
-                               int begin, int end) {
-  const profile::section timed(kernel::cut_cells, static_cast<double>(end - begin) * u.stride(),
-                               traffic(targets));
+/// Calls receive(cells, rate) for some groups with cells of this process.
+template <class Receive>
+void cut_transport::evaluate_groups(double t, const field& u, const Receive& receive, int begin, int end) {
   scratch& own = scratch_.here();
   double* rate = own.rows.row(rate_row);
   for (int number = begin; number < end; ++number) {
     if (groups_[at(number)].cells.empty()) continue;
     add_group(t, u, number, rate, own);
-    for (const int cell : groups_[at(number)].cells)
+    receive(groups_[at(number)].cells, rate);
+  }
+}
+
+void cut_transport::evaluate(double t, const field& u, const receiver& receive) {
+  receive_values_at_faces();
+  parallel_blocks(static_cast<int>(groups_.size()), groups_of_task, [&](int begin, int end) {
+    const profile::section timed(kernel::cut_cells, static_cast<double>(end - begin) * u.stride(), {});
+    evaluate_groups(t, u, receive, begin, end);
+  });
+}
+
+void cut_transport::add(double t, const field& u, std::span<const target<field, double>> targets,
+                        const cells_job& then) {
+  const auto receive = [&](const std::vector<int>& cells, const double* rate) {
+    for (const int cell : cells)
       for (const auto& to : targets)
         cut_rows::add(u.row(cell), rate, to.alpha, to.beta, to.fresh, equation_.components(),
                       to.acc->row(cell));
-  }
+  };
+  receive_values_at_faces();
+  parallel_blocks(static_cast<int>(groups_.size()), groups_of_task, [&](int begin, int end) {
+    {
+      const profile::section timed(kernel::cut_cells, static_cast<double>(end - begin) * u.stride(),
+                                   traffic(targets));
+      evaluate_groups(t, u, receive, begin, end);
+    }
+    if (!then) return;
+    for (int number = begin; number < end; ++number)
+      for (const int cell : groups_[at(number)].cells) then(cell, cell + 1);
+  });
 }
 
 void cut_transport::add_group(double t, const field& u, int number, double* rate, scratch& own) {

@@ -14,7 +14,9 @@
 #include <apsis/semidiscrete/local_groups.hpp>
 #include <apsis/semidiscrete/transport.hpp>
 
+#include <algorithm>
 #include <array>
+#include <functional>
 #include <map>
 #include <memory>
 #include <span>
@@ -43,6 +45,12 @@ class cut_transport {
   cut_transport(const model& equation, std::shared_ptr<domain> space, const limited_reconstruction& edges,
                 face_fluxes& faces);
 
+  /// Returns κ of transport on a mesh: limited_reconstruction::kappa(), at most cut_cells::cfl_number with
+  /// bodies.
+  static double kappa(const limited_reconstruction& edges, const grid& mesh) {
+    return mesh.cut() != nullptr ? std::min(edges.kappa(), cut_cells::cfl_number) : edges.kappa();
+  }
+
   /// Evaluates lines at walls in the plane half-way between the corners of their pieces, instead of at a
   /// point of the body. The flux of a linear function through the surface of a cell is then exact to
   /// rounding. In axisymmetric flow a uniform gas is such a function.
@@ -50,13 +58,23 @@ class cut_transport {
   /// Prepares for steps of at most this length. In such a step transport may take the fraction `kept` of a
   /// value of each component.
   void limit_for_steps(double step, aligned_vector<double> kept);
-  /// Limits for a steady state instead. `more` is 1/κ − 1 of each component (limiter::steady_inverse_cfl()).
-  void limit_for_steady_states(aligned_vector<double> more);
+  /// Limits for a steady state instead, with 1/κ of limiter::steady_inverse_cfl(). `rates` are those at which
+  /// each component leaves a whole cell, and `collisions` is the slowest rate of collisions.
+  void limit_for_steady_states(double collisions, aligned_vector<double> rates);
+  /// Returns the cells of this process with rows that evaluations of T read.
+  std::vector<int> cells_read() const;
   /// Computes the lines from u. Collective.
   void prepare(const field& u);
-  /// Adds the flux that enters a whole cell from a cut cell, at an end of a segment. Concurrent calls must
-  /// differ in the cell at the end.
+  /// Returns the values that enter a whole cell from a cut cell, at an end of a segment. They are valid until
+  /// the next call on this thread.
+  const double* entering(int surface, int place, const field& u);
+  /// Adds the flux of these values to the whole cell. Concurrent calls must differ in the cell at the end.
   void complete(int surface, int place, const field& u, std::span<const target<field, double>> targets);
+  /// Receives T of a group of cut cells. `cells` are those of this process.
+  using receiver = std::function<void(const std::vector<int>& cells, const double* rate)>;
+  /// Computes T(t, u) of all groups of cut cells after the whole cells are complete. Collective. Concurrent
+  /// calls of `receive` differ in the group.
+  void evaluate(double t, const field& u, const receiver& receive);
   /// Adds T(t, u) to the cut cells after the whole cells are complete, and calls `then` for each
   /// cut cell. Collective.
   void add(double t, const field& u, std::span<const target<field, double>> targets, const cells_job& then);
@@ -103,8 +121,9 @@ class cut_transport {
   cut_rows::way_out out_by(const way& one) const { return {one.normal, one.rate, speeds_}; }
   cut_rows::extent size() const { return {directions(), equation_.components()}; }
   void fit_group(const field& u, int number, scratch& own);
-  void add_groups(double t, const field& u, std::span<const target<field, double>> targets, int begin,
-                  int end);
+  void receive_values_at_faces();
+  template <class Receive>
+  void evaluate_groups(double t, const field& u, const Receive& receive, int begin, int end);
   void add_group(double t, const field& u, int number, double* rate, scratch& own);
   void pass_end(double t, const way& one, const cut_rows::line& here, double* rate, scratch& own);
   void domain_values(double t, const way& one, double* values, scratch& own);

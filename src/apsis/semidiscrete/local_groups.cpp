@@ -60,9 +60,11 @@ void local_groups::plan() {
     if (with_line.count(here) > 0) fitted_.push_back(static_cast<int>(number));
     for (const int cell : seen) {
       const std::vector<int> have = holders(cell);
-      for (const int process : with_line)
-        if (std::find(have.begin(), have.end(), process) == have.end())
-          rows.push_back({cell, holder(cell), process});
+      for (const int process : with_line) {
+        if (std::find(have.begin(), have.end(), process) != have.end()) continue;
+        rows.push_back({cell, holder(cell), process});
+        if (holder(cell) == here) sent_.push_back(number_here(cell));
+      }
     }
   }
   if (!space_.shared()) return;

@@ -28,6 +28,8 @@ class local_groups {
   int place_of(int cell) const;
   /// Returns the number of a cell in the block of this process; −1 for cells of others.
   int number_here(int cell) const;
+  /// Returns the cells of this process with rows that exchange() sends, as numbers in its block.
+  const std::vector<int>& sent_cells() const { return sent_; }
 
   /// Receives the rows of u that are next to groups of this process. Collective.
   void exchange(const field& u);
@@ -52,7 +54,7 @@ class local_groups {
 
   const domain& space_;
   const cut_cells& cut_;
-  std::vector<int> fitted_;
+  std::vector<int> fitted_, sent_;
   shared_rows rows_,  ///< by whole cell, or the first cell of a group
       faces_;         ///< by number of the face
 };

@@ -83,11 +83,9 @@ upwind_transport::upwind_transport(const model& equation, std::shared_ptr<domain
   if (has_space) space_->reserve(equation.components(), edges_.ghosts());
   faces_ = std::make_unique<face_fluxes>(equation_, space_);
   if (has_space) speeds_ = line_speeds::of(equation, mesh());
-  kappa_ = edges_.kappa();
-  if (has_space && mesh().cut() != nullptr) {
-    kappa_ = std::min(kappa_, cut_cells::cfl_number);
+  kappa_ = has_space ? cut_transport::kappa(edges_, mesh()) : edges_.kappa();
+  if (has_space && mesh().cut() != nullptr)
     cut_ = std::make_unique<cut_transport>(equation_, space_, edges_, *faces_);
-  }
   limit_for_steps(1.0);
 }
 
@@ -129,10 +127,9 @@ void upwind_transport::limit_for_steady_states(double collisions) {
     rotation_->limit_for_steady_states(collisions, speeds_);
   else
     line_speeds::limit_for_steady_states(speeds_, collisions);
-  if (!cut_) return;
-  auto more = rotation_ ? rotation_->rates_with(speeds_) : line_speeds::rates(speeds_);
-  for (double& rate : more) rate = limiter::steady_inverse_cfl(rate, collisions) - 1.0;
-  cut_->limit_for_steady_states(std::move(more));
+  if (cut_)
+    cut_->limit_for_steady_states(collisions,
+                                  rotation_ ? rotation_->rates_with(speeds_) : line_speeds::rates(speeds_));
 }
 
 double upwind_transport::growth_of_source(double t, const field& u) const {

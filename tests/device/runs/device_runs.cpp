@@ -188,6 +188,33 @@ TEST(device_runs, in_a_plane_and_in_space_have_the_bits_of_the_host) {
   for (const std::string& text : flows) expect_same(run(text, true), run(text, false), text);
 }
 
+TEST(device_runs, past_bodies_have_the_bits_of_the_host) {
+  const std::string bodies = R"case([[space.body]]
+name = "disc"
+shape = "circle"
+centre = [0.61, 0.52]
+radius = 0.14
+kind = "adiabatic"
+accommodation = 0.6
+velocity = ["0.52 - y", "x - 0.61"]
+[[space.body]]
+name = "floor"
+shape = "half_space"
+point = [0, 0.07]
+normal = [0.1, 1]
+kind = "symmetry"
+)case";
+  std::string text = flow_in_a_plane;
+  text.insert(text.find("[boundary.top]"), bodies);
+  text.replace(text.find("cells = [6, 5]"), 14, "cells = [12, 10]");
+  text += "[force]\nacceleration = [0.2, 0.1]\n";
+  text.replace(text.find("every = 0.004"), 13, "every = 0.004\nsurfaces = [\"disc\", \"floor\"]");
+  expect_same(run(text, true), run(text, false), text);
+  const test_folder folder;
+  run(text, true, folder / "run", 2);
+  expect_same(run(text, false, folder / "run", -1, folder / "run/checkpoint.h5"), run(text, false), text);
+}
+
 TEST(device_runs, with_sources_have_the_bits_of_the_host) {
   const std::string time = "method = \"md-imex-8-3-mixed\"\nsafety = 1\nend = 0.03\n";
   // One source is steady, and the other changes in time.

@@ -25,12 +25,10 @@ std::string kernel_of_reconstruction(const std::string& name) {
                     "\" is not possible on a device (its kernel is missing); use another one, or the host");
 }
 
-std::string device_transport::why_not(const model& equation, const domain& space,
-                                      const limited_reconstruction& edges) {
+std::string device_transport::why_not(const model& equation, const limited_reconstruction& edges) {
   if (equation.space_dimensions() == 0) return "the model has no space";
   if (equation.has_source()) return "the model has a source";
   if (edges.limits_edges()) return "edge values are limited";
-  if (space.mesh().cut() != nullptr) return "the mesh has bodies";
   return "";
 }
 
@@ -44,9 +42,9 @@ device_transport::device_transport(device& on, const model& equation, std::share
       unknown_(unknown),
       kernel_(std::move(kernel)),
       host_(equation, space_, edges_, unknown),
-      surfaces_(on, equation, space_, edges_.ghosts()),
+      surfaces_(on, equation, space_, edges_),
       speeds_(line_speeds::of(equation, space_->mesh())) {
-  if (const std::string reason = why_not(equation, *space_, edges_); !reason.empty())
+  if (const std::string reason = why_not(equation, edges_); !reason.empty())
     throw input_error("the run is not possible on a device (" + reason + "); run it on the host");
   for (int direction = 0; direction < space_->mesh().dimensions(); ++direction)
     along_.emplace_back(device_, *space_, surfaces_, direction, edges_.halo(), edges_.ghosts());
@@ -57,8 +55,13 @@ void device_transport::limit_for_steps(double share) {
   share_ = share;
   host_.limit_for_steps(share);
   const double of_force = force_ ? force_->on_host().rate() : 0.0;
-  line_speeds::limit_for_steps(speeds_, share, of_force, edges_.kappa());
+  line_speeds::limit_for_steps(speeds_, share, of_force, cut_transport::kappa(edges_, space_->mesh()));
   for (std::size_t k = 0; k < along_.size(); ++k) along_[k].set_speeds(speeds_[k]);
+  if (cut_transport* cut = surfaces_.in_cut_cells()) {
+    const double step = share * forward_euler_step();
+    cut->limit_for_steps(step,
+                         aligned_vector<double>(line_speeds::rates(speeds_).size(), 1.0 - step * of_force));
+  }
   if (force_) force_->on_host().limit_for_steps(share);
 }
 
@@ -66,6 +69,8 @@ void device_transport::limit_for_steady_states(double collisions) {
   limit_for_steps(1.0);
   host_.limit_for_steady_states(collisions);
   line_speeds::limit_for_steady_states(speeds_, collisions);
+  if (cut_transport* cut = surfaces_.in_cut_cells())
+    cut->limit_for_steady_states(collisions, line_speeds::rates(speeds_));
   for (std::size_t k = 0; k < along_.size(); ++k) along_[k].set_speeds(speeds_[k]);
 }
 
@@ -106,9 +111,16 @@ void device_transport::add_inside(double t, const field& u, targets_view targets
 }
 
 void device_transport::sweep_all(double t, const field& u, targets_view targets) const {
-  surfaces_.fill(t, u);
-  for (int direction = 0; direction < space_->mesh().dimensions(); ++direction) sweep(direction, u, targets);
-  surfaces_.complete(t, targets);
+  first_error failure;
+  failure.run([&] {
+    surfaces_.fill(t, u);
+    for (int direction = 0; direction < space_->mesh().dimensions(); ++direction)
+      sweep(direction, u, targets);
+    surfaces_.complete(t, targets);
+  });
+  // Other processes wait for the values at cut cells, even if a boundary of this process has failed.
+  failure.run([&] { surfaces_.add_cut_cells(t, u, targets); });
+  failure.rethrow();
 }
 
 void device_transport::sweep(int direction, const field& u, targets_view targets) const {

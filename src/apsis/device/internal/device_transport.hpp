@@ -21,8 +21,8 @@ class first_error;
 /// input_error if this kernel is missing.
 std::string kernel_of_reconstruction(const std::string& name);
 
-/// upwind_transport on a device, with the same bits. The host evaluates boundaries with the rows next
-/// to them.
+/// upwind_transport on a device, with the same bits. The host evaluates boundaries and cut cells with the
+/// rows next to them.
 ///
 /// States are stored in the memory of the device.
 class device_transport final : public transport {
@@ -33,7 +33,7 @@ class device_transport final : public transport {
                    limited_reconstruction edges, const cell_unknown& unknown, std::string kernel);
 
   /// Returns why transport cannot run on a device, as a clause; "" if it can.
-  static std::string why_not(const model& equation, const domain& space, const limited_reconstruction& edges);
+  static std::string why_not(const model& equation, const limited_reconstruction& edges);
 
   /// Does not fuse the stage: does not call `then`, and returns false.
   bool add_transport(double t, const field& u, std::span<const target<field, double>> targets,

@@ -18,11 +18,12 @@ std::size_t index(int k) {
 
 }  // namespace
 
-surface_rows::surface_rows(device& on, const model& equation, std::shared_ptr<domain> space, int ghosts)
+surface_rows::surface_rows(device& on, const model& equation, std::shared_ptr<domain> space,
+                           const limited_reconstruction& edges)
     : device_(on),
       equation_(equation),
       space_(std::move(space)),
-      ghosts_(ghosts),
+      ghosts_(edges.ghosts()),
       faces_(equation, space_),
       mirror_(space_->mesh().size(), equation.components()),
       stride_(index(mirror_.stride())) {
@@ -30,6 +31,8 @@ surface_rows::surface_rows(device& on, const model& equation, std::shared_ptr<do
     first_at_surface_.push_back(ends_);
     ends_ += one.own;
   }
+  if (space_->mesh().cut() != nullptr)
+    cut_ = std::make_unique<device_cut_cells>(on, equation, space_, edges, faces_);
   space_->exchange(mirror_);  // so that rows of other processes have their addresses
   number_sent_rows();
   list_inside_rows();
@@ -73,9 +76,14 @@ void surface_rows::list_rows_of_others() {
   }
 }
 
-/// Lists the rows that boundaries read: as many as there are ghost rows, and at least three.
+/// Lists the rows that boundaries read, as many as there are ghost rows, and at least three. Adds those that
+/// cut cells and other processes read.
 void surface_rows::list_inside_rows() {
   list_rows_of_others();
+  if (cut_) {
+    const std::vector<int> read = cut_->on_host().cells_read();
+    inside_.insert(inside_.end(), read.begin(), read.end());
+  }
   constexpr int least = 3;
   for (int number = 0; number < static_cast<int>(space_->surfaces().size()); ++number) {
     if (space_->repeats(number)) continue;
@@ -92,6 +100,13 @@ void surface_rows::list_inside_rows() {
   inside_on_device_ = device_array<int>(inside_, device_.memory());
 }
 
+/// Returns v·n of every component at a side of cells, with the normal n into the gas.
+std::vector<double> surface_rows::speeds_into(const face& where) const {
+  std::vector<double> inward;
+  for (const double v : equation_.speeds(where.direction)) inward.push_back(where.upper ? -v : v);
+  return inward;
+}
+
 void surface_rows::list_entries() {
   std::vector<double> inward(space_->surfaces().size() * stride_);
   for (int direction = 0; direction < space_->mesh().dimensions(); ++direction)
@@ -100,7 +115,8 @@ void surface_rows::list_entries() {
       for (int number = 0; number < static_cast<int>(space_->surfaces().size()); ++number) {
         const auto& [where, solid, segments, own] = space_->surfaces()[index(number)];
         if (where.direction != direction || where.upper != upper || space_->side(number) == nullptr) continue;
-        std::copy(faces_.inward(number).begin(), faces_.inward(number).end(),
+        const std::vector<double> row = speeds_into(where);
+        std::copy(row.begin(), row.end(),
                   inward.begin() + static_cast<std::ptrdiff_t>(index(number) * stride_));
         for (int place = 0; place < own; ++place)
           if (faces_.prescribes(number, place))
@@ -153,11 +169,18 @@ void surface_rows::fill(double t, const field& u) {
   memory.copy_to_host(gathered_.data(), gathered_.size(), staged_.data());
   for (std::size_t k = 0; k < inside_.size(); ++k)
     std::memcpy(mirror_.row(inside_[k]), staged_.data() + k * stride_, stride_ * sizeof(double));
+  if (cut_) cut_->on_host().prepare(mirror_);
   space_->fill_ghosts(t, mirror_);
   staged_.resize(sent_.size());
   for (std::size_t k = 0; k < sent_from_.size(); ++k)
     std::memcpy(staged_.data() + k * stride_, sent_from_[k], stride_ * sizeof(double));
   if (!staged_.empty()) memory.copy_from_host(staged_.data(), staged_.size(), sent_.data());
+}
+
+/// Returns the values that enter a cell at an end of a segment; null if the sweep has added their flux.
+const double* surface_rows::entering(int surface, int place, double t) {
+  if (space_->is_border_of_cut_cells(surface)) return cut_->on_host().entering(surface, place, mirror_);
+  return faces_.enter(surface, place, t);
 }
 
 void surface_rows::complete(double t, std::span<const target<field, double>> targets) {
@@ -171,11 +194,11 @@ void surface_rows::complete(double t, std::span<const target<field, double>> tar
     for (int place = 0; place < space_->surfaces()[index(number)].own; ++place) {
       double* row = staged_.data() + index(first_at_surface_[index(number)] + place) * stride_;
       std::memcpy(faces_.recorded(number, place), row, stride_ * sizeof(double));
-      if (const double* values = faces_.enter(number, place, t); values != nullptr) {
+      if (const double* values = entering(number, place, t); values != nullptr) {
         std::memcpy(row, values, stride_ * sizeof(double));
         enters = true;
       }
-      faces_.account(number, place);
+      if (!space_->is_border_of_cut_cells(number)) faces_.account(number, place);
     }
   }
   if (!enters) return;

@@ -82,6 +82,14 @@ APSIS_FORMULA N nonnegative_leaving_value(N u, N correction) {
   return select(u > N(0.0), maximum(value, N(0.0)), value);
 }
 
+/// Returns α u + β rate of a target, plus its content old() unless it is fresh. old() is called only if it is
+/// needed.
+template <class N, class Old>
+APSIS_FORMULA N with_rate(N u, N rate, N alpha, N beta, bool fresh, const Old& old) {
+  const N own = fma(beta, rate, alpha * u);
+  return fresh ? own : old() + own;
+}
+
 }  // namespace apsis::APSIS_NUMBERS
 APSIS_AFTER_FORMULAS();
 

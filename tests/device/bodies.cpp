@@ -62,11 +62,15 @@ void expect_the_bits_of_the_host(const device_case& of, const std::string& schem
 const std::vector<outside_function> discs = {ball({0.21, 0.13, 0}, 0.4), ball({-0.42, -0.3, 0}, 0.25)};
 
 TEST(device_bodies, have_the_bits_of_the_host_with_every_wall) {
-  const apsis::face_quantity::function moving = [](double t, const position& x) {
-    return 0.1 * x[1] - 0.02 * t;
+  // The wall turns about the centre of the disc.
+  const apsis::face_quantity::function along_x = [](double t, const position& x) {
+    return (0.1 + t) * (0.13 - x[1]);
+  };
+  const apsis::face_quantity::function along_y = [](double t, const position& x) {
+    return (0.1 + t) * (x[0] - 0.21);
   };
   expect_the_bits_of_the_host(
-      past(discs, "outflow", {"diffuse", {{"T", {1.3}}, {"velocity", {moving, 0.1}}}}));
+      past({discs.front()}, "outflow", {"diffuse", {{"T", {1.3}}, {"velocity", {along_x, along_y}}}}));
   expect_the_bits_of_the_host(past(discs, "periodic", {"diffuse", {{"accommodation", {0.4}}}}));
   expect_the_bits_of_the_host(past(discs, "periodic", {"symmetry"}));
   expect_the_bits_of_the_host(past(discs, "outflow", {"vacuum"}));

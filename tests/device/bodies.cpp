@@ -58,7 +58,7 @@ void expect_the_bits_of_the_host(const device_case& of, const std::string& schem
   }
 }
 
-/// Two discs, the second of which has cells that share unknowns.
+/// Two discs. Small cells beside them share unknowns with their neighbours.
 const std::vector<outside_function> discs = {ball({0.21, 0.13, 0}, 0.4), ball({-0.42, -0.3, 0}, 0.25)};
 
 TEST(device_bodies, have_the_bits_of_the_host_with_every_wall) {

@@ -9,7 +9,7 @@
 
 namespace apsis {
 
-device_cut_cells::device_cut_cells(device& on, const model& equation, std::shared_ptr<domain> space,
+device_cut_cells::device_cut_cells(device& on, const model& equation, const std::shared_ptr<domain>& space,
                                    const limited_reconstruction& edges, face_fluxes& faces)
     : device_(on),
       host_(equation, space, edges, faces),

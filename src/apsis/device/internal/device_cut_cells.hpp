@@ -16,7 +16,7 @@ namespace apsis {
 class device_cut_cells {
  public:
   /// `on`, `equation` and `faces` must outlive the object; the other arguments are those of cut_transport.
-  device_cut_cells(device& on, const model& equation, std::shared_ptr<domain> space,
+  device_cut_cells(device& on, const model& equation, const std::shared_ptr<domain>& space,
                    const limited_reconstruction& edges, face_fluxes& faces);
 
   /// Returns transport in cut cells on the host.
